@@ -14,7 +14,7 @@
 #include "analytics/checkpoints/from_observables.h"
 #include "analytics/checkpoints/registry.h"
 #include "analytics/external/metric_input.h"
-#include "analytics/report/text_table.h"
+#include "analytics/report/report_text.h"
 #include "recorder/attempt.h"
 #include "recorder/formats/scene_file.h"
 #include "recorder/words.h"

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "analytics/report/csv_table.h"
+#include "analytics/report/csv_reader.h"
 #include "analytics/statistics/angoff.h"
 
 namespace calot::analytics {

@@ -11,7 +11,7 @@
 
 #include "analytics/assessment/borderline_norm.h"
 #include "analytics/checkpoints/registry.h"
-#include "analytics/report/coverage_warning.h"
+#include "analytics/report/report_text.h"
 #include "analytics/statistics/contrasting_groups.h"
 #include "recorder/base/errors.h"
 

@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 
-#include "analytics/cohort/assessment_storage.h"
 #include "analytics/cohort/tables.h"
 #include "recorder/base/text_words.h"
 

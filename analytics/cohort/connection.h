@@ -3,15 +3,20 @@
 #pragma once
 
 #include <SQLiteCpp/SQLiteCpp.h>
-
 #include <chrono>
 #include <memory>
 #include <string>
 
 #include "analytics/cohort/cohort_database.h"
-#include "analytics/cohort/sqlite_errors.h"
+#include "recorder/base/errors.h"
 
 namespace calot::analytics {
+
+/// An SQLite message, which may quote content of a damaged file, with '?' for non-ASCII characters.
+std::string printable(std::string words);
+
+/// One line for the user that explains an SQLite result code and names the file.
+Error databaseError(int sqliteCode, const std::string& message, const std::string& path);
 
 /// "Calo": application id of a cohort database in SQLite's header.
 inline constexpr int cohortApplicationId = 0x43616C6F;

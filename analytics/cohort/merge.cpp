@@ -8,9 +8,8 @@
 #include <map>
 #include <set>
 
+#include "analytics/cohort/any_table.h"
 #include "analytics/cohort/connection.h"
-#include "analytics/cohort/row_cells.h"
-#include "analytics/cohort/schema_facts.h"
 #include "analytics/cohort/tables.h"
 #include "analytics/cohort/withdraw.h"
 

@@ -6,7 +6,6 @@
 #include <map>
 #include <utility>
 
-#include "analytics/cohort/assessment_storage.h"
 #include "analytics/cohort/tables.h"
 #include "recorder/base/text_words.h"
 

@@ -10,7 +10,6 @@
 #include <set>
 #include <utility>
 
-#include "analytics/cohort/assessment_storage.h"
 #include "analytics/cohort/tables.h"
 #include "recorder/attempt.h"
 

@@ -1,20 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Access to single tables, combined by CohortDatabase. No function here begins a transaction.
+// Access to single tables, which CohortDatabase and AssessmentDatabase combine. No function here begins a transaction.
 #pragma once
 
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <SQLiteCpp/VariadicBind.h>
-
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "analytics/cohort/assessment_database.h"
 #include "analytics/cohort/cohort_database.h"
+#include "analytics/cohort/connection.h"
 
 namespace calot::analytics::tables {
 
@@ -102,3 +104,26 @@ bool removeExternalValues(SQLite::Database& db, std::int64_t attempt);
 bool replaceValues(SQLite::Database& db, std::int64_t attempt, const std::vector<CheckpointValue>& values);
 
 }  // namespace calot::analytics::tables
+
+namespace calot::analytics {
+
+struct CohortDatabase::Storage {
+  std::string path;
+  std::unique_ptr<SQLite::Database> db;
+};
+
+struct AssessmentDatabase::Storage {
+  std::string path;
+  std::unique_ptr<SQLite::Database> db;
+};
+
+namespace tables {
+
+/// A filled form, and the form itself where it is not there yet; begins no transaction. @throws Error as
+/// AssessmentDatabase::storeRating().
+void putRating(SQLite::Database& db, const std::string& path, const StoredDocument& form, const Rating& rating,
+               bool replace);
+
+}  // namespace tables
+
+}  // namespace calot::analytics

@@ -8,7 +8,7 @@
 #include "analytics/design/design_parts.h"
 #include "analytics/design/line_plot.h"
 #include "analytics/design/paired_figures.h"
-#include "analytics/report/coverage_warning.h"
+#include "analytics/report/report_text.h"
 #include "analytics/statistics/bland_altman.h"
 #include "analytics/statistics/deming_regression.h"
 #include "analytics/statistics/spearman.h"

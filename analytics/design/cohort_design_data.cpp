@@ -10,9 +10,7 @@
 #include "analytics/design/cohort_figures.h"
 #include "analytics/design/design_data.h"
 #include "analytics/design/placed_attempts.h"
-#include "analytics/report/study_groups.h"
 #include "analytics/report/study_population.h"
-#include "analytics/report/study_setting.h"
 #include "recorder/base/errors.h"
 #include "recorder/base/text_words.h"
 

@@ -7,7 +7,7 @@
 #include <map>
 #include <set>
 
-#include "analytics/report/study_groups.h"
+#include "analytics/report/study_population.h"
 #include "analytics/statistics/repeated_attempts.h"
 #include "recorder/base/errors.h"
 #include "recorder/base/nearest_word.h"

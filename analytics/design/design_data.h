@@ -10,7 +10,7 @@
 
 #include "analytics/cohort/assessment_database.h"
 #include "analytics/design/design.h"
-#include "analytics/report/csv_table.h"
+#include "analytics/report/csv_reader.h"
 #include "analytics/report/study.h"
 #include "analytics/report/table_study.h"
 

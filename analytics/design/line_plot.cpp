@@ -7,9 +7,8 @@
 #include <array>
 #include <cmath>
 
-#include "analytics/report/box_plot.h"
-#include "analytics/report/plot_parts.h"
-#include "analytics/report/text_table.h"
+#include "analytics/report/plots.h"
+#include "analytics/report/report_text.h"
 
 namespace calot::analytics {
 namespace {

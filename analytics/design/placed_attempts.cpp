@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <set>
 
-#include "analytics/report/study_groups.h"
 #include "analytics/report/study_population.h"
 #include "recorder/base/errors.h"
 

@@ -6,7 +6,7 @@
 #include <map>
 
 #include "analytics/design/design_parts.h"
-#include "analytics/report/coverage_warning.h"
+#include "analytics/report/report_text.h"
 #include "analytics/statistics/generalizability.h"
 #include "analytics/statistics/intraclass_correlation.h"
 #include "analytics/statistics/measurement_error.h"

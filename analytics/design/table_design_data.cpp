@@ -8,8 +8,8 @@
 #include <set>
 
 #include "analytics/design/design_data.h"
-#include "analytics/report/study_groups.h"
-#include "analytics/report/table_records.h"
+#include "analytics/report/study_population.h"
+#include "analytics/report/table_study.h"
 #include "recorder/base/errors.h"
 #include "recorder/base/text_words.h"
 

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "analytics/cohort/any_table.h"
 #include "analytics/cohort/connection.h"
-#include "analytics/cohort/row_cells.h"
 #include "analytics/cohort/tables.h"
 #include "analytics/cohort/withdraw.h"
 #include "analytics/interchange/codebook.h"

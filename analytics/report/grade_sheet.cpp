@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "analytics/report/history_plot.h"
+#include "analytics/report/plots.h"
 #include "recorder/words.h"
 
 namespace calot::analytics {

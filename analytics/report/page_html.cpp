@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "analytics/report/html_text.h"
+#include "analytics/report/report_text.h"
 #include "recorder/base/file_bytes.h"
 
 namespace calot::analytics {

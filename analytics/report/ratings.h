@@ -11,7 +11,6 @@
 
 #include "analytics/assessment/rating_form.h"
 #include "analytics/cohort/assessment_database.h"
-#include "analytics/report/report_table.h"
 #include "analytics/statistics/cronbach_alpha.h"
 #include "analytics/statistics/expected.h"
 #include "analytics/statistics/intraclass_correlation.h"
@@ -88,12 +87,5 @@ std::vector<FormReport> reportForms(const AssessmentDatabase& database,
                                     const std::map<std::string, std::string>& groupOf,
                                     const std::vector<std::string>& groups,
                                     const std::map<std::string, AttemptOf>& attemptOf);
-
-/// Remarks: population of the figures, warnings about intervals with low coverage, and the items' source; none without
-/// a form.
-std::vector<std::string> ratingNotes(const FormReport& report);
-
-/// Ratings, consistency and agreement of one form, without empty tables.
-std::vector<ReportTable> ratingTables(const FormReport& report);
 
 }  // namespace calot::analytics

@@ -1,16 +1,32 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A report as an ordered list of parts, shown identically by a page (page_html.h) and on paper (gui/report).
+// A report as an ordered list of parts, shown identically on a terminal, by a page (page_html.h) and on paper
+// (gui/report).
 #pragma once
 
+#include <ostream>
 #include <string>
 #include <utility>
 #include <variant>
 #include <vector>
 
 #include "analytics/report/drawing.h"
-#include "analytics/report/report_table.h"
+#include "analytics/report/report_text.h"
 
 namespace calot::analytics {
+
+struct ReportTable {
+  std::string title;
+  std::vector<std::pair<std::string, TextTable::Align>> columns;
+  std::vector<std::vector<std::string>> rows;
+};
+
+/// Leaves out columns of which every cell is empty.
+void dropEmptyColumns(ReportTable& table);
+
+/// Title, table and an empty line, for a terminal of 120 columns.
+void printTable(const ReportTable& content, std::ostream& out);
+/// A sentence over as many lines as it needs.
+void printWrapped(const std::string& text, std::ostream& out);
 
 struct TextSpan {
   std::string text;

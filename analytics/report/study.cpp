@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "analytics/report/study.h"
 
 #include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -12,15 +12,61 @@
 
 #include "analytics/checkpoints/registry.h"
 #include "analytics/report/study_coverage.h"
-#include "analytics/report/study_groups.h"
 #include "analytics/report/study_population.h"
 #include "analytics/report/study_protocol.h"
 #include "analytics/report/study_rows.h"
-#include "analytics/report/study_setting.h"
+#include "analytics/statistics/descriptive.h"
+#include "analytics/statistics/two_groups.h"
 #include "recorder/base/errors.h"
 #include "recorder/base/text_words.h"
 
 namespace calot::analytics {
+namespace {
+
+/// Each participant's mean in a world.
+std::vector<double> meansIn(std::size_t world, const std::vector<RangedValue>& values) {
+  std::map<std::size_t, std::pair<double, double>> sums;  // sum and count
+  for (const RangedValue& v : values) {
+    auto& [sum, count] = sums[v.participant];
+    sum += v.worlds[world];
+    count += 1.0;
+  }
+  std::vector<double> means;
+  means.reserve(sums.size());
+  for (const auto& [participant, sum] : sums) means.push_back(sum.first / sum.second);
+  return means;
+}
+
+}  // namespace
+
+std::optional<SimulationRange> simulationRange(const std::array<std::vector<RangedValue>, 2>& groups) {
+  SimulationRange range;
+  std::vector<double> halves;
+  std::size_t worlds = 0;
+  bool alike = true;
+  for (const auto& group : groups) {
+    for (const RangedValue& v : group) {
+      ++range.values;
+      if (v.worlds.empty()) continue;
+      ++range.known;
+      halves.push_back(v.halfWidth);
+      alike = alike && (worlds == 0 || worlds == v.worlds.size());
+      worlds = v.worlds.size();
+    }
+  }
+  if (range.known == 0 || groups[0].empty() || groups[1].empty()) return std::nullopt;
+  range.halfWidth = *median(halves);
+  if (range.known < range.values || !alike) return range;
+  for (std::size_t w = 0; w < worlds; ++w) {
+    const auto here = superiority(meansIn(w, groups[0]), meansIn(w, groups[1]));
+    if (!here) continue;
+    if (!range.area) range.area = {here->a, here->a};
+    range.area->first = std::min(range.area->first, here->a);
+    range.area->second = std::max(range.area->second, here->a);
+  }
+  return range;
+}
+
 namespace {
 
 std::string leftOut(const Study& study) {
@@ -294,6 +340,10 @@ Study makeStudy(const std::vector<AttemptRow>& recruited, const std::vector<Atte
                 const StudyOptions& asked, const std::string& name, const StudyProgress& progress) {
   const auto each = [&](const TakeValue& take) { std::for_each(values.begin(), values.end(), take); };
   return studyOf(recruited, each, asked, name, progress);
+}
+
+void addRatings(Study& study, const AssessmentDatabase& database) {
+  study.ratings = reportForms(database, study.groupOf, {study.groups[0], study.groups[1]}, study.attemptOf);
 }
 
 }  // namespace calot::analytics

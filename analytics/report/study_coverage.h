@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "analytics/report/report_table.h"
+#include "analytics/report/report_document.h"
 #include "analytics/report/study.h"
 
 namespace calot::analytics {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include <optional>
 #include <utility>
 
-#include "analytics/report/box_plot.h"
-#include "analytics/report/score_plot.h"
+#include "analytics/report/plots.h"
 #include "analytics/report/study_output.h"
 #include "analytics/report/study_tables.h"
 
@@ -58,6 +58,27 @@ ReportDocument studyDocument(const Study& study) {
     document.parts.emplace_back(std::move(figures));
   }
   return document;
+}
+
+void printStudy(const Study& study, std::ostream& out, StudyDetail detail) {
+  const auto print = [&](const std::vector<std::string>& lines) {
+    for (const std::string& line : lines) printWrapped(line, out);
+  };
+  if (study.synthetic) out << watermarkText << '\n';
+  printWrapped(studyTitle(study), out);
+  print(studyHead(study));
+  out << '\n';
+  for (const auto& row : flowTable(study).rows) printWrapped(row[0] + " " + study.counted + " " + row[1], out);
+  out << '\n';
+  printTable(primaryTable(study), out);
+  print(primaryNotes(study));
+  if (detail == StudyDetail::all) {
+    out << '\n';
+    for (const ReportTable& table : appendixTables(study)) printTable(table, out);
+    print(appendixNotes(study));
+    printWrapped(studyMethods(study), out);
+  }
+  if (study.synthetic) out << watermarkText << '\n';
 }
 
 }  // namespace calot::analytics

@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "analytics/report/study_population.h"
 
 #include <fmt/format.h>
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <vector>
 
 #include "analytics/checkpoints/registry.h"
+#include "analytics/cohort/embedded.h"
 #include "analytics/cohort/registers.h"
 #include "analytics/report/study_protocol.h"
 #include "recorder/base/errors.h"
@@ -113,6 +118,103 @@ std::set<std::string> participantsOf(const std::string& path, const std::string&
       ErrorKind::invalid, Where{path},
       fmt::format("there is no cohort \"{}\" (there are: {})", recorder::shown(cohort), list.empty() ? "none" : list),
       {Remedy::nameCohort});
+}
+
+namespace {
+
+constexpr std::size_t notALevel = 3;
+
+/// 0: expert, skilled; 1: intermediate; 2: novice, unskilled.
+std::size_t levelOf(const std::string& group) {
+  if (group == "expert" || group == "skilled") return 0;
+  if (group == "intermediate") return 1;
+  return group == "novice" || group == "unskilled" ? 2 : notALevel;
+}
+
+std::string listed(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
+}  // namespace
+
+bool groupBefore(const std::string& a, const std::string& b) {
+  const auto rank = [](const std::string& s) {
+    static const std::vector<std::string> known{"expert", "skilled", "intermediate", "novice", "unskilled"};
+    return std::find(known.begin(), known.end(), s) - known.begin();
+  };
+  return rank(a) != rank(b) ? rank(a) < rank(b) : a < b;
+}
+
+std::array<std::string, 2> chooseGroups(const std::map<std::string, std::uint64_t>& present,
+                                        const StudyChoices& choices, const std::string& path, const std::string& left) {
+  std::vector<std::string> names;
+  names.reserve(present.size());
+  for (const auto& item : present) names.push_back(item.first);
+  std::sort(names.begin(), names.end(), groupBefore);
+  if (!choices.groups.empty()) {
+    if (choices.groups.size() != 2 || choices.groups[0] == choices.groups[1]) {
+      throw Error(ErrorKind::invalid, "study: its groups are two, with different names", {Remedy::nameGroups});
+    }
+    for (const std::string& name : choices.groups) {
+      if (present.count(name) == 0) {
+        throw Error(ErrorKind::refused, Where{path},
+                    fmt::format("nothing for the study in group \"{}\" (there are: {}){}", name,
+                                names.empty() ? "none" : listed(names), left));
+      }
+    }
+    return {choices.groups[0], choices.groups[1]};
+  }
+  if (names.size() == 2) return {names[0], names[1]};
+  if (names.size() > 2) {
+    throw Error(ErrorKind::refused, Where{path}, fmt::format("{} groups ({})", names.size(), listed(names)),
+                {Remedy::nameGroups});
+  }
+  throw Error(ErrorKind::refused, Where{path},
+              fmt::format("a study needs two groups, {}{}",
+                          names.empty() ? "none is left" : "only " + names[0] + " is there", left));
+}
+
+std::string betterOf(const std::array<std::string, 2>& groups, const StudyChoices& choices) {
+  if (!choices.better.empty()) {
+    if (choices.better != groups[0] && choices.better != groups[1]) {
+      throw Error(ErrorKind::invalid,
+                  fmt::format("study: the better group is to be \"{}\", but the groups are {} and {}", choices.better,
+                              groups[0], groups[1]),
+                  {Remedy::nameBetterGroup});
+    }
+    return choices.better;
+  }
+  const std::size_t a = levelOf(groups[0]), b = levelOf(groups[1]);
+  if (a == notALevel || b == notALevel || a == b) return {};
+  return a < b ? groups[0] : groups[1];
+}
+
+void addToSetting(StudySetting& setting, const AttemptRow& attempt) {
+  const auto at = std::lower_bound(setting.tasks.begin(), setting.tasks.end(), attempt.scene);
+  if (at == setting.tasks.end() || *at != attempt.scene) setting.tasks.insert(at, attempt.scene);
+  const std::string& start = attempt.startUtc;
+  if (start.empty()) return;
+  if (setting.firstStartUtc.empty() || start < setting.firstStartUtc) setting.firstStartUtc = start;
+  if (start > setting.lastStartUtc) setting.lastStartUtc = start;
+}
+
+void addPublished(Study& study) {
+  const nlohmann::json table = nlohmann::json::parse(publishedTable2());
+  const bool sameTask = study.setting.tasks == std::vector{table.at("task").get<std::string>()};
+  if (sameTask) study.publishedSource = table.at("source").get<std::string>();
+  for (const auto& published : table.at("rows")) {
+    for (StudyRow& row : study.rows) {
+      if (row.checkpoint != published.at("matches").get<std::string>() ||
+          row.subject != published.at("subject").get<std::string>())
+        continue;
+      row.leading = true;
+      if (!sameTask || row.unit != published.at("unit").get<std::string>()) continue;
+      row.publishedExpert = published.at("expert").get<double>();
+      row.publishedNovice = published.at("novice").get<double>();
+    }
+  }
 }
 
 }  // namespace calot::analytics

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which attempts of a cohort a study includes, and why others are excluded.
+// Which attempts of a cohort a study includes, why others are excluded, which two groups it compares, and where and
+// when the attempts were made.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <map>
 #include <set>
 #include <string>
@@ -36,5 +39,25 @@ std::vector<std::string> unaskedPhases(const StudyOptions& options);
 
 /// Pseudonyms in a named cohort. @throws Error (invalid) where the database at `path` has no such cohort.
 std::set<std::string> participantsOf(const std::string& path, const std::string& cohort);
+
+/// Names of groups: levels of skill first, best first; others behind them, by name.
+bool groupBefore(const std::string& a, const std::string& b);
+
+/// The two groups to compare.
+/// @param present units by group; @param left what the error says of those that stay out, or empty
+/// @throws Error (invalid) for names that are not two different ones, Error (refused) where there are not two groups.
+std::array<std::string, 2> chooseGroups(const std::map<std::string, std::uint64_t>& present,
+                                        const StudyChoices& choices, const std::string& path, const std::string& left);
+
+/// The group that is expected to do better, or empty. @throws Error (invalid) where `choices.better` is none of the
+/// two.
+std::string betterOf(const std::array<std::string, 2>& groups, const StudyChoices& choices);
+
+/// Adds an analysed attempt's task and start.
+void addToSetting(StudySetting& setting, const AttemptRow& attempt);
+
+/// Puts the figures of the paper's Table 2 into the study's first table (StudyRow::leading) and, where the study's one
+/// task is the paper's, the published means beside them.
+void addPublished(Study& study);
 
 }  // namespace calot::analytics

@@ -6,7 +6,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "analytics/report/text_table.h"
+#include "analytics/report/report_text.h"
 #include "apps/calot/commands.h"
 #include "apps/calot/results.h"
 #include "recorder/compliance_cache.h"

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "analytics/cohort/cohort_database.h"
-#include "analytics/report/text_table.h"
+#include "analytics/report/report_text.h"
 #include "apps/calot/cohort_option.h"
 #include "apps/calot/results.h"
 #include "apps/calot/terminal_text.h"

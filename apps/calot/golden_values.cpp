@@ -9,7 +9,7 @@
 
 #include "analytics/checkpoints/collector.h"
 #include "analytics/checkpoints/registry.h"
-#include "analytics/report/text_table.h"
+#include "analytics/report/report_text.h"
 #include "recorder/base/errors.h"
 
 namespace calot::apps {

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "analytics/assessment/angoff_judges.h"
-#include "analytics/report/report_table.h"
+#include "analytics/report/report_document.h"
 #include "apps/calot/results.h"
 #include "apps/common/exit_code.h"
 

@@ -15,7 +15,7 @@
 #include "analytics/assessment/norm.h"
 #include "analytics/checkpoints/registry.h"
 #include "analytics/cohort/assessment_database.h"
-#include "analytics/report/report_table.h"
+#include "analytics/report/report_document.h"
 #include "analytics/report/study_tables.h"
 #include "apps/calot/cohort_option.h"
 #include "apps/calot/commands.h"

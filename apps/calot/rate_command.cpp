@@ -11,8 +11,7 @@
 
 #include "analytics/assessment/rating_form.h"
 #include "analytics/cohort/assessment_database.h"
-#include "analytics/report/ratings.h"
-#include "analytics/report/ratings_json.h"
+#include "analytics/report/rating_tables.h"
 #include "apps/calot/cohort_option.h"
 #include "apps/calot/commands.h"
 #include "apps/calot/environment.h"

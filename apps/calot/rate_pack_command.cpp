@@ -16,7 +16,7 @@
 #include "analytics/cohort/rating_packs.h"
 #include "analytics/cohort/withdraw.h"
 #include "analytics/interchange/folder_output.h"
-#include "analytics/report/rating_page.h"
+#include "analytics/report/rater_page.h"
 #include "apps/calot/cohort_option.h"
 #include "apps/calot/environment.h"
 #include "apps/calot/pack_films.h"

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "analytics/checkpoints/registry.h"
-#include "analytics/report/text_table.h"
+#include "analytics/report/report_text.h"
 #include "apps/calot/value_report.h"
 #include "apps/common/advice.h"
 

@@ -8,7 +8,7 @@
 #include <QTimeZone>
 
 #include "analytics/checkpoints/registry.h"
-#include "analytics/report/text_table.h"
+#include "analytics/report/report_text.h"
 #include "gui/attempt/theme.h"
 #include "recorder/words.h"
 

@@ -7,9 +7,9 @@
 
 #include "analytics/cohort/check.h"
 #include "analytics/cohort/withdraw.h"
-#include "analytics/report/html_text.h"
 #include "analytics/report/masked_study.h"
 #include "analytics/report/page_html.h"
+#include "analytics/report/report_text.h"
 #include "analytics/report/study_coverage.h"
 #include "analytics/report/study_output.h"
 #include "analytics/report/study_tables.h"

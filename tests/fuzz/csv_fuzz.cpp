@@ -3,7 +3,7 @@
 #include <array>
 #include <string>
 
-#include "analytics/report/csv_table.h"
+#include "analytics/report/csv_reader.h"
 #include "recorder/base/csv_numbers.h"
 #include "recorder/sources/column_map.h"
 

@@ -12,10 +12,10 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "analytics/cohort/schema_facts.h"
+#include "analytics/cohort/any_table.h"
 #include "analytics/interchange/cohort_tables.h"
 #include "analytics/interchange/column_notes.h"
-#include "analytics/report/csv_table.h"
+#include "analytics/report/csv_reader.h"
 #include "tests/analytics/cohort/support/cohort_support.h"
 #include "tests/analytics/support/refusal.h"
 

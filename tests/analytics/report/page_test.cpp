@@ -8,11 +8,9 @@
 #include <regex>
 #include <sstream>
 
-#include "analytics/report/box_plot.h"
-#include "analytics/report/forest_plot.h"
-#include "analytics/report/html_text.h"
 #include "analytics/report/page_html.h"
-#include "analytics/report/text_table.h"
+#include "analytics/report/plots.h"
+#include "analytics/report/report_text.h"
 
 namespace calot::analytics {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "analytics/report/score_plot.h"
+#include "analytics/report/plots.h"
 #include "tests/analytics/assessment/support/schema_agreement.h"
 #include "tests/analytics/cohort/support/cohort_support.h"
 #include "tests/analytics/support/refusal.h"

@@ -13,7 +13,7 @@
 #include <regex>
 #include <string>
 
-#include "analytics/report/box_plot.h"
+#include "analytics/report/plots.h"
 #include "gui/report/text_document.h"
 
 namespace calot::gui {

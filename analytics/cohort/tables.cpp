@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <fmt/format.h>
+// Rows of participants and of the audit trail.
 
+#include "analytics/cohort/tables.h"
+
+#include <fmt/format.h>
 #include <algorithm>
 #include <chrono>
 
 #include "analytics/cohort/connection.h"
-#include "analytics/cohort/tables.h"
 
 namespace calot::analytics::tables {
 

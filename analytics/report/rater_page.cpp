@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "analytics/report/rating_page.h"
+
+#include "analytics/report/rater_page.h"
 
 #include <fmt/format.h>
 #include <sodium.h>
-
 #include <array>
 #include <nlohmann/json.hpp>
 #include <string_view>
 
-#include "analytics/report/html_text.h"
+#include "analytics/report/report_text.h"
 
 namespace calot::analytics {
 namespace {

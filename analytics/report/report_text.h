@@ -1,13 +1,28 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Text of reports: tables for the terminal, numbers, text escaped for HTML, warnings about intervals.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <ostream>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
+#include "analytics/statistics/published_coverage.h"
+
 namespace calot::analytics {
+
+/// A text for HTML or SVG, between tags or in a quoted attribute: & < > " ' are escaped, control characters and bytes
+/// that are not UTF-8 become U+FFFD.
+std::string escaped(std::string_view text);
+
+/// Warning about an interval whose published coverage is low at these sizes: "g: with 40 a group an interval at 95 %
+/// covers 92.4 % (population: exponential, 0.8)"; empty where it isn't.
+/// @param name as the report calls the interval. @param unit of the sizes: "a group", "attempts", "people".
+std::string coverageWarning(CoveredInterval interval, const std::string& name, std::size_t nx, std::size_t ny,
+                            const std::string& unit = "a group");
 
 /// A table of text with aligned columns for the terminal.
 class TextTable {

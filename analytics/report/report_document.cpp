@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "analytics/report/report_table.h"
+
+#include "analytics/report/report_document.h"
 
 #include <algorithm>
 #include <cstddef>
