@@ -13,7 +13,7 @@
 namespace calot::recorder {
 
 EngineChoice::EngineChoice(const Recording& recording, const EngineWish& wish)
-    : header_(recording.header()), where_{recording.path().string(), "/scene"} {
+    : header_(recording.header()), where_{recording.path().string(), "/scene"}, makeBroadPhase_(wish.makeBroadPhase) {
   if (!wish.file.empty()) {
     command_ = commandOf(wish.file);
     version_ = header_.simulationVersion;
@@ -42,7 +42,7 @@ EngineChoice::EngineChoice(const Recording& recording, const EngineWish& wish)
 }
 
 std::unique_ptr<Engine> EngineChoice::make(Executor& executor) const {
-  if (scene_) return std::make_unique<LocalEngine>(scene_->model(), executor, &scene_->compliances());
+  if (scene_) return std::make_unique<LocalEngine>(scene_->model(), executor, scene_->services(makeBroadPhase_));
   auto engine = std::make_unique<EngineProcess>(command_, version_);
   engine->load(header_, where_);
   return engine;

@@ -22,6 +22,8 @@ struct EngineWish {
   bool apart = false;               ///< as a program of its own, confined: for recordings that are not trusted
   bool anyway = false;              ///< this program's own, whatever the recording's version
   std::filesystem::path file = {};  ///< this program or module, which must be of the recording's version
+  /// Broad phase of this program's own simulation; null, as in every other program: SortedGrid.
+  MakeBroadPhase makeBroadPhase = nullptr;
 };
 
 /// The engine of a recording's simulation version: this program's own, or a kept one. Makes any number of it.
@@ -49,6 +51,7 @@ class EngineChoice {
   Where where_;
   std::shared_ptr<PreparedScene> scene_;                 ///< null: another program
   mutable std::optional<SceneDescription> description_;  ///< then, once asked for
+  MakeBroadPhase makeBroadPhase_;
   std::vector<std::string> command_;
   std::uint32_t version_ = 0;  ///< of that program
 };

@@ -13,6 +13,7 @@
 #include "recorder/recording/reader.h"
 #include "recorder/shared_compliances.h"
 #include "sim/scene/model.h"
+#include "sim/step/stepper.h"
 
 namespace calot::recorder {
 
@@ -24,6 +25,10 @@ class PreparedScene {
 
   [[nodiscard]] const Model& model() const { return *model_; }
   [[nodiscard]] SharedCompliances& compliances() { return compliances_; }
+  /// For sessions of the scene. @param makeBroadPhase as in StepperServices
+  [[nodiscard]] StepperServices services(MakeBroadPhase makeBroadPhase = nullptr) {
+    return {&compliances_, makeBroadPhase};
+  }
 
   /// Puts what was worked out into the user's cache folder if a good part of it is new: after a run. Where that cannot
   /// be written, nothing happens.

@@ -18,7 +18,7 @@ StepwiseAttempt::StepwiseAttempt(std::shared_ptr<PreparedScene> scene, std::vect
     : scene_(std::move(scene)),
       assets_(std::move(assets)),
       seed_(seed),
-      session_(scene_->model(), seed, executor_, &scene_->compliances()),
+      session_(scene_->model(), seed, executor_, scene_->services()),
       hands_(scene_->model().scene()),
       watch_(std::make_unique<RunawayWatch>()),
       samples_(scene_->model().scene().ticksPerStep),

@@ -16,6 +16,7 @@
 #include "analytics/cohort/cohort_database.h"
 #include "apps/calot-trainer/options_input.h"
 #include "apps/calot-trainer/pictures.h"
+#include "apps/calot/broad_phase_option.h"
 #include "apps/calot/environment.h"
 #include "apps/calot/station_options.h"
 #include "apps/calot/stop_request.h"
@@ -42,7 +43,7 @@ constexpr const char* programName = "calot-trainer";
 struct Options {
   SourceOptions source;
   std::string scene, participant, station, stationKey, purpose = "training", handedness = "unknown", folder = ".";
-  std::string mode = "practice", pictures, graphics = "auto", cohort;
+  std::string mode = "practice", pictures, graphics = "auto", cohort, broadPhase = "grid";
   LookOptions look;
   bool aloud = false;
   std::uint64_t seed = 1;
@@ -79,6 +80,7 @@ void add(CLI::App& app, Options& o) {
   app.add_option("--station", o.station, "name of this training station");
   addStationKey(app, o.stationKey);
   app.add_option("--seed", o.seed, "of simulation and performer")->check(wholeNumber)->capture_default_str();
+  addBroadPhase(app, o.broadPhase);
   app.add_option("--threads", o.threads, "of the simulation; 0: all")
       ->check(CLI::Range(0U, 64U))
       ->capture_default_str();
@@ -147,6 +149,7 @@ gui::TrainerSetup setUp(const Options& o, const std::optional<recorder::LoadedSc
   setup.cohort = cohortOf(o.cohort);
   setup.demonstration = demonstrationOf(o);
   setup.settings.threads = o.threads;
+  setup.settings.makeBroadPhase = broadPhaseOf(o.broadPhase);
   SourceOptions who = o.source;
   refuseScope(who.scope);
   if (who.scope.moves() && who.scope.device.empty() && who.performer.empty())

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <memory>
 
+#include "apps/calot/broad_phase_option.h"
 #include "apps/calot/commands.h"
 #include "apps/calot/environment.h"
 #include "apps/calot/run_report.h"
@@ -26,7 +27,7 @@ namespace {
 
 struct BranchOptions {
   SourceOptions source;
-  std::string parent, at, stationKey, output;
+  std::string parent, at, stationKey, output, broadPhase = "grid";
   std::uint64_t seed = 1;
   double seconds = 0.0;
   unsigned threads = 1;
@@ -66,7 +67,7 @@ int branch(const BranchOptions& o) {
 
   recorder::RecordingWriter writer(file.path(), header, {true, std::move(key)});
   recorder::WorkerPool pool(o.threads);
-  recorder::Session session(model, header.seed, pool, &scene->compliances());
+  recorder::Session session(model, header.seed, pool, scene->services(broadPhaseOf(o.broadPhase)));
   LastPose pose;
   session.join(writer);
   session.join(pose);
@@ -124,6 +125,7 @@ void addBranch(CLI::App& app, Run& run) {
       ->check(CLI::Range(0.0, 36000.0));
   command->add_flag("--live", o->live, "run at real time after the fork, the haptic ticks on a thread of their own");
   addStationKey(*command, o->stationKey);
+  addBroadPhase(*command, o->broadPhase);
   command->add_option("--threads", o->threads, "of the simulation; 0: all")
       ->check(CLI::Range(0U, 64U))
       ->capture_default_str();

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <memory>
 
+#include "apps/calot/broad_phase_option.h"
 #include "apps/calot/commands.h"
 #include "apps/calot/environment.h"
 #include "apps/calot/run_report.h"
@@ -25,7 +26,7 @@ namespace {
 struct RecordOptions {
   SourceOptions source;
   std::string scene, participant, station, stationKey, purpose = "training", handedness = "unknown", output;
-  std::string mode = "practice";
+  std::string mode = "practice", broadPhase = "grid";
   std::uint64_t seed = 1;
   double seconds = 0.0;
   unsigned threads = 1;
@@ -56,7 +57,7 @@ int record(const RecordOptions& o) {
       recorder::makeHeader(model, std::move(scene.assets), source->provenance(), settings);
   recorder::RecordingWriter writer(o.output, header, {o.force, std::move(key)});
   recorder::WorkerPool pool(o.threads);
-  recorder::Session session(model, o.seed, pool, &prepared->compliances());
+  recorder::Session session(model, o.seed, pool, prepared->services(broadPhaseOf(o.broadPhase)));
   session.join(writer);
   Progress progress("recording, seconds", o.json);
   recorder::RunSettings run;
@@ -107,6 +108,7 @@ void addRecord(CLI::App& app, Run& run) {
       ->capture_default_str();
   command->add_flag("--paced", o->paced, "run at real time: tick n no earlier than n ms after the start");
   command->add_flag("--live", o->live, "run at real time with the haptic ticks on a thread of their own, 1 kHz");
+  addBroadPhase(*command, o->broadPhase);
   command->add_option("--threads", o->threads, "of the simulation; 0: all")
       ->check(CLI::Range(0U, 64U))
       ->capture_default_str();

@@ -9,6 +9,7 @@
 #include <optional>
 #include <thread>
 
+#include "apps/calot/broad_phase_option.h"
 #include "apps/calot/commands.h"
 #include "apps/calot/environment.h"
 #include "apps/calot/replay_report.h"
@@ -24,7 +25,7 @@ namespace {
 
 struct ReplayOptions {
   std::vector<std::string> files;
-  std::string junit, engine;
+  std::string junit, engine, broadPhase = "grid";
   std::vector<std::size_t> segments;  ///< first and last; empty: all
   unsigned threads = 1, jobs = 1;
   bool anyway = false, apart = false, json = false, force = false, skipUndecided = false;
@@ -34,6 +35,7 @@ int replay(const ReplayOptions& o) {
   if (!o.segments.empty() && o.files.size() > 1)
     throw Error(ErrorKind::invalid, "--segments are those of one recording: name one");
   if (!o.junit.empty()) recorder::refuseOutput(o.junit, o.force);
+  const MakeBroadPhase makeBroadPhase = broadPhaseOf(o.broadPhase);
   std::vector<recorder::ReplayReport> reports(o.files.size());
   const bool single = o.files.size() == 1;
   Progress progress(single ? "replaying, step" : "replaying, recordings", o.json);
@@ -45,7 +47,7 @@ int replay(const ReplayOptions& o) {
     for (std::size_t i = next++; i < o.files.size(); i = next++) {
       recorder::ReplaySettings settings;
       settings.threads = o.threads;
-      settings.engine = {o.apart, o.anyway, o.engine};
+      settings.engine = {o.apart, o.anyway, o.engine, makeBroadPhase};
       if (!o.segments.empty()) settings.part.emplace(o.segments.front(), o.segments.back());
       if (single) settings.progress = [&](std::uint64_t step, std::uint64_t of) { progress.show(step, of); };
       try {
@@ -102,9 +104,11 @@ void addReplay(CLI::App& app, Run& run) {
   command->add_option("--segments", o->segments, "verify these alone, FIRST LAST, numbered from 0")->expected(2);
   addJunitOptions(*command, o->junit, o->skipUndecided, o->force);
   command->add_flag("--anyway", o->anyway, "re-simulate recordings of another simulation version too (still exit 5)");
-  command->add_flag("--apart", o->apart,
-                    "re-simulate in confined programs, as recordings of other simulation versions are");
-  command->add_option("--engine", o->engine, "this engine's program or module, whatever is installed");
+  CLI::Option* const apart = command->add_flag(
+      "--apart", o->apart, "re-simulate in confined programs, as recordings of other simulation versions are");
+  CLI::Option* const engine =
+      command->add_option("--engine", o->engine, "this engine's program or module, whatever is installed");
+  addBroadPhase(*command, o->broadPhase)->excludes(apart)->excludes(engine);
   command->add_flag("--json", o->json, "print the result as JSON");
   command->callback([o, &run] { run = [o] { return replay(*o); }; });
 }

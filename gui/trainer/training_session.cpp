@@ -206,7 +206,7 @@ void TrainingSession::attempt() {
   const std::filesystem::path file = freshFile(settings_.folder, scene().name, header.startUtc);
   recorder::RecordingWriter writer(file, header, {false, settings_.key});
   recorder::WorkerPool pool(settings_.threads);
-  recorder::Session session(prepared_->model(), header.seed, pool, &prepared_->compliances());
+  recorder::Session session(prepared_->model(), header.seed, pool, prepared_->services(settings_.makeBroadPhase));
   AttemptMonitor monitor(prepared_->model());
   session.join(writer);
   session.join(monitor);
@@ -229,7 +229,7 @@ void TrainingSession::branch(double time) {
   recorder::BranchFile place(file, false);
   recorder::RecordingWriter writer(place.path(), header, {true, settings_.key});
   recorder::WorkerPool pool(settings_.threads);
-  recorder::Session session(prepared_->model(), header.seed, pool, &prepared_->compliances());
+  recorder::Session session(prepared_->model(), header.seed, pool, prepared_->services(settings_.makeBroadPhase));
   AttemptMonitor monitor(prepared_->model());
   session.join(writer);
   session.join(monitor);

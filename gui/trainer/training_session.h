@@ -29,8 +29,9 @@ struct TrainingSettings {
   recorder::LoadedScene scene;
   recorder::AttemptSettings attempt;  ///< participant, station, mode, seed, ...
   std::optional<recorder::StationKey> key;
-  std::filesystem::path folder;  ///< where recordings go; it exists
-  unsigned threads = 1;          ///< of the simulation
+  std::filesystem::path folder;             ///< where recordings go; it exists
+  unsigned threads = 1;                     ///< of the simulation
+  MakeBroadPhase makeBroadPhase = nullptr;  ///< of the simulation; null: the grid
   /// How long an attempt waits for its first picture, at most: OpenGL's programs are compiled for it.
   std::chrono::milliseconds firstPicture{0};
   std::chrono::milliseconds countdown{3000};  ///< after going back, until the hands take effect

@@ -6,7 +6,7 @@
 namespace calot::recorder {
 
 std::unique_ptr<Session> LocalEngine::makeSession(std::uint64_t seed) {
-  auto session = std::make_unique<Session>(model_, seed, *executor_, compliances_);
+  auto session = std::make_unique<Session>(model_, seed, *executor_, services_);
   session->join(newest_);
   return session;
 }

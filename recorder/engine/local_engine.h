@@ -13,9 +13,9 @@ namespace calot::recorder {
 /// This program's own simulation.
 class LocalEngine final : public Engine {
  public:
-  /// @param model, executor, compliances outlive the engine; compliances may be null (Session)
-  LocalEngine(const Model& model, Executor& executor, ComplianceStore* compliances = nullptr)
-      : model_(model), executor_(&executor), compliances_(compliances) {}
+  /// @param model, executor outlive the engine. @param services of its session's stepper
+  LocalEngine(const Model& model, Executor& executor, const StepperServices& services = {})
+      : model_(model), executor_(&executor), services_(services) {}
   /// Goes on with a session that is there, which outlives the engine. @pre nobody calls start()
   explicit LocalEngine(Session& session) : model_(session.model()), session_(&session) { session.join(newest_); }
   ~LocalEngine() override {
@@ -53,7 +53,7 @@ class LocalEngine final : public Engine {
 
   const Model& model_;
   Executor* executor_ = nullptr;
-  ComplianceStore* compliances_ = nullptr;
+  StepperServices services_;
   Newest newest_;
   std::vector<TickOutcome> ticks_;
   std::unique_ptr<Session> owned_;

@@ -42,11 +42,8 @@ class PartWriter {
 
 }  // namespace
 
-Session::Session(const Model& model, std::uint64_t seed, Executor& executor, ComplianceStore* compliances)
-    : model_(model),
-      state_(initialState(model, seed)),
-      stepper_(model, executor, nullptr, compliances),
-      sets_(keptSets) {
+Session::Session(const Model& model, std::uint64_t seed, Executor& executor, const StepperServices& services)
+    : model_(model), state_(initialState(model, seed)), stepper_(model, executor, services), sets_(keptSets) {
   for (std::size_t h = 0; h < handCount; ++h) {
     hapticModel_[h] = hapticModel(model, h);
     haptic_[h] = initialHaptics(state_, h);

@@ -30,9 +30,8 @@ class Session {
   /// steps there are, of one tick).
   static constexpr std::size_t keptSets = 128;
 
-  /// @param model, executor outlive the session. @param compliances that sessions of the model share (PreparedScene),
-  /// or null; outlives it too
-  Session(const Model& model, std::uint64_t seed, Executor& executor, ComplianceStore* compliances = nullptr);
+  /// @param model, executor outlive the session. @param services of its stepper (PreparedScene::services())
+  Session(const Model& model, std::uint64_t seed, Executor& executor, const StepperServices& services = {});
 
   /// Subscribes to every step from here on; observers are called in the order of joining.
   void join(Observer& observer) { observers_.push_back(&observer); }

@@ -16,6 +16,8 @@ class BulletTree final : public BroadPhase {
  public:
   BulletTree();
   ~BulletTree() override;
+  /// For StepperServices.
+  static std::unique_ptr<BroadPhase> make() { return std::make_unique<BulletTree>(); }
   BulletTree(const BulletTree&) = delete;
   BulletTree& operator=(const BulletTree&) = delete;
 

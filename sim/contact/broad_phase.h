@@ -37,6 +37,9 @@ class BroadPhase {
   virtual void pairs(std::span<const Box> queries, std::vector<Pair>& out) const = 0;
 };
 
+/// Makes a broad phase; a null pointer stands for SortedGrid.
+using MakeBroadPhase = std::unique_ptr<BroadPhase> (*)();
+
 /// Eight boxes side by side, rounded outward to float; lanes that are not used are empty.
 struct BoxLanes {
   alignas(32) float lower[3][laneCount];

@@ -30,10 +30,10 @@ StepResult emptyResult(const Model& model) {
 
 /// The stages, what they hand on, and what they work on.
 struct Stepper::Pipeline {
-  Pipeline(const Model& m, Executor& executor, MakeBroadPhase make, ComplianceStore* compliances)
+  Pipeline(const Model& m, Executor& executor, const StepperServices& services)
       : model(m),
-        bodies(m, executor, compliances),
-        surfaces(m, bodies, make),
+        bodies(m, executor, services.compliances),
+        surfaces(m, bodies, services.makeBroadPhase),
         activity(m),
         grasping(m),
         sampleStage(m),
@@ -69,8 +69,8 @@ struct Stepper::Pipeline {
   IncrementalDigest digest;
 };
 
-Stepper::Stepper(const Model& model, Executor& executor, MakeBroadPhase makeBroadPhase, ComplianceStore* compliances)
-    : p_(std::make_unique<Pipeline>(model, executor, makeBroadPhase, compliances)) {}
+Stepper::Stepper(const Model& model, Executor& executor, const StepperServices& services)
+    : p_(std::make_unique<Pipeline>(model, executor, services)) {}
 Stepper::~Stepper() = default;
 
 const StepResult& Stepper::step(State& state, std::span<const TickSamples> samples) {

@@ -16,17 +16,19 @@
 
 namespace calot {
 
+/// Parts of a stepper that its user may supply. They change how fast steps are computed, no result.
+struct StepperServices {
+  /// Cache of rest compliances shared with other steppers of the same model; null: the stepper's own. Outlives it.
+  ComplianceStore* compliances = nullptr;
+  MakeBroadPhase makeBroadPhase = nullptr;  ///< called once for each structure; null: SortedGrid
+};
+
 /// Computes steps. Holds caches and scratch memory, nothing that a State does not determine: two steppers over the same
 /// State give the same bits, whatever they did before, with any executor and any broad phase.
 class Stepper {
  public:
-  using MakeBroadPhase = std::unique_ptr<BroadPhase> (*)();
-
-  /// @param executor outlives the stepper. @param makeBroadPhase one is made for each structure.
-  /// @param compliances where columns of rest compliances come from and go to, for other steppers of the same model;
-  /// null: of this one alone. Outlives the stepper.
-  Stepper(const Model& model, Executor& executor, MakeBroadPhase makeBroadPhase = nullptr,
-          ComplianceStore* compliances = nullptr);
+  /// @param model, executor outlive the stepper
+  Stepper(const Model& model, Executor& executor, const StepperServices& services = {});
   ~Stepper();
   Stepper(const Stepper&) = delete;
   Stepper& operator=(const Stepper&) = delete;

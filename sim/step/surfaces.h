@@ -19,8 +19,6 @@ inline constexpr double broadPhaseCell = 0.02;
 /// moved or changed its topology has to be marked; refresh() then updates that one alone.
 class Surfaces {
  public:
-  using MakeBroadPhase = std::unique_ptr<BroadPhase> (*)();
-
   /// @param make makes one broad phase a structure; none: SortedGrid
   Surfaces(const Model& model, Bodies& bodies, MakeBroadPhase make);
 

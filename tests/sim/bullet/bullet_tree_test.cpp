@@ -95,7 +95,7 @@ TEST(BulletTree, StepsToTheSameStatesAsTheGrid) {
     std::array<Vec3, handCount> way;
     for (Vec3& w : way) w = Vec3(random.normal(), random.normal(), random.normal()).normalized();
     test::Rig grid(*model);
-    test::Rig tree(*model, nullptr, [] { return std::unique_ptr<BroadPhase>(std::make_unique<BulletTree>()); });
+    test::Rig tree(*model, nullptr, &BulletTree::make);
     for (int step = 0; step < 150; ++step) {
       const std::vector<TickSamples> ticks = violentTicks(model->scene(), step, way);
       const StepResult& result = grid.stepper.step(grid.state, ticks);

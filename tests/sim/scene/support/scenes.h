@@ -151,8 +151,10 @@ inline std::vector<TickSamples> ticksAt(const SceneDescription& scene, const Vec
 /// A state and a stepper over a model, driven by tips.
 class Rig {
  public:
-  explicit Rig(const Model& model, Executor* executor = nullptr, Stepper::MakeBroadPhase make = nullptr)
-      : model_(model), stepper(model, executor != nullptr ? *executor : serial_, make), state(initialState(model, 1)) {}
+  explicit Rig(const Model& model, Executor* executor = nullptr, MakeBroadPhase make = nullptr)
+      : model_(model),
+        stepper(model, executor != nullptr ? *executor : serial_, {nullptr, make}),
+        state(initialState(model, 1)) {}
 
   const StepResult& step(const Vec3& left, const Vec3& right) {
     ticks = ticksAt(model_.scene(), left, right);
