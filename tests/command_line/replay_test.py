@@ -19,6 +19,11 @@ class Exact(program.ProgramTest):
             answer = self.well("replay", "--threads", threads, skilled())
             self.assertRegex(answer.out, r"^\S+skilled\.h5: bit-exact, 5\.00 s \(500 steps\), [\d.]+ x real time\n$")
 
+    def test_each_broad_phase(self):
+        golden = program.SOURCE / "assets/golden/touch-liver.h5"
+        for name in ("grid", "bullet"):
+            self.assertIn("bit-exact", self.well("replay", "--broad-phase", name, golden).out)
+
     def test_recorded_with_two_threads_is_the_same_attempt(self):
         two = recording("two-threads", "--performer", "skilled", "--seed", 7, "--seconds", 5, "--threads", 2)
         with h5py.File(skilled(), "r") as a, h5py.File(two, "r") as b:
