@@ -13,10 +13,8 @@
 #include "apps/common/exit_code.h"
 #include "recorder/base/errors.h"
 #include "recorder/base/text_output.h"
+#include "recorder/formats/mesh_file.h"
 #include "recorder/formats/mesh_report.h"
-#include "recorder/formats/obj_file.h"
-#include "recorder/formats/surface_file.h"
-#include "recorder/formats/vtk.h"
 
 namespace calot::apps {
 namespace {

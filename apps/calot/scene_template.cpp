@@ -11,7 +11,7 @@
 #include "recorder/base/errors.h"
 #include "recorder/base/file_bytes.h"
 #include "recorder/base/text_output.h"
-#include "recorder/formats/surface_file.h"
+#include "recorder/formats/mesh_file.h"
 #include "sim/geometry/surface_report.h"
 
 namespace calot::apps {

@@ -16,7 +16,7 @@
 #include "assets/organs/vessel_paths.h"
 #include "recorder/base/errors.h"
 #include "recorder/base/file_bytes.h"
-#include "recorder/formats/obj_file.h"
+#include "recorder/formats/mesh_file.h"
 #include "sim/geometry/self_crossing.h"
 #include "sim/geometry/surface_report.h"
 

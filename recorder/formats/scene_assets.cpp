@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "recorder/formats/scene_assets.h"
 
 #include <fmt/format.h>
-
 #include <algorithm>
 #include <limits>
 #include <map>
+#include <nlohmann/json.hpp>
 
 #include "recorder/base/errors.h"
 #include "recorder/base/json_faults.h"
@@ -20,6 +21,7 @@
 #include "recorder/formats/scene_vessels.h"
 #include "sim/instruments/instruments.h"
 #include "sim/math/floating_point.h"
+#include "sim/scene/down.h"
 
 namespace calot::recorder {
 namespace {
@@ -218,6 +220,19 @@ LoadedScene sceneFromAssets(std::vector<Asset> assets) {
   }
   loaded.assets = std::move(assets);
   return loaded;
+}
+
+Vec3 downOf(const Asset& sceneFile) {
+  const auto* const text = reinterpret_cast<const char*>(sceneFile.bytes.data());
+  const nlohmann::json scene = nlohmann::json::parse(text, text + sceneFile.bytes.size(), nullptr, false);
+  const auto found = scene.is_object() ? scene.find("gravity") : scene.end();
+  if (found == scene.end() || !found->is_array() || found->size() != 3) return SceneView().down;
+  Vec3 gravity;
+  for (std::size_t a = 0; a < 3; ++a) {
+    if (!(*found)[a].is_number()) return SceneView().down;
+    gravity[static_cast<int>(a)] = (*found)[a].get<double>();
+  }
+  return calot::downOf(gravity);
 }
 
 }  // namespace calot::recorder

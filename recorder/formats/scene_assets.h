@@ -8,6 +8,7 @@
 
 #include "recorder/base/identity.h"
 #include "recorder/formats/scene_surface.h"
+#include "sim/math/linear.h"
 #include "sim/scene/description.h"
 
 namespace calot::recorder {
@@ -28,5 +29,9 @@ LoadedScene parseScene(const Asset& file, const FetchAsset& fetch);
 /// The same of a recording's assets: the first one is the scene file, the others are looked up by name.
 /// @throws Error (damaged) as parseScene, and where a named asset is missing, double, or named by nobody.
 LoadedScene sceneFromAssets(std::vector<Asset> assets);
+
+/// Where gravity pulls, by a scene file that another version's engine reads: its key "gravity" alone is looked at.
+/// @return unit; SceneView's default where the file tells of none
+[[nodiscard]] Vec3 downOf(const Asset& sceneFile);
 
 }  // namespace calot::recorder

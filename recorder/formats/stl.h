@@ -11,7 +11,7 @@
 #include <span>
 #include <string>
 
-#include "recorder/formats/surface_limits.h"
+#include "recorder/formats/surface_bytes.h"
 #include "sim/geometry/triangle_mesh.h"
 
 namespace calot::recorder {

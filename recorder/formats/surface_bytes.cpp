@@ -1,17 +1,38 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "recorder/formats/surface_bytes.h"
 
 #include <fmt/format.h>
-
 #include <algorithm>
 #include <string_view>
 
 #include "recorder/base/errors.h"
+#include "recorder/base/text_words.h"
 #include "recorder/formats/obj.h"
 #include "recorder/formats/ply.h"
 #include "recorder/formats/stl.h"
 
 namespace calot::recorder {
+
+double metres(LengthUnit unit) {
+  switch (unit) {
+    case LengthUnit::centimetre:
+      return 0.01;
+    case LengthUnit::millimetre:
+      return 0.001;
+    case LengthUnit::metre:
+      break;
+  }
+  return 1.0;
+}
+
+LengthUnit parseLengthUnit(const std::string& word) {
+  if (word == "m") return LengthUnit::metre;
+  if (word == "cm") return LengthUnit::centimetre;
+  if (word == "mm") return LengthUnit::millimetre;
+  throw Error(ErrorKind::invalid, fmt::format("unit \"{}\": m, cm or mm is wanted", shown(word)));
+}
+
 namespace {
 
 enum class Format { none, obj, stl, ply };

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "recorder/engine/wire_forms.h"
-#include "recorder/formats/scene_gravity.h"
+#include "recorder/formats/scene_assets.h"
 #include "recorder/kept/receive_message.h"
 #include "recorder/kept/recorded_names.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "recorder/formats/obj_file.h"
+#include "recorder/formats/mesh_file.h"
 
 #include <gtest/gtest.h>
 

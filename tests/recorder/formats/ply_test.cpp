@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "recorder/base/errors.h"
-#include "recorder/formats/surface_file.h"
+#include "recorder/formats/mesh_file.h"
 #include "sim/geometry/surface_report.h"
 #include "sim/math/random.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Gravity of a scene file that this build need not be able to read.
-#include "recorder/formats/scene_gravity.h"
+#include "recorder/formats/scene_assets.h"
 
 #include <gtest/gtest.h>
 

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "recorder/formats/surface_file.h"
+#include "recorder/formats/mesh_file.h"
 #include "sim/geometry/self_crossing.h"
 #include "sim/geometry/surface_report.h"
 #include "tests/sim/geometry/surfaces.h"

@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <limits>
 
-#include "recorder/formats/obj_file.h"
+#include "recorder/formats/mesh_file.h"
 #include "sim/geometry/surface_report.h"
 #include "tests/sim/geometry/surfaces.h"
 

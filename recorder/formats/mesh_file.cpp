@@ -1,14 +1,27 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "recorder/formats/vtk.h"
+
+#include "recorder/formats/mesh_file.h"
 
 #include <fmt/format.h>
-
 #include <algorithm>
 #include <iterator>
 
+#include "recorder/base/file_bytes.h"
 #include "recorder/base/text_output.h"
 
 namespace calot::recorder {
+
+TriangleMesh readSurface(const std::filesystem::path& path, LengthUnit unit, const SurfaceLimits& limits) {
+  return parseSurface(readFileBytes(path, path.string(), limits.bytes), path.string(), unit, limits);
+}
+
+TriangleMesh readObj(const std::filesystem::path& path, LengthUnit unit, const ObjLimits& limits) {
+  return parseObj(readFileBytes(path, path.string(), limits.bytes), path.string(), unit, limits);
+}
+
+void writeObj(const std::filesystem::path& path, const TriangleMesh& mesh, const std::string& comment, bool force) {
+  writeText(path, formatObj(mesh, comment), force);
+}
 
 std::string formatVtk(const TetrahedralMesh& mesh, const std::string& title) {
   std::string line = title.substr(0, 255);
