@@ -216,6 +216,12 @@ JudgedRecording judgedRecording(Assessment assessment) {
   return judged;
 }
 
+bool isVerified(const CohortDatabase& database, const recorder::RecordingIdentity& recording) {
+  const std::optional<AttemptRow> known = database.attempt(recording.attempt);
+  return known && known->chainHead == recording.chainHead && known->complete == recording.complete &&
+         known->verification.verdict == Verdict::verified;
+}
+
 Imported store(CohortDatabase& database, const AssessedAttempt& assessed) {
   return database.storeAttempt(recordOf(assessed), assessed.values);
 }

@@ -17,6 +17,7 @@
 #include "analytics/external/metric_script.h"
 #include "recorder/base/identity.h"
 #include "recorder/engine/observer.h"
+#include "recorder/recording/identify.h"
 #include "recorder/replay.h"
 
 namespace calot::analytics {
@@ -54,15 +55,17 @@ struct AssessSettings {
 /// version that no engine here decides has those of its observables, where its content chain is intact.
 Assessment assessRecording(const std::string& file, const AssessSettings& settings = {});
 
-/// What of an assessment is stored, and what people read of it. Unlike an Assessment it can be written to a values file
-/// and stored on another machine (analytics/shards).
+/// The stored part of an assessment, and its report.
 struct JudgedRecording {
   recorder::ReplayReport report;
   std::optional<AttemptRecord> record;  ///< none of a damaged file
   std::vector<CheckpointValue> values;
-  MetricOutcomes external;  ///< never of a values file
+  MetricOutcomes external;
 };
 JudgedRecording judgedRecording(Assessment assessment);
+
+/// Does the cohort hold this recording's content, verified? Then there is nothing to assess.
+bool isVerified(const CohortDatabase& database, const recorder::RecordingIdentity& recording);
 
 /// One transaction; idempotent. @throws Error (refused) on a conflict (CohortDatabase::storeAttempt).
 Imported store(CohortDatabase& database, const AssessedAttempt& assessed);

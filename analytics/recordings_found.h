@@ -36,18 +36,8 @@ class RecordingsFound {
   std::vector<Error> notRead_;
 };
 
-/// Files by their names alone, none of which is looked into: where a cohort's recording probably is. Whoever judges it
-/// sees whether it is the one.
-class NamedFiles {
- public:
-  /// @throws Error (damaged) where a place is not there
-  explicit NamedFiles(const std::vector<std::filesystem::path>& places);
-
-  /// The only file of this name; nothing where there are none or several.
-  [[nodiscard]] std::optional<std::filesystem::path> only(const std::string& name) const;
-
- private:
-  std::multimap<std::string, std::filesystem::path> byName_;
-};
+/// Recordings among files and in folders and below, by name: files that are named, and all HDF5 files of folders.
+/// @throws Error (damaged) where a place is not there, or no recording in any
+std::vector<std::filesystem::path> recordingsUnder(const std::vector<std::filesystem::path>& places);
 
 }  // namespace calot::analytics

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <map>
 #include <utility>
 
 #include "analytics/recordings_found.h"
@@ -32,8 +33,6 @@ std::vector<CheckpointValue> ownValues(const CohortDatabase& database, const std
   std::erase_if(values, [](const CheckpointValue& v) { return v.origin == Origin::external; });
   return values;
 }
-
-}  // namespace
 
 RegradedAttempt withoutRecording(const AttemptRow& row) {
   RegradedAttempt r;
@@ -87,21 +86,41 @@ RegradedAttempt storeRegraded(CohortDatabase& database, const AttemptRow& row, c
   return r;
 }
 
-void judgeAll(const std::vector<std::string>& files, recorder::WorkerPool& pool,
+/// Databases keep verdicts, replays report them.
+recorder::ReplayVerdict verdictOf(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::verified:
+      return recorder::ReplayVerdict::exact;
+    case Verdict::diverged:
+      return recorder::ReplayVerdict::diverged;
+    case Verdict::damaged:
+      return recorder::ReplayVerdict::damaged;
+    case Verdict::notCheckableHere:
+    case Verdict::notChecked:
+      break;
+  }
+  return recorder::ReplayVerdict::undecided;
+}
+
+}  // namespace
+
+void judgeAll(const std::vector<std::string>& files, recorder::WorkerPool& pool, const AssessSettings& settings,
               const std::function<void(std::size_t index, JudgedRecording judged)>& consume) {
   struct Work {
     JudgedRecording judged;
     std::exception_ptr failure;
   };
   // A batch is simulated in parallel and consumed in its order before the next one begins.
-  const std::size_t batch = std::size_t{4} * pool.threadCount();
+  const std::size_t batch = pool.threadCount() == 1 ? 1 : std::size_t{4} * pool.threadCount();
   for (std::size_t begin = 0; begin < files.size(); begin += batch) {
     std::vector<Work> works(std::min(batch, files.size() - begin));
     // Where recordings are fewer than threads, each has several.
-    const auto each = static_cast<unsigned>(std::max<std::size_t>(1, pool.threadCount() / works.size()));
+    AssessSettings own = settings;
+    if (pool.threadCount() > 1)
+      own.threads = static_cast<unsigned>(std::max<std::size_t>(1, pool.threadCount() / works.size()));
     const auto judge = [&](std::size_t i) {
       try {
-        works[i].judged = judgedRecording(assessRecording(files[begin + i], {.threads = each}));
+        works[i].judged = judgedRecording(assessRecording(files[begin + i], own));
       } catch (...) {
         works[i].failure = std::current_exception();
       }
@@ -154,11 +173,55 @@ Regrade regrade(const std::string& path, const std::vector<std::filesystem::path
       result.attempts[i] = withoutRecording(rows[i]);
     }
   }
-  judgeAll(files, pool, [&](std::size_t i, JudgedRecording judged) {
+  judgeAll(files, pool, {}, [&](std::size_t i, JudgedRecording judged) {
     const std::size_t number = numbers[i];
     result.attempts[number] = storeRegraded(database, rows[number], files[i], std::move(judged));
     if (progress) progress(i + 1, files.size());
   });
+  return result;
+}
+
+Regrade takeNewer(const std::string& into, const std::vector<std::string>& from) {
+  CohortDatabase database(into, CohortDatabase::Access::write);
+  struct Source {
+    const CohortDatabase* database = nullptr;
+    AttemptRow row;
+  };
+  std::vector<CohortDatabase> others;
+  others.reserve(from.size());
+  std::map<std::string, Source> newest;
+  for (const std::string& path : from) {
+    const CohortDatabase& other = others.emplace_back(path, CohortDatabase::Access::read);
+    for (const AttemptRow& row : other.listAttempts()) {
+      Source& source = newest[row.uuid];
+      if (source.database == nullptr || source.row.verifiedUtc <= row.verifiedUtc) source = {&other, row};
+    }
+  }
+  Regrade result;
+  for (const AttemptRow& row : database.listAttempts()) {
+    const auto found = newest.find(row.uuid);
+    if (found == newest.end()) {
+      RegradedAttempt& missing = result.attempts.emplace_back(withoutRecording(row));
+      if (missing.how == Regraded::missing) missing.message = "assessed in none of the databases";
+      continue;
+    }
+    const AttemptRow& other = found->second.row;
+    if (other.verifiedUtc < row.verifiedUtc) {
+      RegradedAttempt& kept = result.attempts.emplace_back();
+      kept.uuid = row.uuid;
+      kept.file = row.fileName;
+      kept.how = Regraded::unchanged;
+      continue;
+    }
+    JudgedRecording judged;
+    judged.report.path = other.fileName;
+    judged.report.attempt = other.uuid;
+    judged.report.verdict = verdictOf(other.verification.verdict);
+    judged.report.message = other.verification.text;
+    judged.record = other;
+    judged.values = ownValues(*found->second.database, row.uuid);
+    result.attempts.push_back(storeRegraded(database, row, other.fileName, std::move(judged)));
+  }
   return result;
 }
 

@@ -59,16 +59,15 @@ struct Regrade {
 Regrade regrade(const std::string& path, const std::vector<std::filesystem::path>& places, unsigned jobs,
                 const std::function<void(std::uint64_t done, std::uint64_t of)>& progress = {});
 
-/// Stores what re-simulating an attempt's recording gave, and says what changed: one transaction.
-/// @param file where the recording was found
-RegradedAttempt storeRegraded(CohortDatabase& database, const AttemptRow& row, const std::string& file,
-                              JudgedRecording judged);
-/// An attempt whose recording was not found, or that has none.
-RegradedAttempt withoutRecording(const AttemptRow& row);
+/// Brings verification and values of a cohort up to date from other databases, into which the same recordings were
+/// assessed, by whichever machine: what regrade() would have stored, in the same order. Of several databases that hold
+/// an attempt, the one that judged it last counts, and only if that was no earlier than here. Adds no attempts.
+/// @throws Error as CohortDatabase does
+Regrade takeNewer(const std::string& into, const std::vector<std::string>& from);
 
 /// Re-simulates recordings, as many at a time as the pool has threads, and hands over what they gave in their order,
 /// from the calling thread. @throws what `consume` throws; Error (failure)
-void judgeAll(const std::vector<std::string>& files, recorder::WorkerPool& pool,
+void judgeAll(const std::vector<std::string>& files, recorder::WorkerPool& pool, const AssessSettings& settings,
               const std::function<void(std::size_t index, JudgedRecording judged)>& consume);
 
 /// Values of both lists that are not the same, in the order of the second, then what is left of the first.

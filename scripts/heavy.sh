@@ -34,7 +34,7 @@ say "packages, in a clean root, and once more from another folder"
 "$root/scripts/clean-root.sh"
 "$root/scripts/package-again.sh"
 if [[ $# -eq 0 ]]; then
-  say "a cohort of 10,000 recordings in shards"
-  "$python" -B "$root/scripts/shards.py" 10000
+  say "a cohort of 10,000 recordings in shares"
+  "$python" -B "$root/scripts/shares.py" 10000
 fi
 say "passed"

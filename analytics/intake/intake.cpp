@@ -140,9 +140,7 @@ std::optional<IntakeItem> Intake::take(const Candidate& c, IntakeRest& rest, con
     return std::nullopt;
   }
   CohortDatabase database(settings_.cohort, CohortDatabase::Access::create);
-  const std::optional<AttemptRow> known = database.attempt(identity.attempt);
-  if (known && known->chainHead == identity.chainHead && known->complete == identity.complete &&
-      known->verification.verdict == Verdict::verified) {
+  if (isVerified(database, identity)) {
     IntakeItem item;
     item.file = c.file;
     item.how = TakenIn::known;

@@ -6,11 +6,11 @@
 
 #include <cerrno>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <system_error>
 #include <utility>
 
-#include "analytics/shards/row_text.h"
 #include "recorder/base/errors.h"
 
 namespace calot::analytics {
@@ -22,9 +22,36 @@ constexpr std::uint64_t maxSpentLines = 1000;
 
 nlohmann::ordered_json journalHeader() { return {{"format", journalFormat}, {"format_version", 1}}; }
 
+/// Paths are bytes, JSON is UTF-8: a path that is none stands in hexadecimal.
+std::string hexOf(const std::string& text) {
+  std::string hex;
+  for (const char c : text) hex += fmt::format("{:02x}", static_cast<unsigned char>(c));
+  return hex;
+}
+
+std::string fromHex(const std::string& hex) {
+  std::string text;
+  for (std::size_t i = 0; i + 1 < hex.size(); i += 2)
+    text += static_cast<char>(std::strtoul(hex.substr(i, 2).c_str(), nullptr, 16));
+  return text;
+}
+
+bool isUtf8(const std::string& text) {
+  try {
+    static_cast<void>(nlohmann::json(text).dump());
+    return true;
+  } catch (const nlohmann::json::type_error&) {
+    return false;
+  }
+}
+
 nlohmann::ordered_json jsonOfEntry(const std::string& file, const JournalEntry& e) {
   nlohmann::ordered_json row;
-  putText(row, "file", file);
+  if (isUtf8(file)) {
+    row["file"] = file;
+  } else {
+    row["file_hex"] = hexOf(file);
+  }
   row["bytes"] = e.state.bytes;
   row["modified_ns"] = fmt::format("{}", e.state.modified);
   row["inode"] = fmt::format("{}", e.state.inode);
@@ -35,26 +62,21 @@ nlohmann::ordered_json jsonOfEntry(const std::string& file, const JournalEntry& 
   return row;
 }
 
-std::pair<std::string, JournalEntry> entryFrom(const nlohmann::json& json, const std::string& journal) {
-  static const recorder::ObjectRule rule = [] {
-    recorder::ObjectRule made{"entry", textKeys("file")};
-    for (const char* count : {"bytes", "tries", "retry_at", "simulation_version"}) made.keys.push_back(countKey(count));
-    for (const char* key : {"modified_ns", "inode", "other_version"}) made.keys.push_back({key});
-    return made;
-  }();
-  const recorder::JsonObject o = recorder::JsonPlace(json, journal).object(rule);
-  std::string modified, inode;
+/// A line's checksum was right, so that it holds what jsonOfEntry() wrote, or what another version wrote.
+std::pair<std::string, JournalEntry> entryFrom(const nlohmann::json& row, const std::string& journal) try {
   JournalEntry e;
-  e.state.bytes = takeCount(o, "bytes");
-  o.read("modified_ns", modified, maxRowText);
-  o.read("inode", inode, maxRowText);
-  e.state.modified = std::strtoll(modified.c_str(), nullptr, 10);
-  e.state.inode = std::strtoull(inode.c_str(), nullptr, 10);
-  e.tries = static_cast<std::uint32_t>(takeCount(o, "tries"));
-  e.retryAt = static_cast<std::int64_t>(takeCount(o, "retry_at"));
-  o.read("other_version", e.otherVersion);
-  e.simulationVersion = static_cast<std::uint32_t>(takeCount(o, "simulation_version"));
-  return {takeText(o, "file"), e};
+  row.at("bytes").get_to(e.state.bytes);
+  e.state.modified = std::strtoll(row.at("modified_ns").get<std::string>().c_str(), nullptr, 10);
+  e.state.inode = std::strtoull(row.at("inode").get<std::string>().c_str(), nullptr, 10);
+  row.at("tries").get_to(e.tries);
+  row.at("retry_at").get_to(e.retryAt);
+  row.at("other_version").get_to(e.otherVersion);
+  row.at("simulation_version").get_to(e.simulationVersion);
+  const bool plain = row.contains("file");
+  const std::string file = row.at(plain ? "file" : "file_hex");
+  return {plain ? file : fromHex(file), e};
+} catch (const nlohmann::json::exception& e) {
+  throw Error(ErrorKind::damaged, Where{journal}, e.what());
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 #include <memory>
 #include <string>
 
-#include "analytics/shards/checked_lines.h"
+#include "analytics/intake/checked_lines.h"
 
 namespace calot::analytics {
 

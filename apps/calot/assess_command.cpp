@@ -9,8 +9,10 @@
 #include <optional>
 
 #include "analytics/assess.h"
-#include "analytics/assess_shares.h"
 #include "analytics/checkpoints/motion.h"
+#include "analytics/recordings_found.h"
+#include "analytics/regrade.h"
+#include "analytics/share.h"
 #include "analytics/uncertainty/uncertainty.h"
 #include "apps/calot/commands.h"
 #include "apps/calot/environment.h"
@@ -18,7 +20,6 @@
 #include "apps/calot/metric_options.h"
 #include "apps/calot/replay_report.h"
 #include "apps/calot/results.h"
-#include "apps/calot/share_options.h"
 #include "apps/calot/value_report.h"
 #include "recorder/base/errors.h"
 #include "recorder/recording/probe.h"
@@ -35,19 +36,19 @@ struct AssessOptions {
   bool uncertainty = false;
   double cutoff = 0.0;  ///< 0: values are stored
   MetricOptions metrics;
-  ShareOptions share;
-  unsigned jobs = 0;
+  std::string share;
+  unsigned jobs = 1;
   bool apart = false, json = false;
 };
 
-/// Files as they are named; those of folders by name.
-std::vector<std::string> filesOf(const std::vector<std::string>& places) {
+/// Files as they are named, those of folders by name; of a share, its own.
+std::vector<std::string> filesOf(const AssessOptions& o) {
   std::error_code ignored;
   const auto isFolder = [&](const std::string& place) { return std::filesystem::is_directory(place, ignored); };
-  if (std::none_of(places.begin(), places.end(), isFolder)) return places;
-  std::vector<std::string> files;
-  for (const std::filesystem::path& file : analytics::recordingsUnder(pathsOf(places))) files.push_back(file.string());
-  return files;
+  std::vector<std::filesystem::path> files(o.files.begin(), o.files.end());
+  if (std::any_of(o.files.begin(), o.files.end(), isFolder)) files = analytics::recordingsUnder(files);
+  if (!o.share.empty()) files = analytics::filesOf(analytics::shareNamed(o.share), files);
+  return {files.begin(), files.end()};
 }
 
 /// What one file gave, beside the replay's report.
@@ -148,62 +149,42 @@ class AssessOutput {
   nlohmann::json list_ = nlohmann::json::array();
 };
 
-int computeAssessShare(const AssessOptions& o) {
-  Progress progress(fmt::format("shard {}, recordings", o.share.shard), o.json);
-  const analytics::ComputedShare share = analytics::computeAssessShare(
-      pathsOf(o.files), analytics::shardNamed(o.share.shard), o.share.valuesTo, o.jobs, o.share.force,
-      [&](std::uint64_t done, std::uint64_t of) { progress.show(done, of); });
-  printShare(o.share, share, o.json);
-  return static_cast<int>(ExitCode::yes);
-}
-
-int takeAssessShares(const AssessOptions& o) {
-  if (o.cohort.empty()) throw Error(ErrorKind::invalid, "--take: --cohort is wanted, the database to store in");
-  std::optional<analytics::CohortDatabase> database;
-  AssessOutput output(o, false);
-  Progress progress("taking, recordings", o.json);
-  const analytics::TakenAssess taken =
-      analytics::takeAssess(pathsOf(o.share.take), [&](const analytics::ValuesRow& row) {
-        if (!database) database.emplace(o.cohort, analytics::CohortDatabase::Access::create);
-        analytics::JudgedRecording judged = *row.judged;
-        Stored stored;
-        storeJudged(row.file, o, *database, {}, judged, stored);
-        output.add(judged.report, stored);
-        progress.show(output.count(), 0);
-      });
-  const ExitCode recordings = output.end(database ? &*database : nullptr);
-  const ExitCode shards = reportShards(o.cohort, taken.refused, {taken.missing, taken.shares, 0});
-  return static_cast<int>(worstOf({recordings, shards}));
+/// Leaves out what a run of this share that was cut short has stored already.
+void removeVerified(std::vector<std::string>& files, const analytics::CohortDatabase& database) {
+  const std::size_t count = files.size();
+  std::erase_if(files, [&](const std::string& file) {
+    try {
+      return analytics::isVerified(database, recorder::identify(file));
+    } catch (const Error&) {
+      return false;  // assessing it reports why
+    }
+  });
+  if (files.size() < count)
+    fmt::print(stderr, "calot: {} of {} recordings were verified by an earlier run\n", count - files.size(), count);
 }
 
 int assess(const AssessOptions& o) {
-  if (o.files.empty() == o.share.take.empty())
-    throw Error(ErrorKind::invalid, "recordings or folders are wanted, or --take with values of shards");
-  if (o.share.plan > 0) {
-    printPlan(analytics::assessPlan(pathsOf(o.files), o.share.plan), o.json);
-    return static_cast<int>(ExitCode::yes);
-  }
-  if (!o.share.shard.empty()) return computeAssessShare(o);
-  if (!o.share.take.empty()) return takeAssessShares(o);
   checkStored(o.cohort, o.cutoff);
-  const std::vector<std::string> files = filesOf(o.files);
+  std::vector<std::string> files = filesOf(o);
+  const bool everyValue = files.size() == 1 || o.cohort.empty();
+  std::optional<recorder::ProbeProcesses> probes;
+  if (files.size() > 1) probes.emplace(o.jobs);
   std::optional<analytics::CohortDatabase> database;
   const std::vector<analytics::MetricScript> metrics = readMetrics(o.metrics);
   if (!o.cohort.empty()) database.emplace(o.cohort, analytics::CohortDatabase::Access::create);
   if (database) checkMetrics(metrics, *database);
-  AssessOutput output(o, files.size() == 1 || !database);
+  if (!o.share.empty()) removeVerified(files, *database);
+  AssessOutput output(o, everyValue);
   Progress progress("assessing, recordings", o.json);
   analytics::AssessSettings settings{.threads = o.threads.value_or(1)};
   if (o.cutoff > 0.0) settings.cutoff = o.cutoff;
   settings.engine.apart = o.apart;
   settings.metrics = &metrics;
-  std::optional<recorder::ProbeProcesses> probes;
-  if (files.size() > 1) probes.emplace(1);
-  for (const std::string& file : files) {
-    analytics::JudgedRecording judged = analytics::judgedRecording(analytics::assessRecording(file, settings));
+  recorder::WorkerPool pool(o.jobs);
+  analytics::judgeAll(files, pool, settings, [&](std::size_t i, analytics::JudgedRecording judged) {
     Stored stored;
     if (database) {
-      storeJudged(file, o, *database, metrics, judged, stored);
+      storeJudged(files[i], o, *database, metrics, judged, stored);
     } else {
       stored.values = std::move(judged.values);
       stored.external = std::move(judged.external);
@@ -211,7 +192,7 @@ int assess(const AssessOptions& o) {
     for (const analytics::CheckpointValue& v : stored.external.values) stored.values.push_back(v);
     output.add(judged.report, stored);
     progress.show(output.count(), files.size());
-  }
+  });
   return static_cast<int>(output.end(database ? &*database : nullptr));
 }
 
@@ -221,21 +202,22 @@ void addAssess(CLI::App& app, Run& run) {
   auto o = std::make_shared<AssessOptions>();
   CLI::App* command =
       app.add_subcommand("assess", "Re-simulates recordings, computes their checkpoints and stores them in a cohort.");
-  command->add_option("recordings", o->files, "recordings, or folders that hold them");
+  command->add_option("recordings", o->files, "recordings, or folders that hold them")->required();
   addStoring(*command, o->cohort, o->cutoff);
-  addSharing(*command, o->share);
-  addMetrics(*command, o->metrics)->excludes("--shard")->excludes("--take");
-  command->add_option("--jobs", o->jobs, "with --shard: recordings at a time; 0: one a processor")
+  addMetrics(*command, o->metrics);
+  command
+      ->add_option("--share", o->share,
+                   "assess one share alone: 3/8 is the third of eight; recordings that the cohort holds verified are "
+                   "left out, so that a run that was cut short goes on")
+      ->needs("--cohort");
+  command->add_option("--jobs", o->jobs, "recordings at a time; 0: one a processor")
       ->check(CLI::Range(0U, 64U))
-      ->needs("--shard")
       ->capture_default_str();
   command
       ->add_flag("--uncertainty", o->uncertainty,
                  "stores an interval with each value: runs the attempt again in smaller steps, with a finer mesh and "
                  "with other assumed constants (takes some fifteen replays)")
-      ->needs("--cohort")
-      ->excludes("--shard")
-      ->excludes("--take");
+      ->needs("--cohort");
   command
       ->add_option("--threads", o->threads,
                    "segments between keyframes that are verified at a time (1), or with --uncertainty runs at a time "

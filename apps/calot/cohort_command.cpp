@@ -14,10 +14,12 @@
 #include "analytics/cohort/merge.h"
 #include "analytics/cohort/registers.h"
 #include "analytics/cohort/withdraw.h"
+#include "analytics/regrade.h"
 #include "apps/calot/cohort_exports.h"
 #include "apps/calot/cohort_option.h"
 #include "apps/calot/commands.h"
 #include "apps/calot/hex.h"
+#include "apps/calot/regrade_report.h"
 #include "apps/calot/results.h"
 #include "apps/common/exit_code.h"
 #include "recorder/base/errors.h"
@@ -27,39 +29,58 @@ namespace {
 
 using nlohmann::ordered_json;
 
+/// Merges one database. @returns what entered; conflicts are reported on stderr.
+nlohmann::ordered_json mergeOne(const std::string& into, const std::string& from, bool json) {
+  const analytics::CohortMerge m = analytics::mergeCohorts(into, from);
+  if (!json && m.conflicts.empty()) {
+    std::cout << fmt::format("{}: {}: {} participants, {} attempts, {} extended, {} other rows, {} entries filled{}\n",
+                             into, m.changed() ? "merged" : "nothing new", m.participants, m.attempts, m.extended,
+                             m.rows, m.filled,
+                             m.withdrawn > 0 ? fmt::format("; {} withdrawn attempts stay out", m.withdrawn) : "");
+  }
+  for (const std::string& conflict : m.conflicts) fmt::print(stderr, "calot: conflict: {}\n", conflict);
+  return {{"merged", m.conflicts.empty()},
+          {"participants", m.participants},
+          {"attempts", m.attempts},
+          {"extended", m.extended},
+          {"other_rows", m.rows},
+          {"audit_rows", m.audit},
+          {"filled", m.filled},
+          {"withdrawn", m.withdrawn},
+          {"conflicts", m.conflicts}};
+}
+
 void addMerge(CLI::App& parent, Run& run) {
   struct Options {
-    std::string into, from;
-    bool json = false;
+    std::string into;
+    std::vector<std::string> from;
+    bool newer = false, json = false;
   };
   const auto o = std::make_shared<Options>();
-  CLI::App* command = parent.add_subcommand("merge", "Take everything of one cohort database into another");
+  CLI::App* command = parent.add_subcommand("merge", "Take everything of other cohort databases into one");
   command->add_option("into", o->into, "Database to add to")->required();
-  command->add_option("from", o->from, "Database to take from; it stays as it is")->required();
+  command->add_option("from", o->from, "Databases to take from; they stay as they are")->required();
+  command->add_flag("--newer", o->newer,
+                    "Add nothing; of attempts that are in both, take verdict and values where the other database has "
+                    "newer ones");
   command->add_flag("--json", o->json, "Print JSON");
   command->callback([o, &run] {
     run = [o] {
-      const analytics::CohortMerge m = analytics::mergeCohorts(o->into, o->from);
-      if (o->json) {
-        printResult("cohort-merge", {{"merged", m.conflicts.empty()},
-                                     {"participants", m.participants},
-                                     {"attempts", m.attempts},
-                                     {"extended", m.extended},
-                                     {"other_rows", m.rows},
-                                     {"audit_rows", m.audit},
-                                     {"filled", m.filled},
-                                     {"withdrawn", m.withdrawn},
-                                     {"conflicts", m.conflicts}});
-      } else if (m.conflicts.empty()) {
-        std::cout << fmt::format(
-            "{}: {}: {} participants, {} attempts, {} extended, {} other rows, {} entries filled{}\n", o->into,
-            m.changed() ? "merged" : "nothing new", m.participants, m.attempts, m.extended, m.rows, m.filled,
-            m.withdrawn > 0 ? fmt::format("; {} withdrawn attempts stay out", m.withdrawn) : "");
+      if (o->newer)
+        return static_cast<int>(reportRegrade(o->into, analytics::takeNewer(o->into, o->from), "regrade", o->json));
+      nlohmann::ordered_json results = nlohmann::ordered_json::array();
+      std::vector<std::string> refused;
+      for (const std::string& from : o->from) {
+        results.push_back(mergeOne(o->into, from, o->json));
+        if (!results.back()["merged"])
+          refused.push_back(fmt::format("{} conflicts with {}", results.back()["conflicts"].size(), from));
       }
-      for (const std::string& conflict : m.conflicts) fmt::print(stderr, "calot: conflict: {}\n", conflict);
-      if (m.conflicts.empty()) return static_cast<int>(ExitCode::yes);
+      if (o->json)
+        printResult("cohort-merge",
+                    results.size() == 1 ? results.front() : nlohmann::ordered_json{{"databases", results}});
+      if (refused.empty()) return static_cast<int>(ExitCode::yes);
       throw Error(ErrorKind::refused,
-                  fmt::format("{}: {} conflicts with {}; nothing was merged", o->into, m.conflicts.size(), o->from));
+                  fmt::format("{}: {}; nothing of it was merged", o->into, fmt::join(refused, ", ")));
     };
   });
 }

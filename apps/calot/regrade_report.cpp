@@ -10,6 +10,7 @@
 
 #include "analytics/checkpoints/registry.h"
 #include "analytics/report/report_text.h"
+#include "apps/calot/results.h"
 #include "apps/calot/value_report.h"
 #include "apps/common/advice.h"
 
@@ -64,8 +65,6 @@ std::string otherwise(const analytics::ValueChange& c) {
   if (c.before->note != c.now->note) add("note");
   return text;
 }
-
-}  // namespace
 
 ordered_json regradeJson(const analytics::Regrade& regrade) {
   ordered_json out;
@@ -122,7 +121,14 @@ void printRegrade(const analytics::Regrade& regrade) {
   std::cout << std::flush;
 }
 
-ExitCode reportFaults(const std::string& cohort, const analytics::Regrade& regrade) {
+}  // namespace
+
+ExitCode reportRegrade(const std::string& cohort, const analytics::Regrade& regrade, const char* command, bool json) {
+  if (json) {
+    printResult(command, regradeJson(regrade));
+  } else {
+    printRegrade(regrade);
+  }
   std::vector<ExitCode> codes;
   for (const analytics::RegradedAttempt& a : regrade.attempts) {
     codes.push_back(codeOf(a.fault));

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What `calot regrade` prints, whether it ran here or in shares.
+// The report of `calot regrade` and of `calot cohort merge --newer`.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "analytics/regrade.h"
@@ -10,10 +9,8 @@
 
 namespace calot::apps {
 
-nlohmann::ordered_json regradeJson(const analytics::Regrade& regrade);
-/// Each changed value, then how many attempts each checkpoint changed in, then a line of counts.
-void printRegrade(const analytics::Regrade& regrade);
-/// One line on stderr for each attempt that something stands in the way of. @returns their exit code
-ExitCode reportFaults(const std::string& cohort, const analytics::Regrade& regrade);
+/// On stdout each changed value, how many attempts each checkpoint changed in, and a line of counts; or JSON, as
+/// `command` prints it. On stderr one line for each attempt with a fault. @returns the faults' exit code
+ExitCode reportRegrade(const std::string& cohort, const analytics::Regrade& regrade, const char* command, bool json);
 
 }  // namespace calot::apps

@@ -15,7 +15,6 @@
 #include "apps/calot/key_fault.h"
 #include "apps/calot/replay_report.h"
 #include "apps/calot/results.h"
-#include "apps/calot/share_options.h"
 #include "apps/calot/stop_request.h"
 #include "apps/common/advice.h"
 #include "apps/common/exit_code.h"
@@ -110,7 +109,7 @@ int verify(const VerifyOptions& o) {
   using Clock = std::chrono::steady_clock;
   stopOnSignals();
   analytics::IntakeSettings settings;
-  settings.folders = pathsOf(o.folders);
+  settings.folders = {o.folders.begin(), o.folders.end()};
   settings.cohort = o.cohort;
   settings.journal = o.journal.empty() ? o.cohort + ".intake" : o.journal;
   settings.threads = o.threads;

@@ -1,17 +1,17 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Regrades a cohort, or assesses folders, as an array of Slurm jobs: shares, then one job that takes them all and reports.
+"""Regrades a cohort, or assesses folders, as an array of Slurm jobs: each assesses a share of the recordings into a database of its own,
+then one job merges them into the cohort and reports.
 
-Run it again after jobs were killed or nodes failed: complete shards stay, one that was cut short goes on where it was. The folder has to be
+Run it again after jobs were killed or nodes failed: complete shares stay, one that was cut short goes on where it was. The folder has to be
 on a file system that all nodes see. docs/how-to/cluster.md describes all of it.
 
-  submit.py regrade --cohort C.db --folder RUN RECORDINGS...     --shards N, or as many as --bundle gives
+  submit.py regrade --cohort C.db --folder RUN RECORDINGS...     --shares N, or as many as --bundle gives
   submit.py assess  --cohort C.db --folder RUN RECORDINGS...
   submit.py progress --folder RUN
 """
 import argparse
 import contextlib
-import json
 import math
 import os
 import pathlib
@@ -31,14 +31,19 @@ def run(*command):
     return done.stdout
 
 
-def snapshot(cohort, copy):
-    """A copy that no job writes to: all shards see one list of attempts, and no lock is held on the file system of the nodes."""
-    part = copy.with_suffix(".part")
-    part.unlink(missing_ok=True)
-    with contextlib.closing(sqlite3.connect(f"file:{cohort}?mode=ro", uri=True)) as source, contextlib.closing(sqlite3.connect(part)) as target:
-        source.backup(target)
-        target.execute("PRAGMA journal_mode = DELETE")
-    part.rename(copy)
+def hdf5_files(places):
+    """Recordings among files and in folders and below."""
+    for place in map(pathlib.Path, places):
+        for path in sorted(place.rglob("*")) if place.is_dir() else [place]:
+            if path.is_file():
+                with open(path, "rb") as file:
+                    if file.read(8) == b"\x89HDF\r\n\x1a\n":
+                        yield path
+
+
+def recorded_seconds(cohort):
+    with contextlib.closing(sqlite3.connect(f"file:{cohort}?mode=ro", uri=True)) as database:
+        return database.execute("SELECT coalesce(sum(steps * step_seconds), 0) FROM recording").fetchone()[0]
 
 
 def max_array_size():
@@ -53,14 +58,15 @@ def max_array_size():
 def share_count(o, places):
     """So many that a share is worth a job, and no more than an array holds."""
     limit = max(1, max_array_size() - 1)
-    if o.shards > limit:
-        sys.exit(f"submit: --shards {o.shards}: an array of this cluster holds {limit} jobs (MaxArraySize)")
-    if o.shards:
-        return o.shards
-    what = [o.cohort] if o.work == "regrade" else []
-    plan = json.loads(run(o.calot, o.work, *what, *places, "--plan", 1, "--json"))
-    wanted = plan["seconds"] / o.bundle if o.work == "regrade" else plan["recordings"] / o.each
-    return max(1, min(limit, plan["recordings"], math.ceil(wanted)))
+    if o.shares > limit:
+        sys.exit(f"submit: --shares {o.shares}: an array of this cluster holds {limit} jobs (MaxArraySize)")
+    if o.shares:
+        return o.shares
+    count = sum(1 for _ in hdf5_files(places))
+    if count == 0:
+        sys.exit(f"submit: there are no recordings in {' '.join(places)}")
+    wanted = recorded_seconds(o.cohort) / o.bundle if o.work == "regrade" else count / o.each
+    return max(1, min(limit, count, math.ceil(wanted)))
 
 
 def ranges(numbers):
@@ -76,62 +82,58 @@ def ranges(numbers):
 
 
 def make_plan(o):
-    """RUN/plan.sh, which the jobs read; one that is there stays: its shards are in it."""
+    """RUN/plan.sh, which the jobs read; one that is there stays: its shares are in it."""
     plan = o.folder / "plan.sh"
     places = [str(pathlib.Path(p).resolve()) for p in o.recordings]
     cohort = pathlib.Path(o.cohort).resolve()
-    copy = []
     if o.work == "regrade":
         places = places or [str(cohort.parent)]
-        copy = [str(o.folder / "cohort.db")]
-    lines = [f"work={o.work}", f"cohort={shlex.quote(str(cohort))}", "input=(" + " ".join(shlex.quote(p) for p in copy + places) + ")"]
+    lines = [f"work={o.work}", f"cohort={shlex.quote(str(cohort))}", "input=(" + " ".join(map(shlex.quote, places)) + ")"]
     if plan.exists():
         if not set(lines) <= set(plan.read_text(encoding="utf-8").splitlines()):
             sys.exit(f"submit: {o.folder} holds a run of another cohort or other recordings; name another --folder")
         print(f"submit: going on with {plan}")
         return
-    for name in ("values", "log"):
+    for name in ("shares", "log"):
         (o.folder / name).mkdir(parents=True, exist_ok=True)
-    lines += [f"shards={share_count(o, places)}", f"calot={shlex.quote(o.calot)}"]
-    if copy:
-        snapshot(cohort, pathlib.Path(copy[0]))
+    lines += [f"shares={share_count(o, places)}", f"calot={shlex.quote(o.calot)}"]
     part = plan.with_suffix(".part")
     part.write_text("\n".join(lines) + "\n", encoding="utf-8")
     part.rename(plan)
 
 
-def shards_of(folder):
+def shares_of(folder):
     for line in (folder / "plan.sh").read_text(encoding="utf-8").splitlines():
-        if line.startswith("shards="):
+        if line.startswith("shares="):
             return int(line.partition("=")[2])
-    sys.exit(f"submit: {folder / 'plan.sh'}: no number of shards")
+    sys.exit(f"submit: {folder / 'plan.sh'}: no number of shares")
 
 
 def progress(o):
-    """Counts lines; a header, and where a share is complete an end, are no recordings."""
-    shards, complete, done = shards_of(o.folder), 0, 0
-    for path in (o.folder / "values").glob("*.values*"):
-        with open(path, "rb") as file:
-            lines = sum(block.count(b"\n") for block in iter(lambda f=file: f.read(1 << 20), b""))
-        whole = path.suffix == ".values"
-        complete += whole
-        done += max(0, lines - 1 - whole)
-    print(f"{complete} of {shards} shards complete, {done} recordings done")
+    done = 0
+    for path in (o.folder / "shares").glob("*.db"):
+        try:
+            with contextlib.closing(sqlite3.connect(f"file:{path}?mode=ro", uri=True)) as database:
+                done += database.execute("SELECT count(*) FROM attempt").fetchone()[0]
+        except sqlite3.Error:  # begun a moment ago
+            pass
+    complete = len(list((o.folder / "shares").glob("*.done")))
+    print(f"{complete} of {shares_of(o.folder)} shares complete, {done} recordings done")
 
 
 def submit(o):
     o.folder.mkdir(parents=True, exist_ok=True)
     make_plan(o)
-    shards = shards_of(o.folder)
-    left = [n for n in range(1, shards + 1) if not (o.folder / "values" / f"{n}.values").exists()]
+    shares = shares_of(o.folder)
+    left = [n for n in range(1, shares + 1) if not (o.folder / "shares" / f"{n}.done").exists()]
     after = []
     if left:
         limit = f"%{o.limit}" if o.limit else ""
         job = run("sbatch", "--parsable", f"--array={ranges(left)}{limit}", f"--output={o.folder / 'log' / '%a.log'}", *o.sbatch,
                   HERE / "share.sbatch", o.folder).strip().partition(";")[0]
-        # Not afterok: the report says which shards are missing.
+        # Not afterok: the report counts shares that are not complete.
         after = [f"--dependency=afterany:{job}"]
-        print(f"submit: {len(left)} of {shards} shards: job {job}")
+        print(f"submit: {len(left)} of {shares} shares: job {job}")
     job = run("sbatch", "--parsable", *after, f"--output={o.folder / 'log' / 'take.log'}", *o.sbatch, HERE / "take.sbatch", o.folder)
     print(f"submit: report: job {job.strip().partition(';')[0]}, {o.folder / 'report.txt'}")
 
@@ -141,8 +143,8 @@ def main():
     parser.add_argument("work", choices=("regrade", "assess", "progress"))
     parser.add_argument("recordings", nargs="*", help="recordings, or folders that hold them")
     parser.add_argument("--cohort", help="cohort database")
-    parser.add_argument("--folder", required=True, type=lambda p: pathlib.Path(p).resolve(), help="of this run: values, logs, report")
-    parser.add_argument("--shards", type=int, default=0, help="how many; default: by --bundle or --each")
+    parser.add_argument("--folder", required=True, type=lambda p: pathlib.Path(p).resolve(), help="of this run: shares, logs, report")
+    parser.add_argument("--shares", type=int, default=0, help="how many; default: by --bundle or --each")
     parser.add_argument("--bundle", type=float, default=1800.0, help="regrade: seconds of recorded time in a share (1800)")
     parser.add_argument("--each", type=int, default=100, help="assess: recordings in a share (100)")
     parser.add_argument("--limit", type=int, default=0, help="jobs at a time; default: the cluster's own limit")

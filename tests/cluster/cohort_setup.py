@@ -5,16 +5,25 @@ import json
 import os
 import pathlib
 import shutil
+import sqlite3
 import subprocess
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "command_line"))
-from cohort_content import content  # noqa: E402,F401
+from cohort_content import content, figures, query  # noqa: E402,F401
 from cohort_test import change  # noqa: E402
 from program import PROGRAM, SOURCE, calot  # noqa: E402,F401
 
 CLUSTER = SOURCE / "scripts/cluster"
 COUNT = int(os.environ.get("CALOT_CLUSTER_COUNT") or 60)
+
+
+def stored(database):
+    """Attempts in a share's database, which may have been begun a moment ago."""
+    try:
+        return query(database, "SELECT count(*) FROM attempt")[0][0]
+    except sqlite3.Error:
+        return 0
 
 
 def make(folder):

@@ -4,7 +4,6 @@ row by row against one machine's. CALOT_CLUSTER_COUNT recordings (60)."""
 
 import os
 import pathlib
-import re
 import shutil
 import signal
 import subprocess
@@ -13,7 +12,7 @@ import tempfile
 import unittest
 
 import slurm_cluster
-from cohort_setup import CLUSTER, COUNT, PROGRAM, calot, change, content, make
+from cohort_setup import CLUSTER, COUNT, PROGRAM, calot, change, content, figures, make, stored
 
 MAX_ARRAY_SIZE = 8  # seven jobs: fewer than bundles of a second would make
 
@@ -41,9 +40,8 @@ class SlurmRun(unittest.TestCase):
         self.cluster.until(lambda: not self.cluster.jobs(), "the queue", 1800)
 
     def done(self, number):
-        """Recordings of a share that are in its unfinished file."""
-        part = self.run_folder / "values" / f"{number}.values.part"
-        return max(0, part.read_bytes().count(b"\n") - 1) if part.exists() else 0
+        """Recordings of a share that its database holds."""
+        return stored(self.run_folder / "shares" / f"{number}.db")
 
     def test_drained_node_and_killed_job(self):
         make(self.folder)
@@ -52,12 +50,12 @@ class SlurmRun(unittest.TestCase):
         self.run_folder = self.folder / "run"
         regrade = ("regrade", "--cohort", self.folder / "c.db", "--folder", self.run_folder, self.folder / "recordings")
         before = content(self.folder / "c.db")
-        refused = self.submit(*regrade, "--shards", MAX_ARRAY_SIZE)
+        refused = self.submit(*regrade, "--shares", MAX_ARRAY_SIZE)
         self.assertEqual(refused.returncode, 1)
         self.assertIn(f"an array of this cluster holds {MAX_ARRAY_SIZE - 1} jobs", refused.stderr)
         self.assertEqual(self.submit(*regrade, "--bundle", 1).returncode, 0)
         plan = (self.run_folder / "plan.sh").read_text()
-        self.assertIn(f"shards={MAX_ARRAY_SIZE - 1}\n", plan)
+        self.assertIn(f"shares={MAX_ARRAY_SIZE - 1}\n", plan)
 
         # A node is drained as soon as it works: its job ends, and no other comes.
         self.cluster.until(lambda: len(self.running()) == 3, "three jobs at a time")
@@ -65,7 +63,7 @@ class SlurmRun(unittest.TestCase):
         # A job is killed once some of its share is done, and so is the program of another, as by a lack of memory.
         victim = next(job for job in self.running() if job[3] != "n3")
         number = int(victim[1].split("_")[1])
-        self.cluster.until(lambda: self.done(number) > 0 or (self.run_folder / "values" / f"{number}.values").exists(), "some of a share")
+        self.cluster.until(lambda: self.done(number) > 0 or (self.run_folder / "shares" / f"{number}.done").exists(), "some of a share")
         self.cluster.run("scancel", "--signal=KILL", victim[0])
         self.cluster.run("scancel", victim[0])
         self.say(f"killed job {victim[1]} on {victim[3]} with {self.done(number)} recordings done; drained n3: {self.cluster.states()}")
@@ -80,7 +78,7 @@ class SlurmRun(unittest.TestCase):
         self.submit("progress", "--folder", self.run_folder)
         report = (self.run_folder / "report.txt").read_text()
         self.say(report.splitlines()[-1])
-        self.assertIsNotNone(re.search(rf"of {MAX_ARRAY_SIZE - 1} shards missing: .*{number}", report), report)
+        self.assertIn(f"of {MAX_ARRAY_SIZE - 1} shares are not complete", report)
         self.assertNotEqual(content(self.folder / "c.db"), before)
         self.assertNotEqual(content(self.folder / "c.db"), content(self.folder / "alone.db"))
 
@@ -91,15 +89,15 @@ class SlurmRun(unittest.TestCase):
         self.submit("progress", "--folder", self.run_folder)
         log = (self.run_folder / "log" / f"{number}.log").read_text()
         self.say(log.splitlines()[-1])
-        self.assertIn("of an earlier run)", log)
+        self.assertIn("by an earlier run", log)
         report = (self.run_folder / "report.txt").read_text()
         self.say(report.splitlines()[-1])
         self.assertIn(f"{COUNT} attempts:", report)
-        self.assertNotIn("missing", report)
+        self.assertNotIn("not complete", report)
         self.assertEqual(self.rows("c.db"), self.rows("alone.db"))
         self.assertIn("name another --folder", self.submit(*regrade, self.folder).stderr)
         nothing = self.submit(*regrade)
-        self.assertNotIn("shards: job", nothing.stdout)  # only the report again
+        self.assertNotIn("shares: job", nothing.stdout)  # only the report again
         self.wait()
         self.assertIn(f"{COUNT} attempts: 0 changed, {COUNT} unchanged", (self.run_folder / "report.txt").read_text())
 
@@ -128,8 +126,8 @@ class SlurmRun(unittest.TestCase):
                                      self.folder / "recordings").returncode, 0)
         self.wait()
         self.assertEqual(calot("assess", self.folder / "recordings", "--cohort", self.folder / "one.db").code, 0)
-        self.assertEqual(content(self.folder / "new.db"), content(self.folder / "one.db"))
-        self.assertIn(f"{COUNT} attempts, {COUNT} of them synthetic", (self.run_folder / "report.txt").read_text())
+        self.assertEqual(figures(self.folder / "new.db"), figures(self.folder / "one.db"))
+        self.assertIn("attempts, 0 extended", (self.run_folder / "report.txt").read_text())
 
 
 if __name__ == "__main__":

@@ -19,3 +19,11 @@ def content(path):
 def query(path, sql):
     with closing(sqlite3.connect(f"file:{path}?mode=ro", uri=True)) as database:
         return database.execute(sql).fetchall()
+
+
+def figures(path):
+    """Attempts, verdicts and values by uuid: numbers of rows follow the order of merging."""
+    return sorted(query(path, "SELECT a.uuid, a.scene, a.outcome, a.start_utc, r.file_name, hex(r.chain_head), r.steps, v.verdict, v.detail, v.software "
+                              "FROM attempt a JOIN recording r ON r.attempt = a.id JOIN verification v ON v.attempt = a.id")), sorted(
+        map(repr, query(path, "SELECT a.uuid, c.position, c.name, c.subject, c.version, c.availability, c.value, c.reason, c.note, c.unit, c.origin, "
+                              "c.filter FROM checkpoint_value c JOIN attempt a ON a.id = c.attempt")))

@@ -41,7 +41,6 @@ MAY_SEE = {
     "analytics/checkpoints": ("sim", "recorder", "analytics/statistics"),
     "analytics/cohort": ("sim", "recorder", "analytics"),
     "analytics/external": ("sim", "recorder", "analytics"),
-    "analytics/shards": ("sim", "recorder", "analytics"),
     "analytics/intake": ("sim", "recorder", "analytics"),
     "analytics/uncertainty": ("sim", "recorder", "analytics/checkpoints"),
     "analytics/interchange": ("sim", "recorder", "analytics"),

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Text files of one JSON row a line, each with a checksum, to which lines are appended: what was written before a
-// program was killed is kept, and what was cut off or damaged is noticed (schemas/values.md).
+// program was killed is kept, and what was cut off or damaged is noticed.
 #pragma once
 
 #include <cstddef>

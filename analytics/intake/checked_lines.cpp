@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "analytics/shards/checked_lines.h"
+#include "analytics/intake/checked_lines.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
