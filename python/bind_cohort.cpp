@@ -4,6 +4,7 @@
 #include <string>
 
 #include "analytics/cohort/cohort_database.h"
+#include "analytics/cohort/withdraw.h"
 #include "python/bindings.h"
 #include "python/value_rows.h"
 #include "recorder/words.h"
@@ -115,6 +116,9 @@ void bindCohort(py::module_& m) {
       .def("attempts", listOf(&CohortReader::attempts, attemptDict))
       .def("values", listOf(&CohortReader::values, cohortValueDict))
       .def("participants", listOf(&CohortReader::participants, participantDict));
+  m.def("record_export", analytics::recordExport, py::arg("cohort"), py::arg("kind"), py::arg("target"),
+        py::arg("attempts"), py::call_guard<py::gil_scoped_release>(),
+        "Registers in a cohort an export of attempts to a file or folder, so that a withdrawal lists it.");
 }
 
 }  // namespace calot::python

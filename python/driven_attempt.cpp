@@ -7,8 +7,8 @@
 
 #include "python/places.h"
 #include "recorder/base/errors.h"
-#include "recorder/formats/scene_file.h"
 #include "recorder/base/text_words.h"
+#include "recorder/formats/scene_file.h"
 #include "sim/instruments/instruments.h"
 
 namespace calot::python {

@@ -28,7 +28,7 @@ node "$root/tests/page/page_test.mjs" --calot "$root/build/release/bin/calot"
 xvfb-run --auto-servernum node "$root/tests/page/page_test.mjs" --calot "$root/build/release/bin/calot" --browser /usr/bin/firefox-esr --output "$root/build/page/pictures-firefox"
 say "what is handed out, by validators from elsewhere"
 npm install --silent --no-audit --no-fund --ignore-scripts --prefix "$root/build/validators" bids-validator@1.15.0 @learninglocker/xapi-validation@3.0.0
-CALOT_VALIDATORS="$root/build/validators" ctest --test-dir "$root/build/release" --tests-regex command_line.exchange --output-on-failure --no-tests=error
+CALOT_VALIDATORS="$root/build/validators" ctest --test-dir "$root/build/release" --tests-regex python.exchange --output-on-failure --no-tests=error
 say "packages, in a clean root, and once more from another folder"
 "$root/scripts/package.sh"
 "$root/scripts/clean-root.sh"

@@ -8,15 +8,12 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "analytics/cohort/withdraw.h"
 #include "analytics/interchange/cohort_bundle.h"
 #include "analytics/interchange/cohort_tables.h"
-#include "analytics/interchange/xapi_statements.h"
 #include "apps/calot/cohort_option.h"
 #include "apps/calot/results.h"
 #include "apps/common/exit_code.h"
 #include "recorder/base/errors.h"
-#include "recorder/base/text_output.h"
 
 namespace calot::apps {
 namespace {
@@ -70,35 +67,6 @@ int handOut(const CohortExportsOptions& o) {
   return static_cast<int>(ExitCode::yes);
 }
 
-void addXapi(CLI::App& parent, Run& run) {
-  struct Options {
-    std::string cohort, file;
-    analytics::XapiOptions xapi;
-    bool force = false;
-  };
-  const auto o = std::make_shared<Options>();
-  CLI::App* command =
-      parent.add_subcommand("xapi", "Write attempts and values as statements for a learning record store");
-  addCohortOption(*command, o->cohort)->required();
-  command
-      ->add_option("--home-page", o->xapi.home,
-                   "Begin of the site's identifiers, such as https://training.example.org: accounts, activities and "
-                   "extensions are named below it")
-      ->required();
-  command->add_option("-o,--output", o->file, "JSON file to write")->required();
-  command->add_flag("--include-synthetic", o->xapi.includeSynthetic, "Take in what performers made");
-  command->add_flag("--force", o->force, "Replace a file of this name");
-  command->callback([o, &run] {
-    run = [o] {
-      const analytics::XapiStatements s = analytics::xapiStatements(o->cohort, o->xapi);
-      recorder::writeText(o->file, s.json, o->force);
-      analytics::recordExport(o->cohort, "xapi", o->file, s.attempts);
-      std::cout << fmt::format("{}: {} statements of {} attempts\n", o->file, s.attempts.size(), s.recruited);
-      return static_cast<int>(ExitCode::yes);
-    };
-  });
-}
-
 CLI::App* addOne(CLI::App& parent, Run& run, const char* name, const char* help,
                  const std::shared_ptr<CohortExportsOptions>& o, int (*work)(const CohortExportsOptions&)) {
   CLI::App* command = parent.add_subcommand(name, help);
@@ -113,7 +81,6 @@ CLI::App* addOne(CLI::App& parent, Run& run, const char* name, const char* help,
 }  // namespace
 
 void addCohortExports(CLI::App& parent, Run& run) {
-  addXapi(parent, run);
   addOne(parent, run, "export", "Write every table as CSV and JSON, with a codebook; names and dates as they are",
          std::make_shared<CohortExportsOptions>(), exportTables);
   const auto o = std::make_shared<CohortExportsOptions>();

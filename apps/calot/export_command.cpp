@@ -10,7 +10,6 @@
 #include "analytics/checkpoints/from_samples.h"
 #include "analytics/checkpoints/recorded_motion.h"
 #include "analytics/cohort/withdraw.h"
-#include "analytics/interchange/bids_dataset.h"
 #include "analytics/interchange/motion_tables.h"
 #include "apps/calot/commands.h"
 #include "apps/calot/environment.h"
@@ -27,9 +26,7 @@ namespace calot::apps {
 namespace {
 
 struct ExportOptions {
-  std::vector<std::string> files;
-  std::string file;  ///< the only one
-  std::string folder, motion, bids, columns, cohort;
+  std::string file, folder, motion, columns, cohort;
   bool force = false;
 };
 
@@ -48,44 +45,10 @@ int exportMotionFile(const ExportOptions& o) {
   return static_cast<int>(ExitCode::yes);
 }
 
-/// What a recording gives to a data set of motion.
-analytics::BidsAttempt bidsAttemptOf(const std::string& file, std::string& uuid) {
-  const recorder::ChainVerdict chain = recorder::probe(file);
-  if (!chain.intact) throw Error(ErrorKind::refused, fmt::format("{}: {}", file, chain.what));
-  recorder::Recording recording(file);
-  const recorder::AttemptHeader& header = recording.header();
-  uuid = header.attempt;
-  const bool synthetic = header.provenance.kind == recorder::OperatorKind::performer;
-  analytics::BidsAttempt attempt;
-  attempt.file = file;
-  attempt.participant = header.participant.empty() && synthetic ? header.provenance.profile : header.participant;
-  attempt.task = header.sceneName;
-  attempt.device = header.provenance.device.empty()
-                       ? recorder::operatorKindNames[static_cast<std::size_t>(header.provenance.kind)]
-                       : header.provenance.device;
-  attempt.startUtc = header.startUtc;
-  attempt.synthetic = synthetic;
-  attempt.seconds = recording.seconds();
-  attempt.motion = analytics::motionOf(recording);
-  return attempt;
-}
-
-int exportBids(const ExportOptions& o) {
-  std::vector<analytics::BidsAttempt> attempts;
-  std::vector<std::string> uuids;
-  for (const std::string& file : o.files) attempts.push_back(bidsAttemptOf(file, uuids.emplace_back()));
-  const std::vector<std::filesystem::path> files = analytics::writeBidsDataset(std::move(attempts), o.bids, o.force);
-  if (!o.cohort.empty()) analytics::recordExport(o.cohort, "bids", o.bids, uuids);
-  printFiles(files);
-  return static_cast<int>(ExitCode::yes);
-}
-
 int exportRecording(const ExportOptions& o) {
   if (o.folder.empty() && o.motion.empty())
-    throw Error(
-        ErrorKind::invalid,
-        "export: --csv FOLDER writes all that is recorded, --motion FOLDER filtered motion, --bids FOLDER a data "
-        "set of motion");
+    throw Error(ErrorKind::invalid,
+                "export: --csv FOLDER writes all that is recorded, --motion FOLDER filtered motion");
   if (!o.columns.empty()) throw Error(ErrorKind::invalid, "export: --columns is for motion files, not for recordings");
   const recorder::ChainVerdict chain = recorder::probe(o.file);
   recorder::Recording recording(o.file);
@@ -113,30 +76,18 @@ void addExport(CLI::App& app, Run& run) {
   const auto options = std::make_shared<ExportOptions>();
   CLI::App* command =
       app.add_subcommand("export", "Write a recording, or the motion in it, as tables for other programs");
-  command
-      ->add_option("file", options->files,
-                   "Recording (.h5), with --bids one or more; with --motion also a motion file, as calot import reads")
+  command->add_option("file", options->file, "Recording (.h5); with --motion also a motion file, as calot import reads")
       ->required();
-  CLI::Option* csv = command->add_option("--csv", options->folder, "Folder for all that is recorded");
+  command->add_option("--csv", options->folder, "Folder for all that is recorded");
   CLI::Option* motion = command->add_option(
       "--motion", options->motion,
       "Folder for both hands' filtered motion with its segments and movements, as checkpoints see it");
-  command
-      ->add_option("--bids", options->bids,
-                   "Folder for the motion of all these recordings as a data set of BIDS (motion), without dates")
-      ->excludes(csv)
-      ->excludes(motion);
   command->add_option("--columns", options->columns, "A JSON file that says what the columns of a CSV motion file are")
       ->needs(motion);
   command->add_option("--cohort", options->cohort, "Cohort database that notes that this was handed out");
-  command->add_flag("--force", options->force,
-                    "Replace files that --csv finds there, or the folder of --motion or --bids");
+  command->add_flag("--force", options->force, "Replace files that --csv finds there, or the folder of --motion");
   command->callback([options, &run] {
     run = [options] {
-      if (!options->bids.empty()) return exportBids(*options);
-      if (options->files.size() > 1)
-        throw Error(ErrorKind::invalid, "export: one file at a time; only --bids takes several");
-      options->file = options->files.front();
       const bool recorded = options->motion.empty() || std::filesystem::path(options->file).extension() == ".h5";
       return recorded ? exportRecording(*options) : exportMotionFile(*options);
     };

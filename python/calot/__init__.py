@@ -8,7 +8,7 @@ import atexit as _atexit
 from . import _calot
 from ._arrays import Group, Result
 from ._assess import Assessment, Value, assess, checkpoints, record
-from ._cohort import Cohort
+from ._cohort import Cohort, record_export
 from ._environment import COAGULATE, CUT, FIRE, LOCK, RETRACT_LESS, RETRACT_MORE, Environment, Scene, action
 from ._errors import DamagedError, Error, FailureError, InvalidError, RefusedError, ReplayError, UndecidedError
 from ._moment import Camera, Instrument, Moment, Surface
@@ -37,6 +37,6 @@ def result_units() -> dict[str, str]:
 __all__ = [
     "COAGULATE", "CUT", "FIRE", "LOCK", "RETRACT_LESS", "RETRACT_MORE", "Assessment", "Camera", "Cohort", "DamagedError", "Environment", "Error", "FailureError", "Group", "Instrument",
     "InvalidError", "Moment", "Recording", "RefusedError", "Replay", "ReplayError", "Result", "Scene", "Signature", "Surface", "Tool", "UndecidedError", "Value",
-    "action", "assess", "checkpoints", "instruments", "open", "record", "replay", "result_units", "scenes", "simulation_version", "step_result_version"]
+    "action", "assess", "checkpoints", "instruments", "open", "record", "record_export", "replay", "result_units", "scenes", "simulation_version", "step_result_version"]
 
 _atexit.register(_calot.end_rendering)

@@ -32,6 +32,11 @@ def _column(values: list[Any]) -> Any:
     return np.array(values, dtype=object)
 
 
+def record_export(cohort: Path, kind: str, target: Path, attempts: list[str]) -> None:
+    """Registers in a cohort an export of attempts (uuids) to a file or folder, so that a withdrawal lists it."""
+    _calot.record_export(os.fspath(cohort), kind, os.fspath(target), [str(a) for a in attempts])
+
+
 class Cohort:
     """A cohort's database, opened for reading. Tables are pandas.DataFrame, or with frame=False dicts of numpy arrays.
 

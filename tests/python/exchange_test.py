@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Motion as a data set of BIDS and attempts as xAPI statements: what is in them, what stays out, and what is refused.
+"""The examples that write motion as a BIDS data set and attempts as xAPI statements: what is in them, what stays out, and what is refused.
 
 With CALOT_VALIDATORS, a folder in which npm installed bids-validator and @learninglocker/xapi-validation, these judge them, too.
 """
@@ -10,10 +10,12 @@ import pathlib
 import re
 import sqlite3
 import subprocess
+import sys
 from contextlib import closing
 
+import h5py
 import program
-from program import recording
+from program import SOURCE, recording
 
 VALIDATORS = os.environ.get("CALOT_VALIDATORS", "")
 UUID = re.compile(r"[0-9a-f]{8}-[0-9a-f]{4}-4[0-9a-f]{3}-[89ab][0-9a-f]{3}-[0-9a-f]{12}")
@@ -23,16 +25,33 @@ def performed(seed, profile="skilled"):
     return recording(f"{profile}{seed}", "--performer", profile, "--seed", seed, "--seconds", 2, "--mode", "assessment")
 
 
+def example(name, *arguments):
+    """Runs a script of python/examples; its whole answer."""
+    return subprocess.run([sys.executable, "-B", SOURCE / "python/examples" / name, *map(str, arguments)], capture_output=True, text=True, check=False)
+
+
+class ExampleTest(program.ProgramTest):
+    def done(self, name, *arguments):
+        answer = example(name, *arguments)
+        self.assertEqual((answer.returncode, answer.stderr), (0, ""), answer)
+        return answer.stdout
+
+    def fails(self, name, *arguments, names=()):
+        answer = example(name, *arguments)
+        self.assertEqual((answer.returncode, answer.stderr.count("\n")), (1, 1), answer)
+        for part in names:
+            self.assertIn(part, answer.stderr)
+
+
 def table(path):
     return [line.split("\t") for line in path.read_text(encoding="utf-8").splitlines()]
 
 
-class Bids(program.ProgramTest):
+class Bids(ExampleTest):
     def test_a_data_set_of_three_attempts(self):
         out = self.path("bids")
-        listed = self.well("export", performed(1), performed(2), performed(3, "unskilled"), "--bids", out).out.splitlines()
-        files = sorted(str(p.relative_to(out)) for p in out.rglob("*") if p.is_file())
-        self.assertEqual(sorted(str(pathlib.Path(line).relative_to(out)) for line in listed), files)
+        self.done("bids_dataset.py", out, performed(1), performed(2), performed(3, "unskilled"))
+        self.assertEqual(sum(p.is_file() for p in out.rglob("*")), 3 * 4 + 4)
         stem = "task-touchliver_tracksys-performer_run"
         for who, run in (("skilled", 1), ("skilled", 2), ("unskilled", 1)):
             base = out / f"sub-{who}/motion/sub-{who}_{stem}-{run}"
@@ -42,7 +61,7 @@ class Bids(program.ProgramTest):
             self.assertEqual(channels[0][:5], ["name", "component", "type", "tracked_point", "units"])
             self.assertEqual(about["MotionChannelCount"], len(channels) - 1)
             self.assertEqual(about["POSChannelCount"] % 3, 0)
-            self.assertEqual(len(rows), 201, "two seconds at 100 Hz, both ends")
+            self.assertEqual(len(rows), 200, "two seconds at 100 Hz")
             for row in rows:
                 self.assertEqual(len(row), len(channels) - 1)
                 self.assertTrue(all(cell == "n/a" or abs(float(cell)) < 10 for cell in row), row)
@@ -56,35 +75,29 @@ class Bids(program.ProgramTest):
             self.assertEqual([e["key"] for e in errors], [], done.stdout)
 
     def test_positions_are_those_of_the_recording(self):
-        """The first of the tip that never moves between two ticks equals the CSV export's."""
-        out, motion = self.path("bids"), self.path("motion")
-        self.well("export", performed(1), "--bids", out)
-        self.well("export", performed(1), "--motion", motion)
-        channels = table(next(out.rglob("*_channels.tsv")))[1:]
+        out = self.path("bids")
+        self.done("bids_dataset.py", out, performed(1))
+        channels = [c[0] for c in table(next(out.rglob("*_channels.tsv")))[1:]]
         rows = table(next(out.rglob("*_motion.tsv")))
-        for hand in ("left", "right"):
-            held = [line.split(",") for line in (motion / f"motion_{hand}.csv").read_text().splitlines()]
-            place = [n for n, c in enumerate(channels) if c[0] in (f"{hand}_x", f"{hand}_y", f"{hand}_z")]
-            self.assertEqual(len(place), 3)
-            x = held[0].index("unfiltered_x (m)")
-            for cells in held[1:]:
-                k = round(100 * float(cells[0]))
-                self.assertEqual([rows[k][n] for n in place], cells[x:x + 3])
+        with h5py.File(performed(1)) as file:
+            for hand in ("left", "right"):
+                ticks = file[f"ticks/{hand}"]
+                columns = [channels.index(f"{hand}_{axis}") for axis in "xyz"]
+                for k, row in enumerate(rows):
+                    self.assertEqual([float(row[c]) for c in columns], list(ticks["position"][10 * k]) if "position" in ticks else None)
 
     def test_what_is_refused(self):
-        a, out = performed(1), self.path("bids")
-        self.refused(2, "export", a, performed(2), "--motion", self.path("m"), names=("--bids",))
-        self.refused(2, "export", a, "--bids", out, "--csv", self.path("c"), names=("--csv",))
-        self.refused(2, "export", a, "--bids", self.path("no/where"), names=("where",))
-        (self.path("there")).mkdir()
-        self.refused(2, "export", a, "--bids", self.path("there"), names=("there",))
-        broken = self.copy(a, "broken.h5")
-        broken.write_bytes(a.read_bytes()[:5000])
-        self.refused(4, "export", a, broken, "--bids", out, names=("broken.h5",))
+        out = self.path("bids")
+        self.fails("bids_dataset.py", self.path("no/where"), performed(1), names=("where",))
+        self.path("there").mkdir()
+        self.fails("bids_dataset.py", self.path("there"), performed(1), names=("there",))
+        broken = self.copy(performed(1), "broken.h5")
+        broken.write_bytes(performed(1).read_bytes()[:5000])
+        self.fails("bids_dataset.py", out, performed(1), broken, names=("broken.h5",))
         self.assertFalse(out.exists())
 
 
-class Xapi(program.ProgramTest):
+class Xapi(ExampleTest):
     def setUp(self):
         super().setUp()
         self.cohort = self.path("c.db")
@@ -93,9 +106,9 @@ class Xapi(program.ProgramTest):
 
     def test_statements(self):
         home = "https://training.example.org"
-        ask = ("cohort", "xapi", self.cohort, "--home-page", home + "/", "-o", self.file)
-        self.refused(3, *ask, names=("c.db", "synthetic"))
-        self.well(*ask, "--include-synthetic")
+        ask = ("xapi_statements.py", self.cohort, home + "/", self.file)
+        self.fails(*ask, names=("c.db", "synthetic"))
+        self.done(*ask, "--include-synthetic")
         statements = json.loads(self.file.read_text())
         self.assertEqual(len(statements), 2)
         with closing(sqlite3.connect(self.cohort)) as database:
@@ -122,9 +135,9 @@ class Xapi(program.ProgramTest):
 
     def test_what_is_refused(self):
         for home in ("", "training", "ftp://a.b", "https://", "https://a b"):
-            self.refused(2, "cohort", "xapi", self.cohort, "--home-page", home, "-o", self.file, "--include-synthetic", names=("home page",))
+            self.fails("xapi_statements.py", self.cohort, home, self.file, "--include-synthetic", names=("home page",))
         self.file.write_text("kept")
-        self.refused(2, "cohort", "xapi", self.cohort, "--home-page", "https://a.example", "-o", self.file, "--include-synthetic", names=("--force",))
+        self.fails("xapi_statements.py", self.cohort, "https://a.example", self.file, "--include-synthetic", names=(str(self.file),))
         self.assertEqual(self.file.read_text(), "kept")
 
 
