@@ -19,7 +19,7 @@ build=(
   libbullet-dev pybind11-dev python3-dev
 )
 demo=("${build[@]}" fonts-dejavu-core python3 python3-h5py)
-test=("${demo[@]}" libgtest-dev xvfb xauth python3-scipy python3-pandas hdf5-tools valgrind nodejs
+test=("${demo[@]}" libgtest-dev xvfb xauth python3-scipy python3-pandas python3-nacl hdf5-tools valgrind nodejs
   tmux shellcheck reuse clang-format)
 docs=(mkdocs mkdocs-material doxygen)
 checks=("${test[@]}" clang clang-tidy libclang-rt-14-dev g++-aarch64-linux-gnu qemu-user)

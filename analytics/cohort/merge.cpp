@@ -268,7 +268,7 @@ CohortMerge mergeCohorts(const std::string& into, const std::string& from) {
   constexpr auto patience = std::chrono::seconds(10);
   const auto source = guarded(from, [&] { return openCohort(from, CohortDatabase::Access::read, patience); });
   return guarded(into, [&] {
-    const auto target = openCohort(into, CohortDatabase::Access::write, patience);
+    const auto target = openCohort(into, CohortDatabase::Access::create, patience);
     SQLite::Transaction reading(*source);  // one moment of it
     SQLite::Transaction transaction(*target, SQLite::TransactionBehavior::IMMEDIATE);
     CohortMerge merge = Merge(*target, into, *source, from).run();

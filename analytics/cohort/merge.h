@@ -19,10 +19,10 @@ struct CohortMerge {
   [[nodiscard]] bool changed() const { return participants + attempts + extended + rows + filled > 0; }
 };
 
-/// Takes everything of one database into another, in one transaction. Rows are the same where their keys are: a
-/// pseudonym, a uuid, a name; never the numbers of rows. Of an attempt in both, the longer recording counts and the
-/// values that are there stay. Doing it again changes nothing. Where both say different things of one row, that is a
-/// conflict, every one is reported, and nothing is merged.
+/// Takes everything of one database into another, which is made where there is none, in one transaction. Rows are the
+/// same where their keys are: a pseudonym, a uuid, a name; never the numbers of rows. Of an attempt in both, the longer
+/// recording counts and the values that are there stay. Doing it again changes nothing. Where both say different things
+/// of one row, that is a conflict, every one is reported, and nothing is merged.
 /// @throws Error as CohortDatabase does; (invalid) where both are one file.
 CohortMerge mergeCohorts(const std::string& into, const std::string& from);
 

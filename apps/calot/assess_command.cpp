@@ -36,7 +36,7 @@ struct AssessOptions {
   bool uncertainty = false;
   double cutoff = 0.0;  ///< 0: values are stored
   MetricOptions metrics;
-  std::string share;
+  std::optional<std::string> share;
   unsigned jobs = 1;
   bool apart = false, json = false;
 };
@@ -47,7 +47,7 @@ std::vector<std::string> filesOf(const AssessOptions& o) {
   const auto isFolder = [&](const std::string& place) { return std::filesystem::is_directory(place, ignored); };
   std::vector<std::filesystem::path> files(o.files.begin(), o.files.end());
   if (std::any_of(o.files.begin(), o.files.end(), isFolder)) files = analytics::recordingsUnder(files);
-  if (!o.share.empty()) files = analytics::filesOf(analytics::shareNamed(o.share), files);
+  if (o.share) files = analytics::filesOf(analytics::shareNamed(*o.share), files);
   return {files.begin(), files.end()};
 }
 
@@ -173,7 +173,7 @@ int assess(const AssessOptions& o) {
   const std::vector<analytics::MetricScript> metrics = readMetrics(o.metrics);
   if (!o.cohort.empty()) database.emplace(o.cohort, analytics::CohortDatabase::Access::create);
   if (database) checkMetrics(metrics, *database);
-  if (!o.share.empty()) removeVerified(files, *database);
+  if (o.share) removeVerified(files, *database);
   AssessOutput output(o, everyValue);
   Progress progress("assessing, recordings", o.json);
   analytics::AssessSettings settings{.threads = o.threads.value_or(1)};

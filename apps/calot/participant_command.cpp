@@ -65,7 +65,6 @@ void addParticipant(CLI::App& app, Run& run) {
   command->require_subcommand(1);
   addParticipantList(*command, run);
   addWithdraw(*command, run);
-  addKey(*command, run);
 
   const auto added = std::make_shared<ParticipantOptions>();
   CLI::App* add = command->add_subcommand("add", "Add a participant; makes the cohort database if there is none");

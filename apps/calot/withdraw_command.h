@@ -5,8 +5,7 @@
 
 namespace calot::apps {
 
-/// `calot participant withdraw` and `calot participant key`.
+/// `calot participant withdraw`.
 void addWithdraw(CLI::App& participant, Run& run);
-void addKey(CLI::App& participant, Run& run);
 
 }  // namespace calot::apps

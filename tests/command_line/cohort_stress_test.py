@@ -172,7 +172,7 @@ class Stress(program.ProgramTest):
         for command in (("study", cohort), ("regrade", cohort, self.path(".")), ("cohort", "check", cohort), ("cohort", "list", cohort),
                         ("cohort", "merge", other, cohort), ("cohort", "merge", cohort, other), ("cohort", "scrub", cohort),
                         ("attempt", "exclude", "0", "--cohort", cohort, "--reason", "r", "--by", "b"),
-                        ("participant", "withdraw", "P1", "--cohort", cohort, "--scope", "all", "--no-recordings", "--no-key"),
+                        ("participant", "withdraw", "P1", "--cohort", cohort, "--scope", "all", "--no-recordings"),
                         ("cohort", "name", "x", "--cohort", cohort), ("assess", runs()[1], "--cohort", cohort)):
             self.refused(5, *command, names=(cohort, "newer"))
         self.assertEqual(content(cohort), before)

@@ -226,7 +226,8 @@ class Merge(program.ProgramTest):
     def test_refusals(self):
         self.refused(2, "cohort", "merge", self.a, self.a, names=(self.a,))
         self.refused(4, "cohort", "merge", self.a, self.path("none.db"), names=("none.db",))
-        self.refused(4, "cohort", "merge", self.path("none.db"), self.b, names=("none.db",))
+        self.well("cohort", "merge", self.path("new.db"), self.b)
+        self.assertIn("nothing new", self.well("cohort", "merge", self.path("new.db"), self.b).out)
         self.assertFalse(self.path("none.db").exists())
 
 

@@ -1,13 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""calot participant withdraw, key: nothing of a person is left in any store, byte for byte."""
+"""calot participant withdraw: nothing of a person is left in any store, byte for byte."""
 
-import functools
 import os
 import pathlib
 import shutil
 import signal
 import subprocess
-import tempfile
 import time
 
 import program
@@ -15,30 +13,17 @@ import recording_file
 from cohort_content import content, query
 from program import calot, recording
 
-WHO, NAME = "Withdrawn-Q7", "Ada Quill"
-PASSPHRASE = {"CALOT_KEY_PASSPHRASE": "correct horse"}
-
+WHO = "Withdrawn-Q7"
 
 def of(participant, seed, purpose="study", mode="practice"):
     return recording(f"w-{participant}-{seed}", "--performer", "skilled", "--seed", seed, "--seconds", 0.5, "--mode", mode,
                      "--purpose", purpose, "--participant", participant)
 
 
-@functools.cache
-def names():
-    """A key file of both persons; deriving its key from a passphrase takes long on purpose."""
-    with tempfile.TemporaryDirectory() as folder:
-        file = pathlib.Path(folder) / "names.key"
-        for who, name in ((WHO, NAME), ("P2", "Someone Else")):
-            answer = calot("participant", "key", "add", who, "--name", name, "--file", file, environment=PASSPHRASE)
-            assert answer.code == 0, answer
-        return file.read_bytes()
-
-
 class Withdraw(program.ProgramTest):
     def setUp(self):
         super().setUp()
-        self.cohort, self.key, self.data = self.path("c.db"), self.path("names.key"), self.path("data")
+        self.cohort, self.data = self.path("c.db"), self.path("data")
         (self.data / "deep").mkdir(parents=True)
         self.mine = [shutil.copy(of(WHO, 1), self.data / "deep" / "a.h5"), shutil.copy(of(WHO, 2, "training"), self.data / "b.h5")]
         self.other = shutil.copy(of("P2", 3), self.data / "c.h5")
@@ -47,8 +32,6 @@ class Withdraw(program.ProgramTest):
         self.well("participant", "add", WHO, "--group", "novice", "--experience", "laparoscopies=2", "--consent", "research:2026-01-01",
                   "--cohort", self.cohort)
         self.well("assess", *self.mine, self.other, self.branch, "--cohort", self.cohort)
-        self.key.write_bytes(names())
-        self.key.chmod(0o600)
         self.uuids = [u for (u,) in query(self.cohort, "SELECT uuid FROM attempt WHERE participant = (SELECT id FROM participant WHERE "
                                                        f"pseudonym = '{WHO}')")]
         self.assertEqual(len(self.uuids), 3)  # a branch keeps its parent's participant
@@ -60,8 +43,7 @@ class Withdraw(program.ProgramTest):
         shutil.copyfile(self.cohort, self.path("c.db.schema-2.bak"))
 
     def withdraw(self, *more, scope="all"):
-        return self.well("participant", "withdraw", WHO, "--cohort", self.cohort, "--scope", scope, "--recordings", self.data, "--key", self.key,
-                         *more, environment=PASSPHRASE)
+        return self.well("participant", "withdraw", WHO, "--cohort", self.cohort, "--scope", scope, "--recordings", self.data, *more)
 
     def left(self, *words):
         """Files of the test's folder that hold one of the words anywhere in their bytes, or as text in the other endings."""
@@ -91,10 +73,8 @@ class Withdraw(program.ProgramTest):
         self.assertEqual([r for r in content(self.cohort)["participant"] if "'P2'" in r], others)
         self.assertEqual(query(self.cohort, "SELECT count(*) FROM attempt"), [(1,)])
         self.assertEqual(query(self.cohort, "SELECT scope, attempts FROM tombstone"), [("all", 3)])
-        self.assertEqual(self.well("participant", "key", "show", "--file", self.key, environment=PASSPHRASE).out, "P2\tSomeone Else\n")
         # It does not come back: not its recordings, not by a merge.
-        self.refused(3, "participant", "withdraw", WHO, "--cohort", self.cohort, "--scope", "all", "--recordings", self.data, "--no-key",
-                     names=(WHO,))
+        self.refused(3, "participant", "withdraw", WHO, "--cohort", self.cohort, "--scope", "all", "--recordings", self.data, names=(WHO,))
         answer = calot("assess", of(WHO, 1), "--cohort", self.cohort)
         self.assertEqual(answer.code, 3, answer)
         self.assertIn("was withdrawn", answer.err)
@@ -113,8 +93,7 @@ class Withdraw(program.ProgramTest):
         self.assertIn("withdraw it from", answer.err)
 
     def test_research_only(self):
-        said = self.withdraw(scope="research").out
-        self.assertNotIn("key file", said)
+        self.withdraw(scope="research")
         self.assertEqual(sorted(p.name for p in self.data.rglob("*") if p.is_file()), ["b.h5", "c.h5"])
         self.assertEqual(query(self.cohort, "SELECT study_group FROM participant WHERE pseudonym = ?".replace("?", f"'{WHO}'")), [("",)])
         self.assertEqual(query(self.cohort, "SELECT count(*) FROM consent"), [(0,)])
@@ -122,7 +101,6 @@ class Withdraw(program.ProgramTest):
         gone = [u for u in self.uuids if (u,) not in training]
         shutil.rmtree(self.path("handed-out"))
         self.assertEqual(self.left(*gone), [])
-        self.assertIn(WHO, self.well("participant", "key", "show", "--file", self.key, environment=PASSPHRASE).out)
         # New attempts stay out of studies, too.
         self.well("participant", "set", WHO, "--group", "novice", "--cohort", self.cohort)
         later = of(WHO, 9, mode="assessment")
@@ -143,11 +121,9 @@ class Withdraw(program.ProgramTest):
 
     def test_stores_must_be_named(self):
         base = ("participant", "withdraw", WHO, "--cohort", self.cohort, "--scope", "all")
-        self.refused(2, *base, "--no-key", names=("--recordings",))
-        self.refused(2, *base, "--no-recordings", names=("--key",))
-        self.refused(2, *base[:-2], "--no-recordings", "--no-key")
-        self.refused(4, *base, "--recordings", self.path("nowhere"), "--no-key", names=("nowhere",))
-        self.refused(3, *base, "--no-recordings", "--key", self.key, names=(self.key, "passphrase"), environment={"CALOT_KEY_PASSPHRASE": "x"})
+        self.refused(2, *base, names=("--recordings",))
+        self.refused(2, *base[:-2], "--no-recordings")
+        self.refused(4, *base, "--recordings", self.path("nowhere"), names=("nowhere",))
         self.assertEqual(len(self.left(WHO)), len(self.left(WHO)))
 
     def test_damaged_recordings_and_notes(self):
@@ -179,7 +155,7 @@ class Withdraw(program.ProgramTest):
         (data / "note.txt").write_text("x" * ((1 << 20) - 8) + " seen: 07. Call back\n")  # across two pieces of a megabyte
         (data / "longer.txt").write_text("x" * ((1 << 20) - 2) + " 0712\n")
         named = [data / name for name in ("answers.json", "elsewhere.db", "note.txt", "people.csv")]
-        command = ("participant", "withdraw", who, "--cohort", cohort, "--scope", "all", "--recordings", data, "--no-key")
+        command = ("participant", "withdraw", who, "--cohort", cohort, "--scope", "all", "--recordings", data)
         dry, wet = self.well(*command, "--dry-run").out.splitlines(), self.well(*command).out.splitlines()
         self.assertEqual([line for line in dry if line.startswith("still names it")],
                          [f"still names it: {path}; not removed, look into it" for path in named])
@@ -207,7 +183,7 @@ class Withdraw(program.ProgramTest):
             shutil.copytree(self.data, work / "data")
             shutil.copyfile(self.cohort, work / "c.db")
             command = [str(program.PROGRAM), "participant", "withdraw", WHO, "--cohort", str(work / "c.db"), "--scope", "all",
-                       "--recordings", str(work / "data"), "--no-key"]
+                       "--recordings", str(work / "data")]
             process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
             time.sleep(draw.uniform(0.0, 0.25))
             process.send_signal(signal.SIGKILL)
@@ -221,46 +197,6 @@ class Withdraw(program.ProgramTest):
             self.assertEqual(held, [])
             self.well("cohort", "check", work / "c.db")
             shutil.rmtree(work)
-
-
-class Key(program.ProgramTest):
-    def test_names_are_not_in_the_file(self):
-        key = self.path("names.key")
-        add = ("participant", "key", "add", WHO, "--file", key)
-        self.well(*add, "--name", NAME, environment=PASSPHRASE)
-        self.assertEqual(os.stat(key).st_mode & 0o777, 0o600)
-        for word in (WHO, NAME, "Ada"):
-            self.assertNotIn(word.encode(), key.read_bytes())
-        self.assertEqual(self.well("participant", "key", "show", WHO, "--file", key, environment=PASSPHRASE).out, f"{WHO}\t{NAME}\n")
-        self.refused(3, *add, "--name", "Another", names=(key, WHO), environment=PASSPHRASE)
-        self.refused(3, "participant", "key", "show", "--file", key, names=(key, "passphrase"), environment={"CALOT_KEY_PASSPHRASE": "wrong"})
-        self.refused(2, "participant", "key", "show", "--file", key, names=("passphrase",), environment={"CALOT_KEY_PASSPHRASE": ""})
-        self.refused(4, "participant", "key", "show", "--file", self.path("none"), names=("none",), environment=PASSPHRASE)
-        word = self.path("word")
-        word.write_text("correct horse\n")
-        self.refused(2, "participant", "key", "show", "--file", key, "--passphrase-file", word, names=(word, "chmod"))
-        word.chmod(0o600)
-        self.well("participant", "key", "show", "--file", key, "--passphrase-file", word)
-        self.well("participant", "key", "remove", WHO, "--file", key, environment=PASSPHRASE)
-        self.refused(3, "participant", "key", "remove", WHO, "--file", key, environment=PASSPHRASE)
-        key.chmod(0o644)
-        self.refused(2, "participant", "key", "show", "--file", key, names=("chmod",), environment=PASSPHRASE)
-
-    def test_a_changed_file_is_refused(self):
-        key, draw = self.path("names.key"), program.seeded("changed key file")
-        self.well("participant", "key", "add", WHO, "--name", NAME, "--file", key, environment=PASSPHRASE)
-        whole = key.read_bytes()
-        # In the head every byte; beyond, the seal's own check.
-        for at in [0, 15, 16, 17, 23, 24, 31, 32, 48, 72, 90, len(whole) - 1, draw.randrange(len(whole))]:
-            changed = bytearray(whole)
-            changed[at] ^= 1 << draw.randrange(8)
-            key.write_bytes(changed)
-            answer = calot("participant", "key", "show", "--file", key, environment=PASSPHRASE)
-            self.assertIn(answer.code, (3, 4), (at, answer))
-            self.assertOneLine(answer, key)
-        for length in (0, 71, 88, len(whole) - 1):
-            key.write_bytes(whole[:length])
-            self.assertIn(calot("participant", "key", "show", "--file", key, environment=PASSPHRASE).code, (3, 4), length)
 
 
 if __name__ == "__main__":
