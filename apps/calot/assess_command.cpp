@@ -17,7 +17,7 @@
 #include "apps/calot/commands.h"
 #include "apps/calot/environment.h"
 #include "apps/calot/key_fault.h"
-#include "apps/calot/metric_options.h"
+#include "apps/calot/motion_import.h"
 #include "apps/calot/replay_report.h"
 #include "apps/calot/results.h"
 #include "apps/calot/value_report.h"

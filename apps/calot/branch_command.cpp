@@ -4,13 +4,10 @@
 #include <cmath>
 #include <memory>
 
-#include "apps/calot/broad_phase_option.h"
 #include "apps/calot/commands.h"
 #include "apps/calot/environment.h"
 #include "apps/calot/run_report.h"
 #include "apps/calot/source_options.h"
-#include "apps/calot/station_options.h"
-#include "apps/calot/stop_request.h"
 #include "recorder/base/errors.h"
 #include "recorder/blended_source.h"
 #include "recorder/branch.h"

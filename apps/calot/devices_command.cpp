@@ -1,25 +1,95 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // calot devices: what there is, the commands below it, and a server to try a set-up without a tracker.
 #include <fmt/format.h>
-
+#include <CLI/CLI.hpp>
 #include <cstdio>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
 
 #include "apps/calot/calibrate_device.h"
 #include "apps/calot/commands.h"
-#include "apps/calot/device_options.h"
 #include "apps/calot/environment.h"
-#include "apps/calot/marker_sheet_file.h"
 #include "apps/calot/results.h"
-#include "apps/calot/simulate_device.h"
-#include "apps/calot/stop_request.h"
+#include "apps/calot/source_options.h"
 #include "apps/calot/terminal_text.h"
+#include "apps/calot/wrong_word.h"
+#include "gui/report/sheet_pdf.h"
+#include "recorder/attempt.h"
 #include "recorder/base/errors.h"
+#include "recorder/base/text_output.h"
+#include "recorder/sources/devices/force/force_server.h"
 #include "recorder/sources/devices/openigtlink_server.h"
 
 namespace calot::apps {
 namespace {
+
+/// `calot devices print`: the sheets of handles and board as PDF.
+/// @throws Error: invalid, in a build without Qt, and as writeText does
+void writeMarkerSheets(const std::string& file, bool force);
+
+void writeMarkerSheets([[maybe_unused]] const std::string& file, [[maybe_unused]] bool force) {
+#ifdef CALOT_PDF
+  recorder::refuseOutput(file, force);
+  recorder::writeText(file, gui::sheetsPdf(recorder::markerSheets(), recorder::softwareName(), recorder::tagCells),
+                      force);
+#else
+  throw Error(ErrorKind::invalid, "this build writes no PDF");
+#endif
+}
+
+/// Adds the command below `devices`. @returns it @param run is set to it where it was asked for
+CLI::App* addSimulateDevice(CLI::App& devices, Run& run);
+
+struct SimulateOptions {
+  std::string kinematics;
+  std::string hands = "right";
+  double delayMilliseconds = 0.0;
+  recorder::ForceServerSettings settings;
+};
+
+const std::map<std::string, std::uint8_t> handBits{{"left", 1}, {"right", 2}, {"both", 3}};
+
+int simulate(const SimulateOptions& o) {
+  recorder::ForceServerSettings settings = o.settings;
+  settings.hands = handBits.at(o.hands);
+  settings.delay = 0.001 * o.delayMilliseconds;
+  std::optional<recorder::DeviceScript> motion;
+  if (!o.kinematics.empty()) motion = recorder::readDeviceScript(o.kinematics);
+  stopOnSignals();
+  recorder::ForceServer server(motion ? &*motion : nullptr, settings);
+  fmt::print("a simulated force device, {} hand{}, at force:127.0.0.1:{}\n", o.hands, o.hands == "both" ? "s" : "",
+             server.port());
+  std::fflush(stdout);
+  server.run(stopRequested(), [](const std::string& line) {
+    fmt::print("{}\n", line);
+    std::fflush(stdout);
+  });
+  return 0;
+}
+
+CLI::App* addSimulateDevice(CLI::App& devices, Run& run) {
+  auto o = std::make_shared<SimulateOptions>();
+  CLI::App* command = devices.add_subcommand(
+      "simulate", "A simulated force device in a simulated hand on this machine, to try forces without a device.");
+  command->add_option(
+      "--kinematics", o->kinematics,
+      "what the hand intends: a two-handed motion file or a device script; default: it reaches out and back");
+  command->add_option("--port", o->settings.port, "0: any that is free")
+      ->check(CLI::Range(0, 65535))
+      ->capture_default_str();
+  command->add_option("--hands", o->hands, "left, right or both")
+      ->check(oneOf({"left", "right", "both"}))
+      ->capture_default_str();
+  command->add_option("--delay", o->delayMilliseconds, "before a force is shown, ms")
+      ->check(CLI::Range(0.0, 50.0))
+      ->capture_default_str();
+  command->add_flag("--once", o->settings.once, "end when the first client has gone");
+  command->callback([o, &run] { run = [o] { return simulate(*o); }; });
+  return command;
+}
 
 int listDevicesFound(bool asJson) {
   const std::vector<recorder::ListedDevice> devices = recorder::listDevices();

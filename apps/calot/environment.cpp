@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "apps/calot/environment.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
-
 #include <atomic>
 #include <charconv>
 #include <chrono>
+#include <csignal>
 #include <cstdio>
 #include <map>
 #include <system_error>
@@ -135,5 +136,16 @@ double parseTime(const std::string& text) {
 }
 
 void refuseExisting(const std::filesystem::path& file, bool force) { recorder::refuseOutput(file, force); }
+
+namespace {
+std::atomic<bool> requested{false};
+static_assert(std::atomic<bool>::is_always_lock_free);  // a signal's handler may do no more
+}  // namespace
+
+void stopOnSignals() {
+  for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { requested = true; });
+}
+
+std::atomic<bool>& stopRequested() { return requested; }
 
 }  // namespace calot::apps

@@ -8,12 +8,9 @@
 
 #include "apps/calot/commands.h"
 #include "apps/calot/environment.h"
-#include "apps/calot/golden_list.h"
-#include "apps/calot/golden_update.h"
-#include "apps/calot/golden_values.h"
+#include "apps/calot/golden_files.h"
 #include "apps/calot/replay_report.h"
 #include "apps/calot/results.h"
-#include "apps/calot/stop_request.h"
 #include "apps/common/exit_code.h"
 #include "recorder/base/errors.h"
 #include "recorder/base/text_output.h"

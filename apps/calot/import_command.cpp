@@ -14,7 +14,6 @@
 #include "analytics/motion_words.h"
 #include "apps/calot/commands.h"
 #include "apps/calot/environment.h"
-#include "apps/calot/metric_options.h"
 #include "apps/calot/motion_import.h"
 #include "apps/calot/results.h"
 #include "apps/calot/value_report.h"

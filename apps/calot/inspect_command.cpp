@@ -7,7 +7,7 @@
 #include <string>
 
 #include "apps/calot/commands.h"
-#include "apps/calot/hex.h"
+#include "apps/calot/environment.h"
 #include "apps/calot/inspect_text.h"
 #include "apps/calot/results.h"
 #include "apps/calot/terminal_text.h"

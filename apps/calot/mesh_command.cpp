@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // calot mesh: tetrahedra from a closed surface, with an honest report; repaired and coarser surfaces for scenes.
 #include <fmt/format.h>
-
+#include <algorithm>
+#include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 
-#include "apps/calot/coarse_surface.h"
 #include "apps/calot/commands.h"
 #include "apps/calot/results.h"
 #include "apps/calot/wrong_word.h"
@@ -15,9 +16,60 @@
 #include "recorder/base/text_output.h"
 #include "recorder/formats/mesh_file.h"
 #include "recorder/formats/mesh_report.h"
+#include "sim/geometry/isosurface_stuffing.h"
+#include "sim/geometry/mesh_to_count.h"
+#include "sim/geometry/triangle_mesh.h"
 
 namespace calot::apps {
 namespace {
+
+struct CoarseSurface {
+  std::string error;  ///< empty: the surface is good
+  TriangleMesh mesh;
+};
+
+/// A closed surface of about so many triangles: the boundary of a tetrahedral mesh (mesh_to_count.h) of the same
+/// volume within 1 %. Thin parts go as they do there.
+/// @param surface closed, outward, manifold
+[[nodiscard]] CoarseSurface coarseSurface(const TriangleMesh& surface, int triangles);
+
+/// Of the number that was asked for.
+constexpr double goodEnough = 0.1, acceptable = 0.3;
+constexpr int searches = 8;
+
+CoarseSurface coarseSurface(const TriangleMesh& surface, int triangles) {
+  CoarseSurface best;
+  if (triangles >= surface.triangles()) {
+    best.error = fmt::format("the surface has {} triangles; --surface-triangles makes it coarser, not finer",
+                             surface.triangles());
+    return best;
+  }
+  double wanted = std::clamp(0.3 * triangles, 12.0, static_cast<double>(maxTetrahedronCount));
+  double least = acceptable;
+  std::string fault;
+  for (int i = 0; i < searches; ++i) {
+    StuffedMesh stuffed = stuffToCount(surface, static_cast<int>(std::lround(wanted)));
+    if (!stuffed.ok()) {
+      fault = stuffed.error;
+      wanted *= 1.5;
+    } else {
+      TriangleMesh boundary = boundarySurface(stuffed.mesh);
+      const double ratio = static_cast<double>(boundary.triangles()) / triangles;
+      if (const double error = std::abs(ratio - 1.0); error < least) {
+        least = error;
+        best.mesh = std::move(boundary);
+      }
+      if (least <= goodEnough) break;
+      wanted *= std::pow(ratio, -1.5);  // area grows as the number of cells to the power of 2/3
+    }
+    wanted = std::clamp(wanted, 12.0, static_cast<double>(maxTetrahedronCount));
+  }
+  if (best.mesh.triangle.empty()) {
+    best.error = fmt::format("no closed surface of about {} triangles was found{}", triangles,
+                             fault.empty() ? "" : ": " + fault);
+  }
+  return best;
+}
 
 struct MeshOptions {
   std::string input;

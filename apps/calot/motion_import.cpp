@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "apps/calot/motion_import.h"
 
 #include <fmt/format.h>
-
+#include <algorithm>
+#include <cstddef>
+#include <cstdio>
+#include <filesystem>
 #include <iostream>
 #include <map>
 #include <set>
@@ -12,14 +16,71 @@
 #include "analytics/intake/enrolment.h"
 #include "analytics/intake/motion_manifest.h"
 #include "apps/calot/environment.h"
-#include "apps/calot/manifest_faults.h"
 #include "apps/calot/results.h"
 #include "apps/calot/value_report.h"
 #include "apps/common/advice.h"
+#include "apps/common/exit_code.h"
 #include "recorder/base/errors.h"
 #include "recorder/sources/kinematics_file.h"
 
 namespace calot::apps {
+
+CLI::Option* addMetrics(CLI::App& command, MetricOptions& options) {
+  CLI::Option* metric =
+      command
+          .add_option("--metric", options.files,
+                      "a Python script whose compute(attempt) gives a metric of your own; it runs with your rights")
+          ->type_size(1)
+          ->allow_extra_args(false);
+  command.add_option("--metric-seconds", options.limits.seconds, "what a script may take for one attempt (s)")
+      ->check(CLI::Range(1U, 86400U))
+      ->needs(metric)
+      ->capture_default_str();
+  command.add_option("--metric-memory", options.limits.mebibytes, "memory of a script, beyond its input (MiB)")
+      ->check(CLI::Range(256U, 1048576U))
+      ->needs(metric)
+      ->capture_default_str();
+  return metric;
+}
+
+std::vector<analytics::MetricScript> readMetrics(const MetricOptions& options) {
+  return analytics::readMetricScripts(
+      options.files, options.limits,
+      [](const std::string& script, const std::string& line) { fmt::print(stderr, "{}: {}\n", script, line); });
+}
+
+void checkMetrics(const std::vector<analytics::MetricScript>& metrics, const analytics::CohortDatabase& database) {
+  for (const analytics::MetricScript& script : metrics) {
+    try {
+      database.checkMetric(*script.metric());
+    } catch (const Error& e) {
+      if (e.kind() != ErrorKind::refused) throw;
+      throw Error(e.kind(), Where{script.file()}, e.fault(), e.remedies());
+    }
+  }
+}
+
+void checkMetrics(const std::vector<analytics::MetricScript>& metrics, const std::string& cohort) {
+  if (metrics.empty() || !std::filesystem::exists(cohort)) return;
+  checkMetrics(metrics, analytics::CohortDatabase(cohort, analytics::CohortDatabase::Access::write));
+}
+
+ExitCode reportFailures(const analytics::MetricOutcomes& outcomes, const std::string& attempt) {
+  std::vector<ExitCode> codes{ExitCode::yes};
+  for (const Error& e : outcomes.failures) {
+    Progress::erase();
+    fmt::print(stderr, "calot: {} (of {}; no value of it is stored)\n", messageOf(e), attempt);
+    codes.push_back(codeOf(e.kind()));
+  }
+  return worstOf(codes);
+}
+
+nlohmann::ordered_json failuresJson(const analytics::MetricOutcomes& outcomes) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const Error& e : outcomes.failures) list.push_back(messageOf(e));
+  return list;
+}
+
 namespace {
 
 /// "expert 6, novice 6", or empty without groups.
@@ -152,6 +213,18 @@ int importManifest(const ManifestOptions& o) {
   }
   std::cout.flush();
   for (const std::string& error : errors) fmt::print(stderr, "calot: {}\n", error);
+  return static_cast<int>(worstOf(codes));
+}
+
+int refuseRows(const std::vector<Error>& faults) {
+  constexpr std::size_t most = 20;
+  std::vector<ExitCode> codes;
+  codes.reserve(faults.size());
+  for (const Error& fault : faults) codes.push_back(codeOf(fault.kind()));
+  for (std::size_t i = 0; i < std::min(faults.size(), most); ++i)
+    fmt::print(stderr, "calot: {}\n", messageOf(faults[i]));
+  if (faults.size() > most)
+    fmt::print(stderr, "calot: and {} more wrong rows; nothing was stored\n", faults.size() - most);
   return static_cast<int>(worstOf(codes));
 }
 

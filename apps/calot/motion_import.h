@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What `calot import` does with each motion file, named on the command line or by a manifest.
+// Users' own metrics on the command line: options, and what is said of scripts that failed.
 #pragma once
 
+#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <functional>
 #include <nlohmann/json.hpp>
@@ -10,13 +12,35 @@
 #include <vector>
 
 #include "analytics/cohort/cohort_database.h"
+#include "analytics/external/metric_script.h"
 #include "analytics/import_motion.h"
-#include "apps/calot/metric_options.h"
 #include "apps/common/exit_code.h"
+#include "recorder/base/errors.h"
 #include "recorder/sources/column_map.h"
 #include "recorder/sources/tracked_motion.h"
 
 namespace calot::apps {
+
+struct MetricOptions {
+  std::vector<std::string> files;
+  analytics::ScriptLimits limits;
+};
+
+/// Adds --metric, --metric-seconds, --metric-memory. @param options outlives the parsing.
+CLI::Option* addMetrics(CLI::App& command, MetricOptions& options);
+
+/// The scripts, run once for their declarations; what they print goes to stderr, a line with the script's name.
+std::vector<analytics::MetricScript> readMetrics(const MetricOptions& options);
+
+/// @throws Error (refused) naming the script where the cohort has its version with another source.
+void checkMetrics(const std::vector<analytics::MetricScript>& metrics, const analytics::CohortDatabase& database);
+/// The same of a cohort that will be written to; nothing to check where there is none yet.
+void checkMetrics(const std::vector<analytics::MetricScript>& metrics, const std::string& cohort);
+
+/// Prints each failure on stderr. @return the exit code of all
+ExitCode reportFailures(const analytics::MetricOutcomes& outcomes, const std::string& attempt);
+/// The same as texts.
+nlohmann::ordered_json failuresJson(const analytics::MetricOutcomes& outcomes);
 
 /// What came of one file.
 struct ImportedFile {
@@ -55,5 +79,8 @@ struct ManifestOptions {
 
 /// `calot import --manifest`. @return the exit code
 int importManifest(const ManifestOptions& options);
+
+/// One line on stderr for each wrong row of a manifest, of at most twenty. @return the exit code
+int refuseRows(const std::vector<Error>& faults);
 
 }  // namespace calot::apps

@@ -10,7 +10,7 @@
 #include "analytics/assessment/pack_answers.h"
 #include "analytics/intake/rating_manifest.h"
 #include "apps/calot/environment.h"
-#include "apps/calot/manifest_faults.h"
+#include "apps/calot/motion_import.h"
 #include "apps/calot/results.h"
 #include "apps/common/exit_code.h"
 

@@ -1,34 +1,146 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // calot rate pack: films and a form for raters who know neither whose attempt they see nor its group.
 #include <fmt/format.h>
-
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <iostream>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
+#include <string>
 #include <system_error>
 #include <vector>
 
 #include "analytics/assessment/rating_form.h"
+#include "analytics/cohort/cohort_database.h"
 #include "analytics/cohort/rating_packs.h"
 #include "analytics/cohort/withdraw.h"
+#include "analytics/intake/manifest_table.h"
 #include "analytics/interchange/folder_output.h"
 #include "analytics/report/rater_page.h"
 #include "apps/calot/cohort_option.h"
 #include "apps/calot/environment.h"
-#include "apps/calot/pack_films.h"
 #include "apps/calot/rate_files.h"
-#include "apps/calot/stop_request.h"
 #include "apps/common/exit_code.h"
 #include "gui/film/clean_film.h"
 #include "gui/film/film.h"
 #include "recorder/base/errors.h"
+#include "recorder/base/text_words.h"
+#include "recorder/recording/probe.h"
+#include "recorder/recording/reader.h"
 
 namespace calot::apps {
 namespace {
+
+/// Where the film of an attempt comes from.
+struct FilmOrigin {
+  std::string attempt;  ///< uuid
+  std::filesystem::path file;
+  bool isRecording = false;  ///< to be rendered
+};
+
+/// Films of attempts.
+/// @param films a folder, in which a film has the uuid or the name of the recording or motion file (`.mp4`, `.mkv`,
+/// `.webm`, `.mov`), and recordings without a film are rendered; or a CSV table with the columns `attempt` and `film`
+/// @param chosen uuids or their beginnings; empty: every attempt that is not excluded, or every row of the table
+/// @throws calot::Error (damaged) for an attempt without film, or a wrong row; (refused) for an attempt that is not
+/// there
+std::vector<FilmOrigin> findFilms(const analytics::CohortDatabase& cohort, const std::filesystem::path& films,
+                                  const std::vector<std::string>& chosen);
+
+namespace fs = std::filesystem;
+using analytics::AttemptRow;
+
+/// Whether a file is a recording of this attempt.
+bool isRecordingOf(const fs::path& file, const std::string& attempt) {
+  std::error_code ignored;
+  if (file.extension() != ".h5" || !fs::is_regular_file(file, ignored)) return false;
+  recorder::probe(file);
+  return recorder::Recording(file).header().attempt == attempt;
+}
+
+std::optional<FilmOrigin> filmIn(const fs::path& folder, const AttemptRow& attempt) {
+  std::error_code ignored;
+  const std::string stem = fs::path(attempt.fileName).stem().string();
+  for (const std::string& name : {attempt.uuid, stem}) {
+    for (const char* ending : {".mp4", ".mkv", ".webm", ".mov"}) {
+      const fs::path film = folder / (name + ending);
+      if (!name.empty() && fs::is_regular_file(film, ignored)) return FilmOrigin{attempt.uuid, film, false};
+    }
+  }
+  const fs::path recording = folder / attempt.fileName;
+  if (isRecordingOf(recording, attempt.uuid)) return FilmOrigin{attempt.uuid, recording, true};
+  return std::nullopt;
+}
+
+std::vector<std::string> attemptsOf(const analytics::CohortDatabase& cohort, const std::vector<std::string>& chosen) {
+  std::vector<std::string> uuids;
+  std::set<std::string> seen;
+  for (const std::string& name : chosen) {
+    uuids.push_back(cohort.attemptNamed(name));
+    if (!seen.insert(uuids.back()).second)
+      throw Error(ErrorKind::invalid, fmt::format("rate: attempt {} is named twice", uuids.back()));
+  }
+  if (chosen.empty()) {
+    for (const AttemptRow& a : cohort.listAttempts()) {
+      if (!a.excluded) uuids.push_back(a.uuid);
+    }
+  }
+  return uuids;
+}
+
+std::vector<FilmOrigin> filmsInTable(const analytics::CohortDatabase& cohort, const fs::path& path,
+                                     const std::vector<std::string>& chosen) {
+  const analytics::ManifestTable table(analytics::readCsvTable(path.string()), {"attempt", "film"});
+  std::map<std::string, FilmOrigin> films;
+  std::vector<std::string> order;
+  for (const analytics::CsvRow& row : table.rows()) {
+    const fs::path film = table.fileNamed(table.cell(row, "film"));
+    std::error_code ignored;
+    if (!fs::is_regular_file(film, ignored)) {
+      throw table.fault(row, "film",
+                        fmt::format("there is no file \"{}\"; paths are relative to the table",
+                                    recorder::shown(table.cell(row, "film"))));
+    }
+    std::string uuid;
+    try {
+      uuid = cohort.attemptNamed(table.cell(row, "attempt"));
+    } catch (const Error& e) {
+      throw table.fault(row, "attempt", e.fault());
+    }
+    if (!films.emplace(uuid, FilmOrigin{uuid, film, isRecordingOf(film, uuid)}).second)
+      throw table.fault(row, "attempt", "has a film in a row before; remove one");
+    order.push_back(uuid);
+  }
+  std::vector<FilmOrigin> found;
+  for (const std::string& uuid : chosen.empty() ? order : attemptsOf(cohort, chosen)) {
+    const auto at = films.find(uuid);
+    if (at == films.end())
+      throw Error(ErrorKind::damaged, Where{path.string()}, fmt::format("has no film of attempt {}", uuid));
+    found.push_back(at->second);
+  }
+  return found;
+}
+
+std::vector<FilmOrigin> findFilms(const analytics::CohortDatabase& cohort, const fs::path& films,
+                                  const std::vector<std::string>& chosen) {
+  std::error_code ignored;
+  if (!fs::is_directory(films, ignored)) return filmsInTable(cohort, films, chosen);
+  std::vector<FilmOrigin> found;
+  for (const std::string& uuid : attemptsOf(cohort, chosen)) {
+    const std::optional<FilmOrigin> film = filmIn(films, *cohort.attempt(uuid));
+    if (!film) {
+      throw Error(ErrorKind::damaged, Where{films.string()},
+                  fmt::format("there is neither a film nor the recording of attempt {} ({}); add it, or leave the "
+                              "attempt out with --attempts",
+                              uuid, recorder::shown(cohort.attempt(uuid)->fileName)));
+    }
+    found.push_back(*film);
+  }
+  return found;
+}
 
 namespace fs = std::filesystem;
 

@@ -8,7 +8,6 @@
 #include "analytics/cohort/withdraw.h"
 #include "apps/calot/commands.h"
 #include "apps/calot/environment.h"
-#include "apps/calot/stop_request.h"
 #include "apps/calot/wrong_word.h"
 #include "gui/film/film.h"
 #include "recorder/base/errors.h"

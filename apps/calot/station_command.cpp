@@ -7,7 +7,7 @@
 #include <string>
 
 #include "apps/calot/commands.h"
-#include "apps/calot/hex.h"
+#include "apps/calot/environment.h"
 #include "apps/common/exit_code.h"
 #include "recorder/base/errors.h"
 #include "recorder/recording/station_key.h"
