@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "analytics/checkpoints/definition.h"
-#include "analytics/checkpoints/external_metric.h"
 #include "analytics/checkpoints/scene_facts.h"
 #include "recorder/base/identity.h"
 #include "recorder/engine/observer.h"

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "analytics/checkpoints/gap_bridge.h"
+#include "analytics/checkpoints/motion.h"
 
 namespace calot::analytics {
 namespace {

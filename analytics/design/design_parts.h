@@ -10,7 +10,6 @@
 
 #include "analytics/design/design_report.h"
 #include "analytics/statistics/expected.h"
-#include "analytics/statistics/interval.h"
 
 namespace calot::analytics {
 

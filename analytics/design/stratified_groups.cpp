@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "analytics/design/design_parts.h"
-#include "analytics/statistics/stratified_rank_sum.h"
+#include "analytics/statistics/two_groups.h"
 
 namespace calot::analytics {
 

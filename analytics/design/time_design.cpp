@@ -4,8 +4,7 @@
 
 #include "analytics/design/design_parts.h"
 #include "analytics/design/line_plot.h"
-#include "analytics/statistics/censored_times.h"
-#include "analytics/statistics/kaplan_meier.h"
+#include "analytics/statistics/survival.h"
 #include "recorder/base/errors.h"
 
 namespace calot::analytics {

@@ -5,7 +5,6 @@
 #include <span>
 
 #include "analytics/statistics/expected.h"
-#include "analytics/statistics/interval.h"
 
 namespace calot::analytics {
 

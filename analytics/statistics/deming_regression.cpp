@@ -7,7 +7,6 @@
 
 #include "analytics/statistics/descriptive.h"
 #include "analytics/statistics/distributions.h"
-#include "analytics/statistics/samples.h"
 
 namespace calot::analytics {
 namespace {

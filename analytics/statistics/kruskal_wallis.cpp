@@ -3,10 +3,10 @@
 
 #include <cmath>
 
+#include "analytics/statistics/descriptive.h"
 #include "analytics/statistics/distributions.h"
 #include "analytics/statistics/multiplicity.h"
-#include "analytics/statistics/rank_sum_distribution.h"
-#include "analytics/statistics/samples.h"
+#include "analytics/statistics/two_groups.h"
 
 namespace calot::analytics {
 namespace {

@@ -6,9 +6,9 @@
 #include <numeric>
 #include <vector>
 
+#include "analytics/statistics/descriptive.h"
 #include "analytics/statistics/distributions.h"
-#include "analytics/statistics/rank_sum_distribution.h"
-#include "analytics/statistics/samples.h"
+#include "analytics/statistics/two_groups.h"
 
 namespace calot::analytics {
 namespace {

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "analytics/assessment/angoff_judges.h"
+#include "analytics/assessment/norm_rule.h"
 #include "analytics/report/report_document.h"
 #include "apps/calot/results.h"
 #include "apps/common/exit_code.h"

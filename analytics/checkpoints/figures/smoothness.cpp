@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <span>
 
-#include "analytics/checkpoints/gap_bridge.h"
 #include "analytics/checkpoints/hand_motion.h"
+#include "analytics/checkpoints/motion.h"
 #include "analytics/checkpoints/movements.h"
 #include "analytics/checkpoints/smoothness.h"
 
