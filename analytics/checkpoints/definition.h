@@ -34,23 +34,22 @@ std::string nameOf(Finality finality);        ///< "running", "final"
 
 /// What a checkpoint declares of itself.
 struct CheckpointDefinition {
-  std::string name;            ///< "path-length": key in the database, never reused for another meaning
-  std::string title;           ///< "Path length of the instrument's tip"
-  std::string unit;            ///< SI, of stored values: "s", "m", "N", "1"
-  std::string displayUnit;     ///< at the edges: "mm"
-  double displayFactor = 1.0;  ///< displayed = stored * displayFactor
+  std::string name = {};         ///< "path-length": key in the database, never reused for another meaning
+  std::string title = {};        ///< "Path length of the instrument's tip"
+  std::string unit = {};         ///< SI, of stored values: "s", "m", "N", "1"
+  std::string displayUnit = {};  ///< at the edges: "mm"
+  double displayFactor = 1.0;    ///< displayed = stored * displayFactor
   Direction direction = Direction::none;
-  std::string window;  ///< part of the attempt that is covered: "whole attempt"
+  std::string window = {};  ///< part of the attempt that is covered: "whole attempt"
   Aggregation aggregation = Aggregation::attempt;
-  std::string
-      instruments;     ///< how several instruments are joined: "each hand by itself", "union over instruments", ...
-  std::string filter;  ///< resampling and filter with all their constants, or "none"
-  double minCoverage = 0.0;     ///< share of the window that samples must cover for a value; 0: not of samples
-  std::vector<Origin> origins;  ///< allowed ones
+  std::string instruments = {};      ///< how several are joined: "each hand by itself", "union over instruments", ...
+  std::string filter = {};           ///< resampling and filter with all their constants, or "none"
+  double minCoverage = 0.0;          ///< share of the window that samples must cover for a value; 0: not of samples
+  std::vector<Origin> origins = {};  ///< allowed ones
   Finality finality = Finality::running;
-  std::uint32_t version = 1;  ///< changes whenever a value may change
-  std::string definition;     ///< the formula in words and symbols, one line
-  std::string paperReading;   ///< which figure of the paper's Table 2 it answers to and how it reads it; or empty
+  std::uint32_t version = 1;      ///< changes whenever a value may change
+  std::string definition = {};    ///< the formula in words and symbols, one line
+  std::string paperReading = {};  ///< which figure of the paper's Table 2 it answers to and how it reads it; or empty
   /// Why a study shows the figure apart and doesn't test it ("it describes the tracker"); empty: it is an outcome.
   std::string notOutcome = {};
 };

@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Smoothness of the tip's motion: spectral arc length, and log dimensionless jerk of the whole and of its movements.
-#include "analytics/checkpoints/checkpoint.h"
+#include "analytics/checkpoints/smoothness.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <span>
 
+#include "analytics/checkpoints/figures/rows.h"
 #include "analytics/checkpoints/hand_motion.h"
-#include "analytics/checkpoints/motion.h"
 #include "analytics/checkpoints/movements.h"
-#include "analytics/checkpoints/smoothness.h"
 
 namespace calot::analytics {
 namespace {
@@ -20,38 +19,6 @@ constexpr double minSegment = 1.0;
 /// SPARC's upper frequency follows the spectrum's tail, which a bridge lowers, a long one more than short ones that
 /// lose as much (s): docs/reference/metrics/samples.md has the simulation.
 constexpr double minSparcCoverage = 0.95, maxSparcBridge = 0.5;
-
-const CheckpointDefinition& sparcDefinition() {
-  static const CheckpointDefinition d = [] {
-    CheckpointDefinition arc = motionDefinition(
-        "sparc", "Spectral arc length (SPARC)", "1", Direction::higher,
-        "-sum sqrt((df / (fc - f0))^2 + dM^2) from f0 to fc, the first and last frequency, at most 10 Hz, with M >= "
-        "0.05; "
-        "M the amplitude spectrum of v as a share of M(0 Hz), zeros added up to 2^(ceil(log2 n) + 4) values; v as in "
-        "speed-mean; of segments of 1 s or longer, averaged by their length; bridged gaps "
-        "lose at most 0.5 s each");
-    arc.minCoverage = minSparcCoverage;
-    arc.version = 3;
-    return arc;
-  }();
-  return d;
-}
-
-const CheckpointDefinition& jerkDefinition() {
-  static const CheckpointDefinition d = motionDefinition(
-      "log-dimensionless-jerk", "Log dimensionless jerk (LDLJ of the speed profile)", "1", Direction::higher,
-      "-ln(T^3 / v_peak^2 * sum (v'')^2 dt), v'' = (v(k+1) - 2 v(k) + v(k-1)) / dt^2, T = n dt, v as in speed-mean; of "
-      "segments of 1 s or longer, averaged by their length");
-  return d;
-}
-
-const CheckpointDefinition& movementDefinition() {
-  static const CheckpointDefinition d = motionDefinition(
-      "movement-jerk", "Log dimensionless jerk of a movement (mean)", "1", Direction::higher,
-      "mean over movements of log-dimensionless-jerk of each; movements as in movements, and outwards to where v "
-      "stops falling or falls below 5 mm/s");
-  return d;
-}
 
 using OfSpeed = std::optional<double> (*)(std::span<const double>, double);
 
@@ -148,18 +115,43 @@ Measured jerkOfMovements(const Motion& motion) {
 
 }  // namespace
 
-std::vector<CheckpointEntry> smoothnessEntries() {
-  return {{{CheckpointFamily::motion, 100},
-           sparcDefinition(),
-           [](const AttemptContext&) { return perHand(sparcDefinition(), sparc); }},
-          phaseMotionEntry<sparcDefinition, sparc>(80, 3),
-          {{CheckpointFamily::motion, 110},
-           jerkDefinition(),
-           [](const AttemptContext&) { return perHand(jerkDefinition(), jerk); }},
-          phaseMotionEntry<jerkDefinition, jerk>(90),
-          {{CheckpointFamily::motion, 120}, movementDefinition(), [](const AttemptContext&) {
-             return perHand(movementDefinition(), jerkOfMovements);
-           }}};
+std::vector<CheckpointEntry> smoothnessRows() {
+  const CheckpointEntry arc = perHand(
+      {.place = {CheckpointFamily::motion, 100},
+       .definition = {.name = "sparc",
+                      .title = "Spectral arc length (SPARC)",
+                      .unit = "1",
+                      .direction = Direction::higher,
+                      .minCoverage = minSparcCoverage,
+                      .version = 3,
+                      .definition = "-sum sqrt((df / (fc - f0))^2 + dM^2) from f0 to fc, the first and last frequency, "
+                                    "at most 10 Hz, with M >= 0.05; M the amplitude spectrum of v as a share of M(0 "
+                                    "Hz), zeros added up to 2^(ceil(log2 n) + 4) values; v as in speed-mean; of "
+                                    "segments of 1 s or longer, averaged by their length; bridged gaps lose at most "
+                                    "0.5 s each"}},
+      sparc);
+  const CheckpointEntry whole = perHand(
+      {.place = {CheckpointFamily::motion, 110},
+       .definition = {.name = "log-dimensionless-jerk",
+                      .title = "Log dimensionless jerk (LDLJ of the speed profile)",
+                      .unit = "1",
+                      .direction = Direction::higher,
+                      .version = 2,
+                      .definition = "-ln(T^3 / v_peak^2 * sum (v'')^2 dt), v'' = (v(k+1) - 2 v(k) + v(k-1)) / dt^2, T "
+                                    "= n dt, v as in speed-mean; of segments of 1 s or longer, averaged by their "
+                                    "length"}},
+      jerk);
+  const CheckpointEntry movements = perHand(
+      {.place = {CheckpointFamily::motion, 120},
+       .definition = {.name = "movement-jerk",
+                      .title = "Log dimensionless jerk of a movement (mean)",
+                      .unit = "1",
+                      .direction = Direction::higher,
+                      .version = 2,
+                      .definition = "mean over movements of log-dimensionless-jerk of each; movements as in movements, "
+                                    "and outwards to where v stops falling or falls below 5 mm/s"}},
+      jerkOfMovements);
+  return {arc, perHandAndPhase(arc, 80, sparc, 3), whole, perHandAndPhase(whole, 90, jerk), movements};
 }
 
 }  // namespace calot::analytics
