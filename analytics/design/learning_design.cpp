@@ -5,9 +5,8 @@
 #include <algorithm>
 #include <map>
 
-#include "analytics/design/design_parts.h"
+#include "analytics/design/design_report.h"
 #include "analytics/design/learning_curves.h"
-#include "analytics/design/line_plot.h"
 #include "analytics/statistics/cusum.h"
 #include "analytics/statistics/survival.h"
 #include "recorder/base/errors.h"

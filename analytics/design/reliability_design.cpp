@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <map>
 
-#include "analytics/design/design_parts.h"
+#include "analytics/design/design_report.h"
 #include "analytics/report/report_text.h"
 #include "analytics/statistics/reliability.h"
 #include "recorder/base/errors.h"

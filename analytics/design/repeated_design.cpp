@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "analytics/design/design_parts.h"
+#include "analytics/design/design_report.h"
 #include "analytics/statistics/mixed_models.h"
 
 namespace calot::analytics {

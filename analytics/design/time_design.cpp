@@ -2,8 +2,7 @@
 // Times of attempts of which some were not finished.
 #include <fmt/format.h>
 
-#include "analytics/design/design_parts.h"
-#include "analytics/design/line_plot.h"
+#include "analytics/design/design_report.h"
 #include "analytics/statistics/survival.h"
 #include "recorder/base/errors.h"
 

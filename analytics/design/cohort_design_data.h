@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where the attempts of a cohort stand in a design: whose, at which occasion, and which number of that person.
+// A cohort's attempts as a design needs them: whose, at which occasion, which number of that person, and their figures:
+// checkpoints, times to the end, ratings.
 #pragma once
 
 #include <cstddef>
@@ -32,5 +33,17 @@ std::string stratumOf(const AttemptRow& attempt, const std::string& strata);
 /// rule.
 PlacedAttempts placeAttempts(DesignData& data, const std::vector<const AttemptRow*>& taken, const StudyOptions& options,
                              const DesignChoices& choices, const std::string& name);
+
+/// Checkpoints that are outcomes or asked for, in the registry's order. @throws Error (refused) for values of several
+/// versions of a checkpoint, unless these are mixed.
+void addFigures(DesignData& data, const std::vector<AttemptValue>& values, const PlacedAttempts& placed,
+                const StudyOptions& options, const DesignChoices& choices, const std::string& name);
+
+/// The elapsed time alone; an attempt that was not completed is followed as long as it lasted.
+void keepTimes(DesignData& data, const std::vector<AttemptValue>& values, const PlacedAttempts& placed);
+
+/// Ratings by a form: mean of its items and of its raters, and of each rater of a participant's first rated attempt.
+void addForm(DesignData& data, const RatingForm& form, const std::vector<Rating>& ratings,
+             const PlacedAttempts& placed);
 
 }  // namespace calot::analytics
