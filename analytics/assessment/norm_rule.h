@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "analytics/cohort/assessment_database.h"
-#include "analytics/report/csv_reader.h"
 #include "analytics/statistics/standard_setting.h"
+#include "recorder/base/csv.h"
 
 namespace calot::analytics {
 

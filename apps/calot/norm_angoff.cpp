@@ -23,7 +23,7 @@ struct AngoffOptions {
 
 int judgeByAngoff(const AngoffOptions& o) {
   using Align = analytics::TextTable::Align;
-  const analytics::AngoffJudgement a = analytics::readAngoff(analytics::readCsvTable(o.table));
+  const analytics::AngoffJudgement a = analytics::readAngoff(readCsvTable(o.table));
   const double judges = static_cast<double>(a.judges.size());
   analytics::ReportTable table{
       "Probability that a borderline trainee passes",

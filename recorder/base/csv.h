@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A table of text from elsewhere, read without trust: RFC 4180, a header line, commas or semicolons.
+// Reads tables of text from elsewhere, without trust: RFC 4180, a header line. csv_writer.h writes them.
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
-namespace calot::analytics {
+namespace calot {
 
 struct CsvRow {
   std::size_t line = 0;  ///< where it begins, from 1
@@ -34,4 +35,20 @@ CsvTable readCsvTable(const std::string& path);
 /// The same of text at hand.
 CsvTable parseCsvTable(std::string_view text, const std::string& path);
 
-}  // namespace calot::analytics
+/// Numbers of some columns of a long CSV file.
+struct CsvNumbers {
+  std::vector<std::vector<double>> column;  ///< one for each wanted name; all as long
+  std::vector<std::size_t> line;            ///< of each row in the file, from 1
+};
+
+/// Reads the wanted columns of a CSV file: a line of names, then one row a line. Cells may have blanks around them,
+/// names may stand in double quotes; other columns may hold anything but the delimiter. Locale plays no part.
+/// @param file the name that messages use.
+/// @param delimiter a comma, a semicolon or a tab.
+/// @throws Error (damaged) naming file and line: no names, a name that is wanted and missing or there twice, a row with
+/// other than so many cells (one that was cut off), a wanted cell that is no finite number, an empty line between rows,
+/// no row, more than a million rows.
+CsvNumbers readCsvNumbers(std::span<const std::byte> bytes, const std::string& file, char delimiter,
+                          std::span<const std::string> wanted);
+
+}  // namespace calot
