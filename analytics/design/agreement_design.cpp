@@ -10,9 +10,8 @@
 
 #include "analytics/design/design_report.h"
 #include "analytics/report/report_text.h"
-#include "analytics/statistics/bland_altman.h"
-#include "analytics/statistics/deming_regression.h"
-#include "analytics/statistics/spearman.h"
+#include "analytics/statistics/method_agreement.h"
+#include "analytics/statistics/rank_tests.h"
 #include "recorder/base/errors.h"
 
 namespace calot::analytics {

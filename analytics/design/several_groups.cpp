@@ -4,7 +4,7 @@
 
 #include "analytics/design/design_report.h"
 #include "analytics/statistics/descriptive.h"
-#include "analytics/statistics/kruskal_wallis.h"
+#include "analytics/statistics/rank_tests.h"
 #include "analytics/statistics/two_groups.h"
 
 namespace calot::analytics {

@@ -21,8 +21,8 @@
 #include "analytics/statistics/descriptive.h"
 #include "analytics/statistics/effect_sizes.h"
 #include "analytics/statistics/expected.h"
+#include "analytics/statistics/rank_tests.h"
 #include "analytics/statistics/regression.h"
-#include "analytics/statistics/spearman.h"
 #include "analytics/statistics/two_groups.h"
 
 namespace calot::analytics {

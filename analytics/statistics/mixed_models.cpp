@@ -11,7 +11,6 @@
 #include "analytics/statistics/descriptive.h"
 #include "analytics/statistics/distributions.h"
 #include "analytics/statistics/regression.h"
-#include "analytics/statistics/roots.h"
 
 namespace calot::analytics {
 namespace {

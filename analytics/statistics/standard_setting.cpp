@@ -10,7 +10,6 @@
 #include "analytics/statistics/distributions.h"
 #include "analytics/statistics/regression.h"
 #include "analytics/statistics/resampling.h"
-#include "analytics/statistics/roots.h"
 
 namespace calot::analytics {
 namespace {

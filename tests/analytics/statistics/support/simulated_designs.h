@@ -7,11 +7,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "analytics/statistics/bland_altman.h"
-#include "analytics/statistics/deming_regression.h"
+#include "analytics/statistics/method_agreement.h"
+#include "analytics/statistics/rank_tests.h"
 #include "analytics/statistics/reliability.h"
 #include "analytics/statistics/resampling.h"
-#include "analytics/statistics/spearman.h"
 #include "analytics/statistics/standard_setting.h"
 
 namespace calot::analytics::simulated {
