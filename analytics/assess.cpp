@@ -11,7 +11,6 @@
 #include <utility>
 
 #include "analytics/checkpoints/collector.h"
-#include "analytics/checkpoints/from_observables.h"
 #include "analytics/checkpoints/registry.h"
 #include "analytics/external/metric_input.h"
 #include "analytics/report/report_text.h"

@@ -5,7 +5,7 @@
 
 #include <cassert>
 
-#include "analytics/checkpoints/from_samples.h"
+#include "analytics/checkpoints/collector.h"
 #include "analytics/external/metric_input.h"
 #include "recorder/attempt.h"
 

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Making a norm: who is in it, who of them is competent, and the pass mark of every figure by contrasting groups.
+// Makes a norm: who is in it, who of them is competent, and the pass mark of every figure, by contrasting groups or by
+// borderline regression on raters' scores.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -14,6 +16,7 @@
 #include "analytics/cohort/assessment_database.h"
 #include "analytics/cohort/cohort_database.h"
 #include "analytics/report/study.h"
+#include "analytics/statistics/expected.h"
 
 namespace calot::analytics {
 
@@ -74,5 +77,24 @@ bool isByBorderline(const Norm& norm);
 
 /// How many of the rule's figures must be passed: leastPassed, or all of them.
 std::size_t neededPasses(const Norm& norm);
+
+/// Group names of members by their rating.
+inline constexpr const char* atMarkGroup = "at the mark or above";
+inline constexpr const char* belowMarkGroup = "below the mark";
+
+/// Attempts' ratings with a form: the mean of the items that a rater answered, of several raters the mean of these.
+std::map<std::string, double> meanRatings(const std::vector<Rating>& ratings, const std::string& form);
+
+/// The attempts with a group by their rating: at the borderline mark one is competent; of a participant the first that
+/// was rated. Others have no group. @throws Error (refused) where no attempt was rated with the form.
+std::vector<AttemptRow> groupedByRating(std::vector<AttemptRow> attempts, const std::map<std::string, double>& ratings,
+                                        const BorderlineMark& borderline, const std::string& name);
+
+/// Cut with its interval, of times on the log scale.
+struct RegressionCut {
+  double cut = 0.0, lower = 0.0, upper = 0.0;
+};
+Expected<RegressionCut> borderlineCut(const std::vector<double>& ratings, const std::vector<double>& values,
+                                      double mark, Direction direction, bool logScale);
 
 }  // namespace calot::analytics

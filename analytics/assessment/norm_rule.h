@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which figures count in a norm's rule, and pass marks that a person sets.
+// Which figures count in a norm's rule, and pass marks set by people: fixed ones and judges' (Angoff).
 #pragma once
 
 #include <string>
@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "analytics/cohort/assessment_database.h"
+#include "analytics/statistics/standard_setting.h"
+#include "recorder/base/csv.h"
 
 namespace calot::analytics {
 
@@ -38,5 +40,18 @@ bool keepsRule(const Norm& norm, const std::vector<bool>& passed);
 
 /// Warning that names figures of harm which do not count, since they have no pass mark; or empty.
 std::string uncountedWarning(const Norm& norm);
+
+/// Judges' probabilities that a borderline trainee passes each figure, and the pass mark.
+struct AngoffJudgement {
+  std::vector<std::string> judges, items;
+  RatingTable probabilities;  ///< a row a judge
+  AngoffCut cut;
+  std::size_t needed = 0;  ///< least whole number of items at or above the cut
+};
+
+/// Of a table with a column "judge" and a column for each item.
+/// @throws Error (invalid) without such a column; Error (damaged), naming line and column, for a judge without a name
+/// or named twice, and a cell that is no probability; Error (refused) where there is no cut.
+AngoffJudgement readAngoff(const CsvTable& table);
 
 }  // namespace calot::analytics

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "analytics/assessment/declared_document.h"
-#include "analytics/statistics/repeated_attempts.h"
+#include "analytics/statistics/descriptive.h"
 #include "recorder/base/json_reader.h"
 #include "recorder/engine/observer.h"
 

@@ -1,19 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a checkpoint is: one figure of an attempt (or one per hand, or one per organ), computed from the stream of
-// steps. docs/reference/metrics.md gives the formula, source and pitfalls of each; a test holds it against the
+// A checkpoint is one figure of an attempt (or one per hand, or one per organ), computed from the stream of steps.
+// docs/reference/metrics.md gives the formula, source and pitfalls of each; a test holds it against the
 // registry.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "analytics/checkpoints/definition.h"
-#include "analytics/checkpoints/external_metric.h"
 #include "analytics/checkpoints/scene_facts.h"
 #include "recorder/base/identity.h"
 #include "recorder/engine/observer.h"
@@ -59,6 +61,28 @@ struct AttemptContext {
   bool procedure = false;               ///< the scene has a procedure
   std::string handedness = "unknown";   ///< as recorded: "right", "left", "unknown"
   SceneFacts scene;
+
+  /// How long so many steps last (s).
+  [[nodiscard]] double seconds(std::uint64_t steps) const {
+    return static_cast<double>(steps * ticksPerStep) * tickSeconds;
+  }
+  [[nodiscard]] double stepSeconds() const { return tickSeconds * static_cast<double>(ticksPerStep); }
+};
+
+/// A figure, or why there is none.
+struct Measured {
+  std::optional<double> value = {};
+  Availability missing = Availability::notApplicable;
+  std::string reason = {};
+  std::string note = {};
+  std::optional<double> coverage = {};  ///< MotionCoverage::share()
+
+  static Measured of(double figure, std::string note = {}) {
+    return {.value = figure, .missing = Availability::value, .note = std::move(note)};
+  }
+  static Measured none(Availability missing, std::string why) { return {.missing = missing, .reason = std::move(why)}; }
+  static Measured notApplicable(std::string why) { return none(Availability::notApplicable, std::move(why)); }
+  static Measured notAvailable(std::string why) { return none(Availability::notAvailable, std::move(why)); }
 };
 
 /// Empty when results of `needed` or later are there; else why a checkpoint that reads them is not applicable.
@@ -88,17 +112,66 @@ struct AttemptEnd {
   const PhaseForceTrack* phaseForce = nullptr;  ///< the same of each phase, never null
 };
 
-/// One running computation of one definition over one attempt. Deterministic contract: IEEE + - * / sqrt in
-/// source-fixed order, so that a replay gives the bits that the live run gave.
-class Checkpoint {
+/// What a figure is computed in, step by step. Deterministic contract: IEEE + - * / sqrt in source-fixed order, so that
+/// a replay gives the bits that the live run gave. accumulating() makes one of a plain struct.
+class Accumulator {
  public:
-  virtual ~Checkpoint() = default;
-  /// Called once per step, in order, with what was judged of it. Motion and haptic forces are collected once for all:
-  /// AttemptEnd has them.
-  virtual void onStep(const recorder::StepRecord& record, const Judgement& judgement);
-  /// The figures so far: one per subject, in the order of hands or organs. May be called more than once.
-  [[nodiscard]] virtual std::vector<CheckpointValue> values(const AttemptEnd& end) const = 0;
+  virtual ~Accumulator() = default;
+  virtual void add(const recorder::StepRecord& record, const Judgement& judgement) = 0;
+  /// The figure so far of one of the row's subjects.
+  [[nodiscard]] virtual Measured figure(const AttemptEnd& end, std::size_t subject,
+                                        const CheckpointDefinition& definition) const = 0;
 };
+using AccumulatorMaker = std::function<std::unique_ptr<Accumulator>(const AttemptContext& context)>;
+
+/// An accumulator by a struct A that has
+/// - add(result), add(record) or add(record, judgement), called once per step, in order; or none of them: motion and
+///   haptic forces are collected once for all (AttemptEnd);
+/// - figure(), figure(end), figure(subject), figure(end, subject) or figure(end, subject, definition).
+template <class A>
+class AccumulatorOf final : public Accumulator {
+ public:
+  explicit AccumulatorOf(A accumulator) : a_(std::move(accumulator)) {}
+
+  void add(const recorder::StepRecord& record, const Judgement& judgement) override {
+    if constexpr (requires(A & a) { a.add(record, judgement); }) {
+      a_.add(record, judgement);
+    } else if constexpr (requires(A & a) { a.add(record); }) {
+      a_.add(record);
+    } else if constexpr (requires(A & a) { a.add(record.result); }) {
+      a_.add(record.result);
+    }
+  }
+  [[nodiscard]] Measured figure(const AttemptEnd& end, std::size_t subject,
+                                const CheckpointDefinition& definition) const override {
+    if constexpr (requires(const A& a) { a.figure(end, subject, definition); }) {
+      return a_.figure(end, subject, definition);
+    } else if constexpr (requires(const A& a) { a.figure(end, subject); }) {
+      return a_.figure(end, subject);
+    } else if constexpr (requires(const A& a) { a.figure(subject); }) {
+      return a_.figure(subject);
+    } else if constexpr (requires(const A& a) { a.figure(end); }) {
+      return a_.figure(end);
+    } else {
+      return a_.figure();
+    }
+  }
+
+ private:
+  A a_;
+};
+
+/// Makes A{context, arguments...}; without arguments A{}, where that is possible.
+template <class A, class... Arguments>
+AccumulatorMaker accumulating(Arguments... arguments) {
+  return [arguments...](const AttemptContext& context) -> std::unique_ptr<Accumulator> {
+    if constexpr (sizeof...(Arguments) == 0 && std::is_default_constructible_v<A>) {
+      return std::make_unique<AccumulatorOf<A>>(A{});
+    } else {
+      return std::make_unique<AccumulatorOf<A>>(A{context, arguments...});
+    }
+  };
+}
 
 /// Families of checkpoints, in the order in which tables show them.
 enum class CheckpointFamily : std::uint8_t {
@@ -121,13 +194,54 @@ struct CheckpointPlace {
   std::string_view summaryTitle = {};
 };
 
-/// One checkpoint: its declaration, and how to make it. Each file of analytics/checkpoints/figures defines a function,
-/// named after the file, that returns its entries: `pathLengthEntries` in path_length.cpp. CMake lists these functions
-/// for the registry (docs/extending/index.md).
+/// What an attempt must have for a figure, and the reason that is given where it has not.
+struct Requirement {
+  bool (*met)(const AttemptContext& context);
+  const char* otherwise;
+};
+
+class Checkpoint;
+
+/// One row of the table of checkpoints: declaration, precondition, computation. The files of
+/// analytics/checkpoints/figures hold the rows (docs/extending/checkpoint.md).
 struct CheckpointEntry {
   CheckpointPlace place;
-  CheckpointDefinition definition;
-  std::unique_ptr<Checkpoint> (*make)(const AttemptContext& context);
+  CheckpointDefinition definition;      ///< empty texts and origins: as completed() fills them
+  std::vector<Requirement> needs = {};  ///< the first that is not met gives the reason
+  std::uint32_t results = 0;            ///< least version of the StepResults that it reads
+  AccumulatorMaker accumulate = {};
+  /// Names of what it is given for; null: by the aggregation, organs being all structures.
+  std::vector<std::string> (*subjects)(const AttemptContext& context) = nullptr;
+  bool ofAbsentPhases = false;  ///< a phase that the attempt has not has a figure too
+
+  /// @pre the entry outlives what is made.
+  [[nodiscard]] std::unique_ptr<Checkpoint> make(const AttemptContext& context) const;
+};
+
+/// The definition with what its row leaves out: window "whole attempt", "union over instruments", filter "none",
+/// origins of steps, displayed in its own unit.
+CheckpointDefinition completed(CheckpointDefinition definition);
+
+/// One running computation of one entry over one attempt.
+class Checkpoint {
+ public:
+  Checkpoint(const CheckpointEntry& entry, AttemptContext context);
+  Checkpoint(const Checkpoint&) = delete;
+  Checkpoint& operator=(const Checkpoint&) = delete;
+
+  /// Called once per step, in order, with what was judged of it.
+  void onStep(const recorder::StepRecord& record, const Judgement& judgement);
+  /// The figures so far: one per subject, in the order of hands or organs. May be called more than once.
+  [[nodiscard]] std::vector<CheckpointValue> values(const AttemptEnd& end) const;
+
+ private:
+  [[nodiscard]] Measured measured(const AttemptEnd& end, std::size_t subject) const;
+
+  const CheckpointEntry& entry_;
+  AttemptContext context_;
+  std::string notApplicable_;
+  std::vector<std::string> subjects_;
+  std::unique_ptr<Accumulator> accumulator_;  ///< null where it is not applicable
 };
 
 /// What a reader of a time must know where the tick clock was stretched ("tick clock stretched by 0.340 s"), or empty.

@@ -1,14 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "analytics/checkpoints/collector.h"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <array>
 #include <cassert>
 
 #include "analytics/checkpoints/force.h"
+#include "analytics/checkpoints/motion.h"
+#include "analytics/checkpoints/motion_track.h"
 #include "analytics/checkpoints/phases.h"
-#include "analytics/checkpoints/recorded_motion.h"
 #include "analytics/checkpoints/registry.h"
+#include "recorder/base/errors.h"
+#include "recorder/formats/scene_file.h"
+#include "recorder/recorded_results.h"
 #include "sim/judgement/judge.h"
 
 namespace calot::analytics {
@@ -95,6 +101,84 @@ std::vector<CheckpointValue> CheckpointCollector::values() const {
     for (CheckpointValue& value : checkpoint->values(end)) result.push_back(std::move(value));
   }
   return result;
+}
+
+std::vector<CheckpointValue> valuesFromObservables(recorder::Recording& recording, double cutoff,
+                                                   recorder::Observer* also) {
+  const recorder::AttemptHeader& header = recording.header();
+  const SceneDescription scene = recorder::sceneFromAssets(header.assets).description;
+  CheckpointCollector collector(header, scene, Origin::observables, cutoff);
+  recorder::RecordedResults results(header, scene);
+  for (std::uint64_t n = 0; n < recording.stepCount(); ++n) {
+    const recorder::RecordedStep& step = recording.step(n);
+    // Columns are counted by the header, structures by the scene: a checkpoint goes by the scene's.
+    if (step.result.organ.size() != scene.organs.size() ||
+        (header.stepResultVersion >= 2 && step.result.connective.size() != scene.connective.size())) {
+      throw Error(ErrorKind::damaged, Where{recording.path().string(), "/observables"},
+                  "has other organs or connective tissues than the scene in /scene");
+    }
+    const recorder::StepRecord record{step.step,   step.samples,  step.ticks, results.of(step),
+                                      step.digest, step.lateness, {},         {}};
+    collector.onStep(record);
+    if (also != nullptr) also->onStep(record);
+  }
+  collector.onEnd(recording.outcome());
+  if (also != nullptr) also->onEnd(recording.outcome());
+  return collector.values();
+}
+
+Motion motionOf(const recorder::TrackedMotion& tracked, std::size_t hand, double cutoff) {
+  const recorder::TrackedHand& rows = tracked.hand[hand];
+  Motion motion;
+  motion.cutoff = cutoff;
+  if (!rows.present) return motion;
+  // Rows of a fixed rate are counted, so that no time is rounded.
+  const bool counted = tracked.rate > 0.0;
+  const auto since = [&](std::size_t i) {
+    return counted ? 1.0 / tracked.rate : tracked.time[i] - tracked.time[i - 1];
+  };
+  MotionSamples samples{SampleGrid(counted ? tracked.rate : 1.0), {}, 0.0, {}, rows.oriented};
+  for (std::size_t i = 0; i < rows.position.size(); ++i) {
+    const double time = counted ? static_cast<double>(i) : tracked.time[i];
+    if (i > 0) samples.rate.add(since(i));
+    if (i == 0 || since(i) > straightBridge) {
+      samples.grid.begin(time, rows.position[i], rows.orientation[i], i > 0);
+    } else {
+      samples.grid.extend(time, rows.position[i], rows.orientation[i]);
+    }
+  }
+  const GapRule rule(samples.rate.interval());
+  samples.longestRate = rule.longestEven();
+  samples.coverage.mounted = {{0.0, tracked.time.back()}};
+  for (std::size_t i = 1; i < tracked.time.size(); ++i) {
+    if (rule.isGap(since(i))) samples.coverage.lost.push_back({tracked.time[i] - rule.lost(since(i)), tracked.time[i]});
+  }
+  return filteredMotion(std::move(samples), cutoff);
+}
+
+std::vector<CheckpointValue> valuesFromSamples(const recorder::TrackedMotion& tracked, const SamplesContext& context) {
+  const std::array<Motion, handCount> motion{motionOf(tracked, 0, context.cutoff),
+                                             motionOf(tracked, 1, context.cutoff)};
+  const std::vector<PhaseMotion> phases;
+  AttemptContext attempt;
+  attempt.handedness = context.handedness;
+  AttemptEnd end;
+  end.steps = tracked.time.size() - 1;
+  attempt.ticksPerStep = 1;
+  attempt.tickSeconds = tracked.time.back() / static_cast<double>(end.steps);
+  const ForceTrack force(attempt.tickSeconds);
+  end.outcome = context.outcome;
+  end.origin = Origin::samples;
+  end.motion = {&motion[0], &motion[1]};
+  end.phases = &phases;
+  end.force = &force;
+  std::vector<CheckpointValue> values;
+  for (const CheckpointEntry& entry : checkpointRegistry()) {
+    const std::vector<Origin>& origins = entry.definition.origins;
+    if (std::find(origins.begin(), origins.end(), Origin::samples) == origins.end()) continue;
+    for (CheckpointValue& value : entry.make(attempt)->values(end)) values.push_back(std::move(value));
+  }
+  return values;
 }
 
 }  // namespace calot::analytics

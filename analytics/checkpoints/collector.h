@@ -1,11 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Values of all checkpoints: of a run or replay, of recorded observables, or of motion alone.
 #pragma once
 
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "analytics/checkpoints/checkpoint.h"
+#include "analytics/checkpoints/motion.h"
+#include "recorder/engine/observer.h"
+#include "recorder/recording/reader.h"
+#include "recorder/sources/tracked_motion.h"
 
 namespace calot::analytics {
 
@@ -35,5 +41,28 @@ class CheckpointCollector final : public recorder::Observer {
   struct Storage;
   std::unique_ptr<Storage> storage_;
 };
+
+/// Every figure of a recording from what its steps recorded of themselves, without simulating: for recordings of other
+/// simulation versions, whose results any later software can read. Origins are `observables` and `samples`.
+/// @param cutoff of the motion filter (Hz); values that are stored are of the default.
+/// @param also sees the same steps, and the end; or null.
+/// @pre the recording's content chain was found intact.
+/// @throws Error (damaged) where the file cannot be read, or its results do not fit its scene.
+std::vector<CheckpointValue> valuesFromObservables(recorder::Recording& recording, double cutoff = 6.0,
+                                                   recorder::Observer* also = nullptr);
+
+/// What a file of motion doesn't say of itself.
+struct SamplesContext {
+  recorder::Outcome outcome = recorder::Outcome::stopped;
+  std::string handedness = "unknown";
+  double cutoff = motionCutoff;  ///< Hz; values that are stored are of the default
+};
+
+/// The motion of one hand: every row is a sample.
+Motion motionOf(const recorder::TrackedMotion& tracked, std::size_t hand, double cutoff = motionCutoff);
+
+/// The figures that motion alone can give (those whose definition allows the origin `samples`), in the registry's
+/// order. The attempt lasts from the first row to the last.
+std::vector<CheckpointValue> valuesFromSamples(const recorder::TrackedMotion& tracked, const SamplesContext& context);
 
 }  // namespace calot::analytics

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a checkpoint declares of itself.
+// What a checkpoint declares, and what a script declares of its own metric (docs/how-to/own-metrics.md).
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -33,25 +34,55 @@ std::string nameOf(Finality finality);        ///< "running", "final"
 
 /// What a checkpoint declares of itself.
 struct CheckpointDefinition {
-  std::string name;            ///< "path-length": key in the database, never reused for another meaning
-  std::string title;           ///< "Path length of the instrument's tip"
-  std::string unit;            ///< SI, of stored values: "s", "m", "N", "1"
-  std::string displayUnit;     ///< at the edges: "mm"
-  double displayFactor = 1.0;  ///< displayed = stored * displayFactor
+  std::string name = {};         ///< "path-length": key in the database, never reused for another meaning
+  std::string title = {};        ///< "Path length of the instrument's tip"
+  std::string unit = {};         ///< SI, of stored values: "s", "m", "N", "1"
+  std::string displayUnit = {};  ///< at the edges: "mm"
+  double displayFactor = 1.0;    ///< displayed = stored * displayFactor
   Direction direction = Direction::none;
-  std::string window;  ///< part of the attempt that is covered: "whole attempt"
+  std::string window = {};  ///< part of the attempt that is covered: "whole attempt"
   Aggregation aggregation = Aggregation::attempt;
-  std::string
-      instruments;     ///< how several instruments are joined: "each hand by itself", "union over instruments", ...
-  std::string filter;  ///< resampling and filter with all their constants, or "none"
-  double minCoverage = 0.0;     ///< share of the window that samples must cover for a value; 0: not of samples
-  std::vector<Origin> origins;  ///< allowed ones
+  std::string instruments = {};      ///< how several are joined: "each hand by itself", "union over instruments", ...
+  std::string filter = {};           ///< resampling and filter with all their constants, or "none"
+  double minCoverage = 0.0;          ///< share of the window that samples must cover for a value; 0: not of samples
+  std::vector<Origin> origins = {};  ///< allowed ones
   Finality finality = Finality::running;
-  std::uint32_t version = 1;  ///< changes whenever a value may change
-  std::string definition;     ///< the formula in words and symbols, one line
-  std::string paperReading;   ///< which figure of the paper's Table 2 it answers to and how it reads it; or empty
+  std::uint32_t version = 1;      ///< changes whenever a value may change
+  std::string definition = {};    ///< the formula in words and symbols, one line
+  std::string paperReading = {};  ///< which figure of the paper's Table 2 it answers to and how it reads it; or empty
   /// Why a study shows the figure apart and doesn't test it ("it describes the tracker"); empty: it is an outcome.
   std::string notOutcome = {};
+};
+
+/// What a script declares of its metric, and which script it is.
+struct ExternalMetric {
+  /// Name, title, unit, direction and version are the script's; `unit` is displayed as it is.
+  CheckpointDefinition definition;
+  std::string sha256;  ///< of the script's bytes, hexadecimal: a version stands for one source
+
+  bool operator==(const ExternalMetric& other) const {
+    const CheckpointDefinition &a = definition, &b = other.definition;
+    return sha256 == other.sha256 && a.name == b.name && a.version == b.version && a.title == b.title &&
+           a.unit == b.unit && a.direction == b.direction;
+  }
+};
+
+/// A shared metric, or none; equal where what is shared is equal.
+class ExternalMetricRef {
+ public:
+  ExternalMetricRef() = default;
+  explicit ExternalMetricRef(ExternalMetric metric)
+      : metric_(std::make_shared<const ExternalMetric>(std::move(metric))) {}
+
+  explicit operator bool() const { return metric_ != nullptr; }
+  const ExternalMetric& operator*() const { return *metric_; }
+  const ExternalMetric* operator->() const { return metric_.get(); }
+  bool operator==(const ExternalMetricRef& other) const {
+    return metric_ == other.metric_ || (metric_ && other.metric_ && *metric_ == *other.metric_);
+  }
+
+ private:
+  std::shared_ptr<const ExternalMetric> metric_;
 };
 
 }  // namespace calot::analytics

@@ -4,104 +4,30 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
-#include "analytics/checkpoints/gap_bridge.h"
+#include "analytics/checkpoints/figures/rows.h"
+#include "analytics/checkpoints/phases.h"
 
 namespace calot::analytics {
 namespace {
 
-class PerHand final : public Checkpoint {
- public:
-  PerHand(const CheckpointDefinition& definition, MotionMeasure measure) : definition_(definition), measure_(measure) {}
-
-  [[nodiscard]] std::vector<CheckpointValue> values(const AttemptEnd& end) const override {
-    std::vector<CheckpointValue> result;
-    for (std::size_t h = 0; h < static_cast<std::size_t>(handCount); ++h) {
-      const Motion& motion = *end.motion[h];
-      result.push_back(
-          motionValue(definition_, handNames[h], measureHand(definition_, motion, measure_), motion.cutoff));
-    }
-    return result;
-  }
-
- private:
-  const CheckpointDefinition& definition_;
-  MotionMeasure measure_;
-};
-
-class PerHandAndPhase final : public Checkpoint {
- public:
-  PerHandAndPhase(const CheckpointDefinition& definition, MotionMeasure measure, const AttemptContext& context)
-      : definition_(definition), measure_(measure), notApplicable_(whyNoPhases(context)) {}
-
-  [[nodiscard]] std::vector<CheckpointValue> values(const AttemptEnd& end) const override {
-    if (!notApplicable_.empty())
-      return {makeMissing(definition_, "", end.origin, Availability::notApplicable, notApplicable_)};
-    std::vector<CheckpointValue> result;
-    for (const PhaseMotion& phase : *end.phases) {
-      for (std::size_t h = 0; h < static_cast<std::size_t>(handCount); ++h) {
-        const Motion& motion = phase.motion[h];
-        const Measured measured =
-            phase.seconds > 0.0 ? measureHand(definition_, motion, measure_) : Measured::notApplicable(noSuchPhase);
-        result.push_back(motionValue(definition_, handAndPhase(h, phase.phase), measured, motion.cutoff, end.origin));
-      }
-    }
-    return result;
-  }
-
- private:
-  const CheckpointDefinition& definition_;
-  MotionMeasure measure_;
-  std::string notApplicable_;
-};
-
-}  // namespace
-
-CheckpointDefinition motionDefinition(const char* name, const char* title, const char* unit, Direction direction,
-                                      const char* formula) {
-  return {
-      .name = name,
-      .title = title,
-      .unit = unit,
-      .displayUnit = unit,
-      .displayFactor = 1.0,
-      .direction = direction,
-      .window = "whole attempt, while an instrument is mounted and measured",
-      .aggregation = Aggregation::hand,
-      .instruments = "each hand by itself",
-      .filter = motionFilterText(),
-      .minCoverage = minMotionCoverage,
-      .origins = {Origin::samples},
-      .finality = Finality::final,
-      .version = 2,
-      .definition = formula,
-      .paperReading = "",
-  };
-}
-
-CheckpointValue motionValue(const CheckpointDefinition& definition, std::string subject, const Measured& measured,
-                            double cutoff, Origin origin) {
-  CheckpointValue value = measured.value
-                              ? makeValue(definition, std::move(subject), origin, *measured.value, measured.note)
-                              : makeMissing(definition, std::move(subject), origin, measured.missing, measured.reason);
-  if (cutoff != motionCutoff && definition.filter == motionFilterText()) value.filter = motionFilterText(cutoff);
-  value.coverage = measured.coverage;
-  return value;
-}
-
-std::optional<Measured> refusalOf(const CheckpointDefinition& definition, const MotionCoverage& coverage,
-                                  bool hasSegments, const std::string& ofHand) {
+/// Explains why no figure of motions may be given: too little coverage, nothing measured. Empty: one may.
+/// @param coverage of the figure's window
+std::optional<Measured> refusalOf(double minCoverage, const MotionCoverage& coverage, bool hasSegments,
+                                  const std::string& ofHand = {}) {
   const double share = coverage.share().value_or(0.0);
-  if (share < definition.minCoverage) {
-    return Measured::none(Availability::tooLittleCoverage,
-                          fmt::format("samples cover {:.1f} % of the time; {:g} % are wanted", 100.0 * share,
-                                      100.0 * definition.minCoverage));
+  if (share < minCoverage) {
+    return Measured::none(
+        Availability::tooLittleCoverage,
+        fmt::format("samples cover {:.1f} % of the time; {:g} % are wanted", 100.0 * share, 100.0 * minCoverage));
   }
   if (!hasSegments) return Measured::notAvailable(fmt::format("no measured motion of 0.1 s or longer{}", ofHand));
   return std::nullopt;
 }
 
+/// Adds the coverage to a figure, and notes time without measurement.
 Measured withCoverage(Measured measured, const MotionCoverage& coverage) {
   measured.coverage = coverage.share();
   const double lost = lengthOf(coverage.lost);
@@ -110,10 +36,83 @@ Measured withCoverage(Measured measured, const MotionCoverage& coverage) {
   return measured;
 }
 
-Measured measureHand(const CheckpointDefinition& definition, const Motion& motion, MotionMeasure measure) {
+/// The measure of one hand's motion, or why there is none: no instrument, too little coverage, nothing measured.
+Measured measureHand(double minCoverage, const Motion& motion, MotionMeasure measure) {
   if (!motion.coverage.share()) return Measured::none(Availability::absentHand, "no instrument in this hand");
-  std::optional<Measured> refusal = refusalOf(definition, motion.coverage, !motion.segments.empty());
+  std::optional<Measured> refusal = refusalOf(minCoverage, motion.coverage, !motion.segments.empty());
   return withCoverage(refusal ? *std::move(refusal) : measure(motion), motion.coverage);
+}
+
+struct HandMotion {
+  const AttemptContext& context;
+  MotionMeasure measure;
+
+  [[nodiscard]] Measured figure(const AttemptEnd& end, std::size_t hand, const CheckpointDefinition& declared) const {
+    return measureHand(declared.minCoverage, *end.motion[hand], measure);
+  }
+};
+
+struct PhaseHandMotion {
+  const AttemptContext& context;
+  MotionMeasure measure;
+
+  [[nodiscard]] Measured figure(const AttemptEnd& end, std::size_t subject,
+                                const CheckpointDefinition& declared) const {
+    return measureHand(declared.minCoverage, (*end.phases)[subject / handCount].motion[subject % handCount], measure);
+  }
+};
+
+struct BothHands {
+  const AttemptContext& context;
+  TwoHandMeasure measure;
+
+  [[nodiscard]] Measured figure(const AttemptEnd& end, std::size_t /*subject*/,
+                                const CheckpointDefinition& declared) const {
+    const Motion &left = *end.motion[0], &right = *end.motion[1];
+    for (std::size_t h = 0; h < end.motion.size(); ++h) {
+      if (!end.motion[h]->mounted)
+        return Measured::none(Availability::absentHand, fmt::format("no instrument in the {} hand", handNames[h]));
+    }
+    const MotionCoverage coverage = ofBoth(left.coverage, right.coverage);
+    for (std::size_t h = 0; h < end.motion.size(); ++h) {
+      if (std::optional<Measured> refusal = refusalOf(declared.minCoverage, coverage, !end.motion[h]->segments.empty(),
+                                                      fmt::format(" of the {} hand", handNames[h])))
+        return withCoverage(*std::move(refusal), coverage);
+    }
+    return withCoverage(measure(left, right, context), coverage);
+  }
+};
+
+CheckpointEntry ofMotion(CheckpointEntry row, Aggregation aggregation, const char* window, const char* instruments) {
+  CheckpointDefinition& d = row.definition;
+  if (d.window.empty()) d.window = window;
+  d.aggregation = aggregation;
+  if (d.instruments.empty()) d.instruments = instruments;
+  if (d.filter.empty()) d.filter = motionFilterText();
+  if (d.minCoverage == 0.0) d.minCoverage = minMotionCoverage;
+  d.origins = {Origin::samples};
+  d.finality = Finality::final;
+  return row;
+}
+
+}  // namespace
+
+CheckpointEntry perHand(CheckpointEntry row, MotionMeasure measure) {
+  row = ofMotion(std::move(row), Aggregation::hand, "whole attempt, while an instrument is mounted and measured",
+                 "each hand by itself");
+  row.accumulate = accumulating<HandMotion>(measure);
+  return row;
+}
+
+CheckpointEntry perHandAndPhase(const CheckpointEntry& whole, int rank, MotionMeasure measure, std::uint32_t version) {
+  return phaseRow(whole, rank, "points", accumulating<PhaseHandMotion>(measure), version);
+}
+
+CheckpointEntry ofBothHands(CheckpointEntry row, TwoHandMeasure measure) {
+  row = ofMotion(std::move(row), Aggregation::attempt, "whole attempt, while both hands are mounted and measured",
+                 "both hands together");
+  row.accumulate = accumulating<BothHands>(measure);
+  return row;
 }
 
 double maxSpeed(const Motion& motion) {
@@ -122,15 +121,6 @@ double maxSpeed(const Motion& motion) {
     for (const double v : segment.speed) largest = std::max(largest, v);
   }
   return largest;
-}
-
-std::unique_ptr<Checkpoint> perHand(const CheckpointDefinition& definition, MotionMeasure measure) {
-  return std::make_unique<PerHand>(definition, measure);
-}
-
-std::unique_ptr<Checkpoint> perHandAndPhase(const CheckpointDefinition& definition, MotionMeasure measure,
-                                            const AttemptContext& context) {
-  return std::make_unique<PerHandAndPhase>(definition, measure, context);
 }
 
 }  // namespace calot::analytics

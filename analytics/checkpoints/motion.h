@@ -1,16 +1,125 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The motion of one instrument: samples, gaps and bridges, resampling to a fixed rate, filtered segments.
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "analytics/checkpoints/sample_grid.h"
-#include "analytics/checkpoints/sample_rate.h"
-#include "analytics/checkpoints/time_spans.h"
 #include "sim/math/linear.h"
 
 namespace calot::analytics {
+
+/// Rate of the motion on which motion checkpoints work (Hz).
+inline constexpr double motionRate = 100.0;
+
+/// A pose at its time.
+struct TimedPose {
+  double time = 0.0;  ///< in the unit of the grid's times
+  Vec3 position = Vec3::Zero();
+  Quat orientation = Quat::Identity();  ///< unit
+};
+
+/// Poses at the points k / motionRate of one uninterrupted motion.
+struct GridRun {
+  std::int64_t first = 0;         ///< k of the first point
+  std::vector<Vec3> position;     ///< p_WI (m)
+  std::vector<Quat> orientation;  ///< q_WI, unit, each on the side of its predecessor; as many
+  TimedPose begin, end;           ///< first and last sample
+  bool continues = false;         ///< it goes on from the run before, after a time without samples
+
+  /// Appends a pose at the next point. @param orientation unit, of either sign
+  void append(const Vec3& p, const Quat& orientation);
+};
+
+/// Time of point k, in the unit of times of which there are so many a second; correctly rounded where that is a whole
+/// number.
+double gridTime(std::int64_t k, double unitsPerSecond);
+
+/// Resamples the poses of a tracker to the grid t = k / motionRate: positions on the straight line between the samples
+/// around a point, orientations (normalised) by normalised linear interpolation on the shorter arc; on a sample (within
+/// a millionth of a grid interval): that sample. Nothing is extrapolated. Deterministic contract.
+class SampleGrid {
+ public:
+  /// @param unitsPerSecond of the times that are given: 1000 for ticks, 30 for rows at 30 Hz, 1 for seconds. @pre > 0.
+  explicit SampleGrid(double unitsPerSecond) : unitsPerSecond_(unitsPerSecond) {}
+
+  /// A sample that begins a new run. @param continues GridRun::continues. @pre later than every sample before.
+  void begin(double time, const Vec3& position, const Quat& orientation, bool continues = false);
+  /// A sample that goes on from the one before it. @pre as begin(), and there was one.
+  void extend(double time, const Vec3& position, const Quat& orientation);
+
+  [[nodiscard]] const std::vector<GridRun>& runs() const { return runs_; }
+  [[nodiscard]] std::vector<GridRun> takeRuns() && { return std::move(runs_); }
+  [[nodiscard]] double unitsPerSecond() const { return unitsPerSecond_; }
+
+ private:
+  void put(const Vec3& position, const Quat& orientation);
+
+  double unitsPerSecond_;
+  std::int64_t next_ = 0;
+  std::vector<GridRun> runs_;
+};
+
+/// A tracker's own interval and its rate by the clock, from the times between its samples. Times over `longestInterval`
+/// are pauses and count for neither. Deterministic contract.
+class SampleRate {
+ public:
+  static constexpr double longestInterval = 1.0;  ///< s
+
+  /// @param seconds since the sample before, > 0.
+  void add(double seconds);
+
+  /// The tracker's own interval (s): the median. Where intervals up to 1.5 medians fill less than a tenth of the time,
+  /// samples arrive in bursts, and it is the interval up to which intervals fill half of the time. 0: none was added.
+  [[nodiscard]] double interval() const;
+
+  /// Intervals of at most `longest` (s) by the time that they fill (Hz); 0: there is none.
+  [[nodiscard]] double hertz(double longest) const;
+
+ private:
+  /// Intervals by their length, to 10 us.
+  struct Bin {
+    std::uint64_t count = 0;
+    double seconds = 0.0;
+  };
+  /// Intervals of at most so many seconds together.
+  [[nodiscard]] Bin upTo(double longest) const;
+
+  std::vector<Bin> bins_;
+  Bin all_;
+};
+
+/// Times [begin, end) (s).
+struct TimeSpan {
+  double begin = 0.0, end = 0.0;
+};
+
+/// Spans in order, none empty, none overlapping.
+using TimeSpans = std::vector<TimeSpan>;
+
+/// Sorted; those that overlap or touch are joined, empty ones dropped.
+TimeSpans normalized(TimeSpans spans);
+TimeSpans intersection(const TimeSpans& a, const TimeSpans& b);
+TimeSpans unionOf(const TimeSpans& a, const TimeSpans& b);
+/// Seconds that all spans last.
+double lengthOf(const TimeSpans& spans);
+
+/// What a tracker's samples cover of a hand's work.
+struct MotionCoverage {
+  TimeSpans mounted;  ///< with an instrument
+  TimeSpans lost;     ///< of these, without measurement
+
+  /// 1 - |lost| / |mounted|, in [0, 1]. @return nothing where no instrument was mounted.
+  [[nodiscard]] std::optional<double> share() const;
+};
+
+/// Of a part of the attempt.
+MotionCoverage within(const MotionCoverage& coverage, const TimeSpans& window);
+/// While both hands have an instrument; lost is what either hand lost.
+MotionCoverage ofBoth(const MotionCoverage& left, const MotionCoverage& right);
 
 /// Default cut-off of the motion filter (Hz), and those that may be asked for. Stored values are of the default.
 inline constexpr double motionCutoff = 6.0;
@@ -57,5 +166,45 @@ struct MotionSamples {
 /// Bridges gaps (gap_bridge.h), filters, takes the speeds. Runs too short for the filter are left out; beside a gap
 /// they count as lost with it.
 Motion filteredMotion(MotionSamples samples, double cutoff);
+
+/// Samples this close (s) are joined by a straight line whatever the tracker's interval; sources repeat a pose for as
+/// long.
+inline constexpr double straightBridge = 0.1;
+/// A gap: more than so many of the tracker's own intervals between two samples.
+inline constexpr double gapIntervals = 2.5;
+/// More lost time (s) is not bridged: the motion falls into two segments.
+inline constexpr double maxBridge = 1.0;
+
+/// How a time between two samples is taken, by the tracker's own interval.
+class GapRule {
+ public:
+  /// @param interval SampleRate::interval() (s); 0: not known
+  explicit GapRule(double interval) : interval_(interval) {}
+
+  /// Longest time between two samples that is no gap (s).
+  [[nodiscard]] double longestEven() const { return gapIntervals * interval_; }
+  [[nodiscard]] bool isGap(double seconds) const { return seconds > longestEven(); }
+  /// Of a gap: what no sample covers, each covering one interval.
+  [[nodiscard]] double lost(double seconds) const { return seconds - interval_; }
+  /// Joined by a straight line.
+  [[nodiscard]] bool isStraight(double seconds) const { return seconds <= straightBridge || !isGap(seconds); }
+  /// Joined, by a straight line or a curve.
+  [[nodiscard]] bool isBridged(double seconds) const { return isStraight(seconds) || lost(seconds) <= maxBridge; }
+  [[nodiscard]] double interval() const { return interval_; }
+
+ private:
+  double interval_;
+};
+
+/// Joins runs to those that they continue, where the rule bridges the time between them. Straight: as SampleGrid.
+/// Curved: positions on the cubic Hermite curve through both samples,
+///
+///   p(s) = (2 s^3 - 3 s^2 + 1) p_0 + (s^3 - 2 s^2 + s) h v_0 + (3 s^2 - 2 s^3) p_1 + (s^3 - s^2) h v_1,  s = (t - t_0)
+///   / h,
+///
+/// v_0 and v_1 the least-squares slopes of the motion over the 0.1 s (or one of the tracker's intervals, if longer)
+/// before and after it, the chord's where fewer than two points are there; orientations by normalised linear
+/// interpolation. Deterministic contract.
+std::vector<GridRun> bridged(std::vector<GridRun> runs, const GapRule& rule, double unitsPerSecond);
 
 }  // namespace calot::analytics

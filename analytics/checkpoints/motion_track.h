@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Collects the samples of a hand's motion, from a run or from a recording without simulation.
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "analytics/checkpoints/motion.h"
+#include "recorder/recording/header.h"
+#include "recorder/recording/reader.h"
 #include "sim/scene/samples.h"
 
 namespace calot::analytics {
@@ -62,5 +66,12 @@ class MotionTrack {
   TimeSpans mounted_;                                 ///< earlier instruments (s)
   std::vector<Pause> pauses_;                         ///< closed ones
 };
+
+/// A track for either hand of an attempt that was recorded so.
+MotionTrack trackFor(const recorder::AttemptHeader& header);
+
+/// Left and right, as every motion checkpoint of this attempt sees them. @param cutoff of the filter (Hz), one of
+/// motionCutoffs. @throws Error (damaged) where a step cannot be read
+std::array<Motion, handCount> motionOf(recorder::Recording& recording, double cutoff = motionCutoff);
 
 }  // namespace calot::analytics

@@ -51,10 +51,6 @@ std::size_t windowOf(Phase phase) {
   return static_cast<std::size_t>(std::find(windowPhases.begin(), windowPhases.end(), phase) - windowPhases.begin());
 }
 
-std::string whyNoPhases(const AttemptContext& context) {
-  return context.procedure ? whyTooOld(context, 3) : "the scene has no procedure";
-}
-
 CheckpointDefinition phaseDefinition(const CheckpointDefinition& whole, const char* pieces, std::uint32_t version) {
   constexpr std::string_view attempt = "whole attempt";
   assert(whole.window.starts_with(attempt));

@@ -18,8 +18,6 @@ inline constexpr std::array<Phase, 4> windowPhases{Phase::identification, Phase:
 const char* nameOf(Phase phase);  ///< "identification", ...
 /// Which of windowPhases it is; windowPhases.size(): none of them.
 std::size_t windowOf(Phase phase);
-/// Empty, or why an attempt has no phases.
-std::string whyNoPhases(const AttemptContext& context);
 /// The declaration of a figure of the whole attempt in each of its phases: "phase-NAME", of hands or the attempt as it
 /// was. Where a phase begins and ends is the simulation's to say, so its origin is that of the steps.
 /// @param pieces what the figure counts: "points", "ticks", "steps". @param version its own, without the judgement's

@@ -42,6 +42,10 @@ bool SceneFacts::hasCystic() const {
   return std::any_of(vessel.begin(), vessel.end(), [](const Vessel& v) { return v.cystic; });
 }
 
+bool SceneFacts::hasSpared() const {
+  return std::any_of(vessel.begin(), vessel.end(), [](const Vessel& v) { return v.spared; });
+}
+
 SceneFacts sceneFacts(const SceneDescription& scene) {
   SceneFacts facts;
   for (const OrganDescription& organ : scene.organs) {

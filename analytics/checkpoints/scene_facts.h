@@ -40,6 +40,7 @@ struct SceneFacts {
   recorder::PictureFrame picture = {};
 
   [[nodiscard]] bool hasCystic() const;  ///< there is a cystic vessel
+  [[nodiscard]] bool hasSpared() const;  ///< there is a vessel to be spared
 };
 
 SceneFacts sceneFacts(const SceneDescription& scene);

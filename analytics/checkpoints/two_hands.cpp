@@ -1,44 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "analytics/checkpoints/two_hands.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <array>
 #include <cmath>
+
+#include "analytics/checkpoints/hand_motion.h"
 
 namespace calot::analytics {
 namespace {
-
-class OfBothHands final : public Checkpoint {
- public:
-  OfBothHands(const CheckpointDefinition& definition, TwoHandMeasure measure, AttemptContext context)
-      : definition_(definition), measure_(measure), context_(std::move(context)) {}
-
-  [[nodiscard]] std::vector<CheckpointValue> values(const AttemptEnd& end) const override {
-    return {motionValue(definition_, "", measured(*end.motion[0], *end.motion[1]), end.motion[0]->cutoff)};
-  }
-
- private:
-  [[nodiscard]] Measured measured(const Motion& left, const Motion& right) const {
-    const std::array hands{&left, &right};
-    for (std::size_t h = 0; h < hands.size(); ++h) {
-      if (!hands[h]->mounted)
-        return Measured::none(Availability::absentHand, fmt::format("no instrument in the {} hand", handNames[h]));
-    }
-    const MotionCoverage coverage = ofBoth(left.coverage, right.coverage);
-    for (std::size_t h = 0; h < hands.size(); ++h) {
-      if (std::optional<Measured> refusal = refusalOf(definition_, coverage, !hands[h]->segments.empty(),
-                                                      fmt::format(" of the {} hand", handNames[h])))
-        return withCoverage(*std::move(refusal), coverage);
-    }
-    return withCoverage(measure_(left, right, context_), coverage);
-  }
-
-  const CheckpointDefinition& definition_;
-  TwoHandMeasure measure_;
-  AttemptContext context_;
-};
 
 /// Eight sums side by side, added up in a fixed order: wide on every machine, the same bits.
 double dot(const double* a, const double* b, std::size_t n, double meanA, double meanB) {
@@ -109,11 +78,6 @@ std::optional<LaggedCorrelation> greatestSpeedCorrelation(const Motion& left, co
     }
   }
   return best;
-}
-
-std::unique_ptr<Checkpoint> ofBothHands(const CheckpointDefinition& definition, TwoHandMeasure measure,
-                                        const AttemptContext& context) {
-  return std::make_unique<OfBothHands>(definition, measure, context);
 }
 
 }  // namespace calot::analytics

@@ -3,10 +3,10 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
+#include <optional>
 #include <vector>
 
-#include "analytics/checkpoints/hand_motion.h"
+#include "analytics/checkpoints/motion.h"
 
 namespace calot::analytics {
 
@@ -29,13 +29,5 @@ std::optional<double> speedCorrelation(const Motion& left, const Motion& right, 
 /// The greatest within +-`farthest` points; the smallest lag of equals, the negative one first.
 std::optional<LaggedCorrelation> greatestSpeedCorrelation(const Motion& left, const Motion& right,
                                                           std::int64_t farthest);
-
-/// A figure of both motions. @pre both have segments.
-using TwoHandMeasure = Measured (*)(const Motion& left, const Motion& right, const AttemptContext& context);
-
-/// A checkpoint of the attempt that gives `measure`; absent where a hand has no instrument.
-/// @pre the definition outlives it
-std::unique_ptr<Checkpoint> ofBothHands(const CheckpointDefinition& definition, TwoHandMeasure measure,
-                                        const AttemptContext& context);
 
 }  // namespace calot::analytics

@@ -4,7 +4,7 @@
 
 #include <map>
 
-#include "analytics/design/design_parts.h"
+#include "analytics/design/design_report.h"
 #include "analytics/statistics/delong.h"
 #include "recorder/base/errors.h"
 

@@ -8,7 +8,7 @@
 #include <set>
 
 #include "analytics/report/study_population.h"
-#include "analytics/statistics/repeated_attempts.h"
+#include "analytics/statistics/descriptive.h"
 #include "recorder/base/errors.h"
 #include "recorder/base/nearest_word.h"
 #include "recorder/base/text_words.h"

@@ -10,9 +10,9 @@
 
 #include "analytics/cohort/assessment_database.h"
 #include "analytics/design/design.h"
-#include "analytics/report/csv_reader.h"
 #include "analytics/report/study.h"
 #include "analytics/report/table_study.h"
+#include "recorder/base/csv.h"
 
 namespace calot::analytics {
 

@@ -1,12 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "analytics/design/design_report.h"
 
 #include <fmt/format.h>
-
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <utility>
 
-#include "analytics/design/design_parts.h"
+#include "analytics/report/plots.h"
+#include "analytics/report/report_text.h"
+#include "analytics/statistics/multiplicity.h"
 #include "recorder/attempt.h"
+#include "recorder/base/errors.h"
 
 namespace calot::analytics {
 namespace {
@@ -123,6 +129,122 @@ void printDesign(const DesignReport& report, std::ostream& out) {
 
 std::string designJson(const DesignReport& report) {
   return report.json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
+namespace {
+
+constexpr std::array<Ink, 3> lineInks{Ink::firstLine, Ink::secondLine, Ink::thirdLine};
+constexpr std::array<Ink, 3> pointInks{Ink::firstPoint, Ink::secondPoint, Ink::firstPoint};
+constexpr std::size_t maxLegend = 18;  // in letters
+constexpr double legendHeight = 13.0;
+
+}  // namespace
+
+std::optional<Drawing> drawLines(const LinePlot& plot) {
+  std::vector<double> x, y(plot.marks);
+  for (const PlotSeries& s : plot.series) {
+    for (const auto& [px, py] : s.points) {
+      x.push_back(px);
+      y.push_back(py);
+    }
+  }
+  const std::optional<PlotScale> across = plotScale(x), scale = plotScale(y);
+  if (x.empty() || !across || !scale) return std::nullopt;
+  const auto at = [&](double value) {
+    return plotLeft + (value - across->low) / (across->high - across->low) * (plotRight - plotLeft);
+  };
+  Drawing drawing = beginPlot(plot.title, plot.axis, *scale);
+  // Attempts are counted: no tick between two.
+  const bool whole = std::all_of(x.begin(), x.end(), [](double v) { return v == std::floor(v); });
+  for (const double tick : roundTicks(across->low, across->high)) {
+    if (whole && tick != std::floor(tick)) continue;
+    drawing.text(Ink::count, at(tick), plotBottom + 14.0, fmt::format("{:.6g}", tick == 0.0 ? 0.0 : tick));
+  }
+  drawing.text(Ink::group, (plotLeft + plotRight) / 2.0, plotBottom + 32.0, plot.below);
+  for (const double mark : plot.marks) drawing.line(Ink::cut, plotLeft, scale->y(mark), plotRight, scale->y(mark));
+  double legend = plotTop + 8.0;
+  for (const PlotSeries& s : plot.series) {
+    const std::size_t ink = s.ink < 2 ? s.ink : 2;
+    for (std::size_t i = 0; i < s.points.size(); ++i) {
+      const auto& [px, py] = s.points[i];
+      if (!s.joined) drawing.point(pointInks[ink], at(px), scale->y(py), 2.6);
+      if (!s.joined || i == 0) continue;
+      const double before = scale->y(s.points[i - 1].second);
+      if (s.stepped) {
+        drawing.line(lineInks[ink], at(s.points[i - 1].first), before, at(px), before);
+        drawing.line(lineInks[ink], at(px), before, at(px), scale->y(py));
+      } else {
+        drawing.line(lineInks[ink], at(s.points[i - 1].first), before, at(px), scale->y(py));
+      }
+    }
+    if (s.label.empty()) continue;
+    drawing.line(lineInks[ink], plotRight - 110.0, legend - 4.0, plotRight - 96.0, legend - 4.0);
+    drawing.text(Ink::label, plotRight - 92.0, legend, cutTo(s.label, maxLegend));
+    legend += legendHeight;
+  }
+  endPlot(drawing, plot.synthetic);
+  return drawing;
+}
+
+std::string intervalText(double lower, double upper) {
+  return fmt::format("[{}, {}]", significant(lower), significant(upper));
+}
+std::string intervalText(const Interval& interval) { return intervalText(interval.lower, interval.upper); }
+std::string intervalText(const Expected<Interval>& interval) { return interval ? intervalText(*interval) : "-"; }
+
+DesignJson intervalJson(const Interval& interval) {
+  return {{"lower", interval.lower}, {"upper", interval.upper}, {"level", interval.level}, {"method", interval.method}};
+}
+DesignJson optionalJson(const std::optional<double>& value) { return value ? DesignJson(*value) : DesignJson(nullptr); }
+DesignJson reasonJson(const std::string& reason) { return {{"value", nullptr}, {"reason", reason}}; }
+
+ReportTable tableOf(const std::string& title, const std::vector<std::string>& columns) {
+  ReportTable table{title, {}, {}};
+  for (const std::string& column : columns) {
+    const bool left = column.empty() || column[0] == '=';
+    table.columns.emplace_back(left && !column.empty() ? column.substr(1) : column,
+                               left ? TextTable::Align::left : TextTable::Align::right);
+  }
+  return table;
+}
+
+std::vector<std::optional<double>> holmOver(const std::vector<std::optional<double>>& p) {
+  std::vector<double> known;
+  for (const auto& value : p) {
+    if (value) known.push_back(*value);
+  }
+  std::vector<std::optional<double>> adjusted(p.size());
+  const Expected<std::vector<double>> values = holm(known);
+  if (!values) return adjusted;
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    if (p[i]) adjusted[i] = (*values)[next++];
+  }
+  return adjusted;
+}
+
+std::string figureTitle(const DesignFigure& figure) {
+  return figure.unit.empty() ? figure.name : fmt::format("{} [{}]", figure.name, figure.unit);
+}
+
+void noteRefused(DesignReport& report, const std::vector<std::pair<std::string, std::string>>& refused) {
+  constexpr std::size_t most = 10;
+  for (std::size_t i = 0; i < refused.size() && i < most; ++i)
+    report.notes.push_back(fmt::format("Not analysed: {}: {}.", refused[i].first, refused[i].second));
+  if (refused.size() > most) report.notes.push_back(fmt::format("Nor {} more figures.", refused.size() - most));
+}
+
+void askForResults(const DesignData& data, std::size_t analysed,
+                   const std::vector<std::pair<std::string, std::string>>& refused) {
+  if (analysed > 0) return;
+  throw Error(ErrorKind::refused, Where{data.where},
+              refused.empty() ? std::string("there is no figure to analyse")
+                              : fmt::format("no figure can be analysed; {}: {}", refused[0].first, refused[0].second));
+}
+
+std::optional<bool> firstShouldBeLarger(const DesignData& data, const DesignFigure& figure) {
+  if (figure.direction == Direction::none || data.better.empty()) return std::nullopt;
+  return (figure.direction == Direction::higher) == (data.better == data.groups[0]);
 }
 
 }  // namespace calot::analytics

@@ -4,7 +4,7 @@
 #include <map>
 #include <utility>
 
-#include "analytics/statistics/bootstrap.h"
+#include "analytics/statistics/resampling.h"
 
 namespace calot::analytics {
 namespace {

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "analytics/statistics/expected.h"
-#include "analytics/statistics/interval.h"
 #include "analytics/statistics/learning_curve.h"
 
 namespace calot::analytics {

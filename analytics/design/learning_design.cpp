@@ -5,12 +5,10 @@
 #include <algorithm>
 #include <map>
 
-#include "analytics/design/design_parts.h"
+#include "analytics/design/design_report.h"
 #include "analytics/design/learning_curves.h"
-#include "analytics/design/line_plot.h"
-#include "analytics/statistics/attempts_to_criterion.h"
 #include "analytics/statistics/cusum.h"
-#include "analytics/statistics/kaplan_meier.h"
+#include "analytics/statistics/survival.h"
 #include "recorder/base/errors.h"
 
 namespace calot::analytics {

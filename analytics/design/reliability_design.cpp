@@ -5,11 +5,9 @@
 #include <algorithm>
 #include <map>
 
-#include "analytics/design/design_parts.h"
+#include "analytics/design/design_report.h"
 #include "analytics/report/report_text.h"
-#include "analytics/statistics/generalizability.h"
-#include "analytics/statistics/intraclass_correlation.h"
-#include "analytics/statistics/measurement_error.h"
+#include "analytics/statistics/reliability.h"
 #include "recorder/base/errors.h"
 
 namespace calot::analytics {

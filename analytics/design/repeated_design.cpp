@@ -5,9 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "analytics/design/design_parts.h"
-#include "analytics/statistics/random_intercept.h"
-#include "analytics/statistics/repeated_groups.h"
+#include "analytics/design/design_report.h"
+#include "analytics/statistics/mixed_models.h"
 
 namespace calot::analytics {
 namespace {

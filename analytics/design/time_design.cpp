@@ -2,10 +2,8 @@
 // Times of attempts of which some were not finished.
 #include <fmt/format.h>
 
-#include "analytics/design/design_parts.h"
-#include "analytics/design/line_plot.h"
-#include "analytics/statistics/censored_times.h"
-#include "analytics/statistics/kaplan_meier.h"
+#include "analytics/design/design_report.h"
+#include "analytics/statistics/survival.h"
 #include "recorder/base/errors.h"
 
 namespace calot::analytics {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "analytics/report/csv_reader.h"
+#include "recorder/base/csv.h"
 #include "recorder/base/errors.h"
 
 namespace calot::analytics {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "analytics/checkpoints/external_metric.h"
+#include "analytics/checkpoints/definition.h"
 
 namespace calot::analytics {
 

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "analytics/statistics/descriptive.h"
-#include "analytics/statistics/rating_table.h"
+#include "analytics/statistics/reliability.h"
 
 namespace calot::analytics {
 namespace {

@@ -11,9 +11,8 @@
 
 #include "analytics/assessment/rating_form.h"
 #include "analytics/cohort/assessment_database.h"
-#include "analytics/statistics/cronbach_alpha.h"
 #include "analytics/statistics/expected.h"
-#include "analytics/statistics/intraclass_correlation.h"
+#include "analytics/statistics/reliability.h"
 
 namespace calot::analytics {
 

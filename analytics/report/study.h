@@ -18,12 +18,11 @@
 #include "analytics/cohort/assessment_database.h"
 #include "analytics/cohort/cohort_database.h"
 #include "analytics/report/ratings.h"
-#include "analytics/statistics/covariance_analysis.h"
+#include "analytics/statistics/descriptive.h"
+#include "analytics/statistics/effect_sizes.h"
 #include "analytics/statistics/expected.h"
-#include "analytics/statistics/hedges.h"
-#include "analytics/statistics/repeated_attempts.h"
-#include "analytics/statistics/spearman.h"
-#include "analytics/statistics/superiority_interval.h"
+#include "analytics/statistics/rank_tests.h"
+#include "analytics/statistics/regression.h"
 #include "analytics/statistics/two_groups.h"
 
 namespace calot::analytics {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "analytics/report/csv_reader.h"
 #include "analytics/report/study.h"
+#include "recorder/base/csv.h"
 
 namespace calot::analytics {
 

@@ -5,9 +5,8 @@
 
 #include "analytics/statistics/descriptive.h"
 #include "analytics/statistics/distributions.h"
-#include "analytics/statistics/random_stream.h"
-#include "analytics/statistics/rank_sum_distribution.h"
-#include "analytics/statistics/samples.h"
+#include "analytics/statistics/resampling.h"
+#include "analytics/statistics/two_groups.h"
 
 namespace calot::analytics {
 namespace {

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "analytics/statistics/expected.h"
-#include "analytics/statistics/interval.h"
 
 namespace calot::analytics {
 

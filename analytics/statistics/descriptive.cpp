@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "analytics/statistics/descriptive.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <map>
+#include <set>
 #include <vector>
-
-#include "analytics/statistics/samples.h"
 
 namespace calot::analytics {
 namespace {
@@ -55,5 +56,65 @@ Expected<double> quantile(std::span<const double> values, double p) {
 }
 
 Expected<double> median(std::span<const double> values) { return quantile(values, 0.5); }
+
+bool allFinite(std::span<const double> values) {
+  return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
+}
+
+std::string twoGroupObjection(std::span<const double> x, std::span<const double> y) {
+  if (x.empty() && y.empty()) return "both groups are empty";
+  if (x.empty()) return "the first group is empty";
+  if (y.empty()) return "the second group is empty";
+  if (!allFinite(x) || !allFinite(y)) return "a value is not finite";
+  return {};
+}
+
+std::vector<double> pooled(std::span<const double> x, std::span<const double> y) {
+  std::vector<double> all(x.begin(), x.end());
+  all.insert(all.end(), y.begin(), y.end());
+  return all;
+}
+
+double tieTerm(std::span<const double> values) {
+  std::vector<double> sorted(values.begin(), values.end());
+  std::sort(sorted.begin(), sorted.end());
+  double sum = 0.0;
+  for (std::size_t first = 0; first < sorted.size();) {
+    std::size_t next = first;
+    while (next < sorted.size() && sorted[next] == sorted[first]) ++next;
+    const double t = static_cast<double>(next - first);
+    sum += t * t * t - t;
+    first = next;
+  }
+  return sum;
+}
+
+Expected<std::vector<ParticipantValue>> onePerParticipant(std::span<const RepeatedValue> values, AttemptRule rule) {
+  using Result = Expected<std::vector<ParticipantValue>>;
+  if (values.empty()) return Result::none("no values");
+  std::map<std::size_t, std::vector<RepeatedValue>> attempts;
+  std::set<std::pair<std::size_t, double>> orders;
+  for (const RepeatedValue& v : values) {
+    if (!std::isfinite(v.value) || !std::isfinite(v.order)) return Result::none("a value is not finite");
+    if (rule == AttemptRule::first && !orders.insert({v.participant, v.order}).second)
+      return Result::none("two attempts of a participant have one order");
+    attempts[v.participant].push_back(v);
+  }
+  std::vector<ParticipantValue> result;
+  for (const auto& [participant, list] : attempts) {
+    ParticipantValue one{participant, 0.0, list.size()};
+    if (rule == AttemptRule::first) {
+      one.value = std::min_element(list.begin(), list.end(), [](const RepeatedValue& a, const RepeatedValue& b) {
+                    return a.order < b.order;
+                  })->value;
+    } else {
+      std::vector<double> figures;
+      for (const RepeatedValue& v : list) figures.push_back(v.value);
+      one.value = *mean(figures);
+    }
+    result.push_back(one);
+  }
+  return result;
+}
 
 }  // namespace calot::analytics

@@ -7,11 +7,12 @@
 #include <boost/math/distributions/non_central_t.hpp>
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
+#include <boost/math/tools/roots.hpp>
+#include <cassert>
 #include <cmath>
+#include <cstdint>
 #include <exception>
 #include <limits>
-
-#include "analytics/statistics/roots.h"
 
 namespace calot::analytics {
 
@@ -47,6 +48,17 @@ double noncentralStudentParameter(double t, double df, double p) {
   } catch (const std::exception&) {
     return none;
   }
+}
+
+double rootBetween(const std::function<double(double)>& f, double lower, double upper) {
+  const double atLower = f(lower), atUpper = f(upper);
+  if (atLower == 0.0) return lower;
+  if (atUpper == 0.0) return upper;
+  assert(atLower * atUpper < 0.0);
+  std::uintmax_t iterations = 200;
+  const auto bracket =
+      bm::tools::toms748_solve(f, lower, upper, atLower, atUpper, bm::tools::eps_tolerance<double>(52), iterations);
+  return 0.5 * (bracket.first + bracket.second);
 }
 
 }  // namespace calot::analytics

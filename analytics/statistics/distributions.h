@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Distributions from Boost.Math used by the statistics.
+// Distributions and roots from Boost.Math used by the statistics.
 #pragma once
+
+#include <functional>
 
 namespace calot::analytics {
 
@@ -25,5 +27,9 @@ double fisherQuantile(double p, double df1, double df2);
 /// Non-centrality for which P(T <= t) = p, T non-central t with df degrees of freedom. NaN where the series of Boost
 /// does not converge (|t| beyond some hundreds).
 double noncentralStudentParameter(double t, double df, double p);
+
+/// Root of a continuous function between two points of opposite sign, to machine precision (Alefeld, Potra and Shi's
+/// algorithm 748 of Boost.Math). @pre lower < upper; f(lower) f(upper) <= 0.
+double rootBetween(const std::function<double(double)>& f, double lower, double upper);
 
 }  // namespace calot::analytics

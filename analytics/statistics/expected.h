@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// A result or the reason why there is none, and confidence intervals.
 #pragma once
 
 #include <cassert>
@@ -37,6 +38,13 @@ class Expected {
   Expected() = default;
   std::optional<T> value_;
   std::string reason_;
+};
+
+/// A two-sided confidence interval and how it was made: the method is printed beside the numbers.
+struct Interval {
+  double lower = 0.0, upper = 0.0;
+  double level = 0.95;  ///< asked for
+  std::string method;
 };
 
 }  // namespace calot::analytics

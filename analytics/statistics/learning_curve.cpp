@@ -7,9 +7,9 @@
 #include <set>
 #include <vector>
 
+#include "analytics/statistics/descriptive.h"
 #include "analytics/statistics/distributions.h"
-#include "analytics/statistics/least_squares.h"
-#include "analytics/statistics/samples.h"
+#include "analytics/statistics/regression.h"
 
 namespace calot::analytics {
 namespace {

@@ -7,7 +7,6 @@
 #include <span>
 
 #include "analytics/statistics/expected.h"
-#include "analytics/statistics/interval.h"
 
 namespace calot::analytics {
 

@@ -7,10 +7,10 @@
 #include <string>
 #include <tuple>
 
+#include "analytics/statistics/descriptive.h"
 #include "analytics/statistics/distributions.h"
 #include "analytics/statistics/multiplicity.h"
-#include "analytics/statistics/random_stream.h"
-#include "analytics/statistics/samples.h"
+#include "analytics/statistics/resampling.h"
 #include "analytics/statistics/two_groups.h"
 
 namespace calot::analytics {

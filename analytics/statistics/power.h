@@ -7,9 +7,8 @@
 #include <optional>
 #include <vector>
 
-#include "analytics/statistics/contrasting_groups.h"
 #include "analytics/statistics/expected.h"
-#include "analytics/statistics/interval.h"
+#include "analytics/statistics/standard_setting.h"
 
 namespace calot::analytics {
 

@@ -1,18 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "analytics/statistics/two_groups.h"
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
+#include <map>
 #include <numeric>
 #include <string>
+#include <tuple>
+#include <utility>
 #include <vector>
 
+#include "analytics/statistics/descriptive.h"
 #include "analytics/statistics/distributions.h"
-#include "analytics/statistics/rank_sum_distribution.h"
-#include "analytics/statistics/rank_sum_quantile.h"
-#include "analytics/statistics/samples.h"
 
 namespace calot::analytics {
 namespace {
@@ -190,6 +194,137 @@ Expected<ShiftInterval> hodgesLehmannInterval(std::span<const double> x, std::sp
   const Differences differences(x, y);
   result.lower = differences.at(u - 1);
   result.upper = differences.at(differences.size() - u);
+  return result;
+}
+
+std::vector<double> midRanks(std::span<const double> values) {
+  std::vector<std::size_t> order(values.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t a, std::size_t b) { return values[a] < values[b] || (values[a] == values[b] && a < b); });
+  std::vector<double> ranks(values.size());
+  for (std::size_t first = 0; first < order.size();) {
+    std::size_t last = first;
+    while (last + 1 < order.size() && values[order[last + 1]] == values[order[first]]) ++last;
+    const double rank = 0.5 * static_cast<double>(first + last) + 1.0;
+    for (std::size_t i = first; i <= last; ++i) ranks[order[i]] = rank;
+    first = last + 1;
+  }
+  return ranks;
+}
+
+RankSumDistribution::RankSumDistribution(std::span<const double> ranks, std::size_t n) {
+  assert(n > 0 && n < ranks.size());
+  std::vector<std::size_t> half(ranks.size());
+  std::transform(ranks.begin(), ranks.end(), half.begin(),
+                 [](double r) { return static_cast<std::size_t>(std::lround(2.0 * r)); });
+  std::vector<std::size_t> largest = half;
+  std::sort(largest.rbegin(), largest.rend());
+  const std::size_t top =
+      std::accumulate(largest.begin(), largest.begin() + static_cast<std::ptrdiff_t>(n), std::size_t{0});
+
+  // ways[k][s]: choices of k of the values seen so far whose half ranks sum to s.
+  std::vector<std::vector<double>> ways(n + 1, std::vector<double>(top + 1, 0.0));
+  ways[0][0] = 1.0;
+  std::size_t seen = 0, reach = 0;
+  for (const std::size_t r : half) {
+    reach = std::min(reach + r, top);
+    ++seen;
+    for (std::size_t k = std::min(seen, n); k >= 1; --k) {
+      for (std::size_t s = reach; s >= r; --s) ways[k][s] += ways[k - 1][s - r];
+    }
+  }
+  count_ = std::move(ways[n]);
+  for (const double c : count_) total_ += c;
+  expected_ = static_cast<double>(n) * static_cast<double>(ranks.size() + 1) / 2.0;
+}
+
+double RankSumDistribution::between(long lower, long upper) const {
+  double sum = 0.0;
+  const long last = std::min(upper, static_cast<long>(count_.size()) - 1);
+  for (long s = std::max(lower, 0L); s <= last; ++s) sum += count_[static_cast<std::size_t>(s)];
+  return sum / total_;
+}
+
+double RankSumDistribution::atMost(double sum) const { return between(0, std::lround(2.0 * sum)); }
+
+double RankSumDistribution::atLeast(double sum) const {
+  return between(std::lround(2.0 * sum), static_cast<long>(count_.size()));
+}
+
+double RankSumDistribution::asFarAs(double sum) const {
+  // The expected half-rank sum n (N + 1) is an integer, so no rounding decides what is as far out.
+  const long centre = std::lround(2.0 * expected_);
+  const long distance = std::labs(std::lround(2.0 * sum) - centre);
+  if (distance == 0) return 1.0;
+  return std::min(1.0, between(0, centre - distance) + between(centre + distance, static_cast<long>(count_.size())));
+}
+
+namespace {
+
+/// w(k; m, n) for k from 0 to `last`. @pre m <= n
+std::vector<double> countsOfU(std::size_t m, std::size_t n, std::size_t last) {
+  std::vector<std::vector<double>> counts(m + 1, std::vector<double>(last + 1, 0.0));
+  for (std::vector<double>& of : counts) of[0] = 1.0;
+  for (std::size_t j = 1; j <= n; ++j) {
+    for (std::size_t i = 1; i <= m; ++i) {
+      const std::size_t end = std::min(last, i * j);
+      for (std::size_t k = j; k <= end; ++k) counts[i][k] += counts[i - 1][k - j];
+    }
+  }
+  return std::move(counts[m]);
+}
+
+RankSumQuantile counted(std::size_t nx, std::size_t ny, double p) {
+  const std::size_t m = std::min(nx, ny), n = std::max(nx, ny);
+  double all = 1.0;  // orders: the binomial coefficient of m + n and m
+  for (std::size_t i = 1; i <= m; ++i) all *= static_cast<double>(n + i) / static_cast<double>(i);
+  const std::vector<double> counts = countsOfU(m, n, m * n / 2);
+  RankSumQuantile result;
+  double sum = 0.0;
+  // U is symmetric about m n / 2: at the middle the sum has reached one half, but for rounding.
+  for (result.u = 0; result.u + 1 < counts.size(); ++result.u) {
+    const double next = sum + counts[result.u];
+    if (next / all >= p) break;
+    sum = next;
+  }
+  result.below = sum / all;
+  return result;
+}
+
+}  // namespace
+
+RankSumQuantile rankSumQuantile(std::size_t nx, std::size_t ny, double p) {
+  assert(nx > 0 && ny > 0 && nx + ny <= 1000 && p > 0.0 && p <= 0.5);
+  thread_local std::map<std::tuple<std::size_t, std::size_t, double>, RankSumQuantile> known;
+  const std::tuple key(std::min(nx, ny), std::max(nx, ny), p);
+  const auto at = known.find(key);
+  return at != known.end() ? at->second : known.emplace(key, counted(nx, ny, p)).first->second;
+}
+
+Expected<StratifiedRankSum> stratifiedRankSum(std::span<const Stratum> strata) {
+  using Result = Expected<StratifiedRankSum>;
+  StratifiedRankSum result;
+  double sum = 0.0, variance = 0.0, wins = 0.0, weights = 0.0;
+  for (const Stratum& s : strata) {
+    if (!allFinite(s.x) || !allFinite(s.y)) return Result::none("a value is not finite");
+    const double nx = static_cast<double>(s.x.size()), ny = static_cast<double>(s.y.size()), n = nx + ny;
+    const double ties = tieTerm(pooled(s.x, s.y));
+    if (s.x.empty() || s.y.empty() || ties == n * n * n - n) {
+      ++result.left;
+      continue;
+    }
+    ++result.strata;
+    const double area = superiority(s.x, s.y)->a, weight = 1.0 / (n + 1.0);
+    sum += weight * nx * ny * (area - 0.5);
+    variance += weight * weight * nx * ny / 12.0 * (n + 1.0 - ties / (n * (n - 1.0)));
+    wins += weight * nx * ny * area;
+    weights += weight * nx * ny;
+  }
+  if (result.strata == 0) return Result::none("no stratum holds both groups and values that differ");
+  result.z = sum / std::sqrt(variance);
+  result.p = normalTwoSided(result.z);
+  result.a = wins / weights;
   return result;
 }
 

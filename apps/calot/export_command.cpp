@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "analytics/checkpoints/from_samples.h"
-#include "analytics/checkpoints/recorded_motion.h"
+#include "analytics/checkpoints/collector.h"
+#include "analytics/checkpoints/motion_track.h"
 #include "analytics/cohort/withdraw.h"
 #include "analytics/interchange/motion_tables.h"
 #include "apps/calot/commands.h"

@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "analytics/assess.h"
-#include "analytics/checkpoints/from_samples.h"
+#include "analytics/checkpoints/collector.h"
 #include "analytics/import_motion.h"
 #include "analytics/motion_words.h"
 #include "apps/calot/commands.h"

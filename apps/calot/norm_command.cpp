@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "analytics/assessment/angoff_judges.h"
+#include "analytics/assessment/norm_rule.h"
 #include "analytics/assessment/create_norm.h"
 #include "analytics/assessment/grade.h"
 #include "analytics/assessment/norm.h"
@@ -41,7 +41,7 @@ struct AngoffOptions {
 
 int judgeByAngoff(const AngoffOptions& o) {
   using Align = analytics::TextTable::Align;
-  const analytics::AngoffJudgement a = analytics::readAngoff(analytics::readCsvTable(o.table));
+  const analytics::AngoffJudgement a = analytics::readAngoff(readCsvTable(o.table));
   const double judges = static_cast<double>(a.judges.size());
   analytics::ReportTable table{
       "Probability that a borderline trainee passes",

@@ -93,10 +93,10 @@ std::vector<std::string> attemptsOf(const analytics::CohortDatabase& cohort, con
 
 std::vector<FilmOrigin> filmsInTable(const analytics::CohortDatabase& cohort, const fs::path& path,
                                      const std::vector<std::string>& chosen) {
-  const analytics::ManifestTable table(analytics::readCsvTable(path.string()), {"attempt", "film"});
+  const analytics::ManifestTable table(readCsvTable(path.string()), {"attempt", "film"});
   std::map<std::string, FilmOrigin> films;
   std::vector<std::string> order;
-  for (const analytics::CsvRow& row : table.rows()) {
+  for (const CsvRow& row : table.rows()) {
     const fs::path film = table.fileNamed(table.cell(row, "film"));
     std::error_code ignored;
     if (!fs::is_regular_file(film, ignored)) {

@@ -167,7 +167,7 @@ analytics::DesignReport designReportOf(const DesignOptions& o, StudySource& sour
   }
   if (!source.table.empty())
     return analytics::makeDesignReport(
-        analytics::tableDesignData(analytics::readCsvTable(source.table), source.elsewhere, choices), choices);
+        analytics::tableDesignData(readCsvTable(source.table), source.elsewhere, choices), choices);
   if (source.database.empty()) throw Error(ErrorKind::invalid, "name a cohort database, or a table with --table");
   source.cohort.grouping = source.groupBy == "performer" ? analytics::Grouping::performer : analytics::Grouping::group;
   if (!source.cohortName.empty()) source.cohort.cohort = analytics::CohortInUse{source.cohortName, {}};

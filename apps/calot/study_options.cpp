@@ -67,7 +67,7 @@ analytics::Study plainStudyOf(StudySource& options, const analytics::StudyProgre
     static_cast<analytics::StudyChoices&>(options.elsewhere) = options.choices;
     if (!options.protocol.empty())
       options.elsewhere.protocol = analytics::readProtocol(findAsset(options.protocol, "protocols", "protocol"));
-    return analytics::makeTableStudy(analytics::readCsvTable(options.table), options.elsewhere);
+    return analytics::makeTableStudy(readCsvTable(options.table), options.elsewhere);
   }
   if (options.database.empty()) throw Error(ErrorKind::invalid, "name a cohort database, or a table with --table");
   static_cast<analytics::StudyChoices&>(options.cohort) = options.choices;

@@ -3,7 +3,7 @@
 
 #include <QWidget>
 
-#include "analytics/assessment/attempt_summary.h"
+#include "analytics/assessment/grade.h"
 
 class QLabel;
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "analytics/assessment/attempt_summary.h"
+#include "analytics/assessment/grade.h"
 #include "analytics/report/report_document.h"
 #include "gui/attempt/attempt_track.h"
 #include "gui/attempt/long_work.h"

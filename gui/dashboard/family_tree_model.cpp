@@ -5,7 +5,7 @@
 #include <map>
 #include <QFont>
 
-#include "analytics/assessment/attempt_summary.h"
+#include "analytics/assessment/grade.h"
 #include "analytics/checkpoints/registry.h"
 #include "gui/attempt/words.h"
 

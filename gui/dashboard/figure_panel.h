@@ -5,7 +5,7 @@
 #include <optional>
 #include <QWidget>
 
-#include "analytics/assessment/attempt_summary.h"
+#include "analytics/assessment/grade.h"
 #include "gui/dashboard/attempt_sheet.h"
 #include "gui/dashboard/checkpoint_table_model.h"
 #include "gui/dashboard/cohort_document.h"

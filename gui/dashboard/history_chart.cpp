@@ -5,7 +5,7 @@
 #include <QtCharts/QAreaSeries>
 #include <QtCharts/QLineSeries>
 
-#include "analytics/statistics/interval.h"
+#include "analytics/statistics/expected.h"
 #include "gui/attempt/theme.h"
 #include "gui/attempt/words.h"
 

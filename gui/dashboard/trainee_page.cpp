@@ -11,7 +11,7 @@
 #include <QSplitter>
 #include <QTableWidget>
 
-#include "analytics/assessment/attempt_summary.h"
+#include "analytics/assessment/grade.h"
 #include "gui/attempt/figure_standing.h"
 #include "gui/attempt/theme.h"
 #include "gui/attempt/words.h"

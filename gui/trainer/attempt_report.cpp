@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "analytics/assess.h"
-#include "analytics/checkpoints/from_observables.h"
+#include "analytics/checkpoints/collector.h"
 #include "analytics/checkpoints/registry.h"
 #include "gui/attempt/figure_standing.h"
 #include "gui/attempt/words.h"

@@ -8,7 +8,7 @@
 #include <QString>
 #include <vector>
 
-#include "analytics/assessment/attempt_summary.h"
+#include "analytics/assessment/grade.h"
 #include "analytics/cohort/assessment_database.h"
 #include "analytics/cohort/cohort_database.h"
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "recorder/base/csv_numbers.h"
+#include "recorder/base/csv.h"
 #include "recorder/base/errors.h"
 #include "recorder/base/file_bytes.h"
 #include "recorder/sources/pointing.h"

@@ -19,7 +19,7 @@ namespace calot {
 namespace {
 
 TEST(Extending, ACheckpointFollowsTheSteps) {
-  const analytics::CheckpointEntry entry = analytics::longestTouchEntries().front();
+  const analytics::CheckpointEntry entry = analytics::longestTouchRows().front();
   analytics::AttemptContext context;
   context.structures = {"liver", "gallbladder"};
   const std::unique_ptr<analytics::Checkpoint> checkpoint = entry.make(context);

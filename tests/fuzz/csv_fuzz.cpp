@@ -3,8 +3,7 @@
 #include <array>
 #include <string>
 
-#include "analytics/report/csv_reader.h"
-#include "recorder/base/csv_numbers.h"
+#include "recorder/base/csv.h"
 #include "recorder/sources/column_map.h"
 
 #include "tests/fuzz/support/fuzz_target.h"
@@ -17,7 +16,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const std::uint8_t choice = fuzz::takeByte(bytes);
     static const std::array<std::string, 4> wanted{"t", "x", "y", "z"};
     if (choice % 4 == 0) {
-      recorder::readCsvNumbers(bytes, "a.csv", choice % 8 == 0 ? ',' : ';', wanted);
+      readCsvNumbers(bytes, "a.csv", choice % 8 == 0 ? ',' : ';', wanted);
     } else if (choice % 4 == 1) {
       recorder::parseColumnMap(bytes, "map.json");
     } else if (choice % 4 == 2) {
@@ -28,7 +27,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       map.hand[0]->position = {std::string("x"), std::string("y"), std::string("z")};
       recorder::parseCsvMotion(bytes, "a.csv", map);
     } else {
-      analytics::parseCsvTable(fuzz::textOf(bytes), "people.csv");
+      parseCsvTable(fuzz::textOf(bytes), "people.csv");
     }
   });
 }

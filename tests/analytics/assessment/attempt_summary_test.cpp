@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What an instructor reads first of an attempt, and what a trainee aims at next.
-#include "analytics/assessment/attempt_summary.h"
+#include "analytics/assessment/grade.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A norm by borderline regression, from a cohort's attempts and their ratings.
-#include "analytics/assessment/borderline_norm.h"
+#include "analytics/assessment/norm.h"
 
 #include <gtest/gtest.h>
 

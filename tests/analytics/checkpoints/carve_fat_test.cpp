@@ -10,7 +10,6 @@
 
 #include "analytics/assess.h"
 #include "analytics/checkpoints/collector.h"
-#include "analytics/checkpoints/from_observables.h"
 #include "analytics/cohort/cohort_database.h"
 #include "recorder/attempt.h"
 #include "recorder/engine/session.h"

@@ -7,8 +7,8 @@
 #include <functional>
 #include <random>
 
-#include "analytics/checkpoints/from_samples.h"
-#include "analytics/checkpoints/gap_bridge.h"
+#include "analytics/checkpoints/collector.h"
+#include "analytics/checkpoints/motion.h"
 #include "analytics/checkpoints/motion_track.h"
 #include "analytics/checkpoints/registry.h"
 #include "analytics/statistics/descriptive.h"

@@ -8,8 +8,6 @@
 #include <random>
 #include <vector>
 
-#include "analytics/checkpoints/spectrum.h"
-
 namespace calot::analytics {
 namespace {
 

@@ -21,7 +21,7 @@
 #include "analytics/cohort/withdraw.h"
 #include "analytics/interchange/date_shift.h"
 #include "analytics/interchange/original_names.h"
-#include "analytics/report/csv_reader.h"
+#include "recorder/base/csv.h"
 #include "recorder/base/file_bytes.h"
 #include "tests/analytics/cohort/support/cohort_support.h"
 #include "tests/analytics/support/refusal.h"

@@ -15,7 +15,7 @@
 #include "analytics/cohort/any_table.h"
 #include "analytics/interchange/cohort_tables.h"
 #include "analytics/interchange/column_notes.h"
-#include "analytics/report/csv_reader.h"
+#include "recorder/base/csv.h"
 #include "tests/analytics/cohort/support/cohort_support.h"
 #include "tests/analytics/support/refusal.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "analytics/report/csv_reader.h"
+#include "recorder/base/csv.h"
 
 #include <gtest/gtest.h>
 

@@ -5,8 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "analytics/statistics/cronbach_alpha.h"
-#include "analytics/statistics/intraclass_correlation.h"
+#include "analytics/statistics/reliability.h"
 #include "tests/analytics/statistics/support/published_data.h"
 
 namespace calot::analytics {

@@ -6,7 +6,7 @@
 #include <random>
 
 #include "analytics/statistics/delong.h"
-#include "analytics/statistics/superiority_interval.h"
+#include "analytics/statistics/effect_sizes.h"
 #include "tests/analytics/statistics/support/published_data.h"
 
 namespace calot::analytics {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "analytics/statistics/bootstrap.h"
+#include "analytics/statistics/resampling.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "analytics/statistics/descriptive.h"
-#include "analytics/statistics/random_stream.h"
 #include "tests/analytics/statistics/support/published_data.h"
 
 namespace calot::analytics {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "analytics/statistics/censored_times.h"
+#include "analytics/statistics/survival.h"
 
 #include <gtest/gtest.h>
 

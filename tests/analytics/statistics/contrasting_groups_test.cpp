@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "analytics/statistics/contrasting_groups.h"
+#include "analytics/statistics/standard_setting.h"
 
 #include <gtest/gtest.h>
 

@@ -16,16 +16,13 @@
 #include <string>
 #include <vector>
 
-#include "analytics/statistics/bootstrap.h"
-#include "analytics/statistics/contrasting_groups.h"
-#include "analytics/statistics/covariance_analysis.h"
-#include "analytics/statistics/cronbach_alpha.h"
 #include "analytics/statistics/descriptive.h"
 #include "analytics/statistics/distributions.h"
-#include "analytics/statistics/hedges.h"
-#include "analytics/statistics/intraclass_correlation.h"
-#include "analytics/statistics/random_stream.h"
-#include "analytics/statistics/superiority_interval.h"
+#include "analytics/statistics/effect_sizes.h"
+#include "analytics/statistics/regression.h"
+#include "analytics/statistics/reliability.h"
+#include "analytics/statistics/resampling.h"
+#include "analytics/statistics/standard_setting.h"
 #include "tests/analytics/statistics/support/simulated_designs.h"
 
 namespace calot::analytics {

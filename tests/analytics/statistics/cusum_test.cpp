@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "analytics/statistics/random_stream.h"
+#include "analytics/statistics/resampling.h"
 
 namespace calot::analytics {
 namespace {

@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Variance components of a crossed facet, and the error of measurement.
-#include "analytics/statistics/generalizability.h"
+#include "analytics/statistics/reliability.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <set>
 
-#include "analytics/statistics/intraclass_correlation.h"
-#include "analytics/statistics/measurement_error.h"
-#include "analytics/statistics/random_stream.h"
+#include "analytics/statistics/resampling.h"
 #include "tests/analytics/statistics/support/published_data.h"
 
 namespace calot::analytics {

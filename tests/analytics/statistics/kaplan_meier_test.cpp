@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "analytics/statistics/kaplan_meier.h"
+#include "analytics/statistics/survival.h"
 
 #include <gtest/gtest.h>
 
-#include "analytics/statistics/attempts_to_criterion.h"
 #include "tests/analytics/statistics/support/published_data.h"
 
 namespace calot::analytics {

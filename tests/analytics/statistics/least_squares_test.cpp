@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Least squares, HC3 errors and the analysis of covariance on a baseline.
-#include "analytics/statistics/least_squares.h"
+#include "analytics/statistics/regression.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numeric>
 
-#include "analytics/statistics/covariance_analysis.h"
 #include "tests/analytics/statistics/support/published_data.h"
 
 namespace calot::analytics {

@@ -5,10 +5,8 @@
 #include <cmath>
 #include <vector>
 
-#include "analytics/statistics/bland_altman.h"
-#include "analytics/statistics/deming_regression.h"
-#include "analytics/statistics/kruskal_wallis.h"
-#include "analytics/statistics/spearman.h"
+#include "analytics/statistics/method_agreement.h"
+#include "analytics/statistics/rank_tests.h"
 #include "tests/analytics/statistics/support/published_data.h"
 
 namespace calot::analytics {

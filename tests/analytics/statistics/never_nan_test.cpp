@@ -7,20 +7,17 @@
 #include <string>
 #include <vector>
 
-#include "analytics/statistics/bootstrap.h"
-#include "analytics/statistics/censored_times.h"
-#include "analytics/statistics/contrasting_groups.h"
-#include "analytics/statistics/covariance_analysis.h"
-#include "analytics/statistics/cronbach_alpha.h"
 #include "analytics/statistics/delong.h"
 #include "analytics/statistics/descriptive.h"
-#include "analytics/statistics/hedges.h"
-#include "analytics/statistics/kruskal_wallis.h"
+#include "analytics/statistics/effect_sizes.h"
 #include "analytics/statistics/learning_curve.h"
-#include "analytics/statistics/random_intercept.h"
-#include "analytics/statistics/spearman.h"
-#include "analytics/statistics/stratified_rank_sum.h"
-#include "analytics/statistics/superiority_interval.h"
+#include "analytics/statistics/mixed_models.h"
+#include "analytics/statistics/rank_tests.h"
+#include "analytics/statistics/regression.h"
+#include "analytics/statistics/reliability.h"
+#include "analytics/statistics/resampling.h"
+#include "analytics/statistics/standard_setting.h"
+#include "analytics/statistics/survival.h"
 #include "analytics/statistics/two_groups.h"
 
 namespace calot::analytics {

@@ -8,9 +8,7 @@
 #include <random>
 
 #include "analytics/statistics/distributions.h"
-#include "analytics/statistics/kruskal_wallis.h"
-#include "analytics/statistics/spearman.h"
-#include "analytics/statistics/stratified_rank_sum.h"
+#include "analytics/statistics/rank_tests.h"
 #include "analytics/statistics/two_groups.h"
 #include "tests/analytics/statistics/support/published_data.h"
 

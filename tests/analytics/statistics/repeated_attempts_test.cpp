@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "analytics/statistics/repeated_attempts.h"
+#include "analytics/statistics/descriptive.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,7 @@
 #include <set>
 #include <span>
 
-#include "analytics/statistics/descriptive.h"
-#include "analytics/statistics/random_intercept.h"
+#include "analytics/statistics/mixed_models.h"
 #include "tests/analytics/statistics/support/published_data.h"
 
 namespace calot::analytics {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "analytics/statistics/repeated_groups.h"
+#include "analytics/statistics/mixed_models.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <set>
 #include <string>
 
-#include "analytics/statistics/random_stream.h"
+#include "analytics/statistics/resampling.h"
 #include "tests/analytics/statistics/support/published_data.h"
 
 namespace calot::analytics {

@@ -2,8 +2,7 @@
 // Borderline regression and Angoff's method.
 #include <gtest/gtest.h>
 
-#include "analytics/statistics/angoff.h"
-#include "analytics/statistics/borderline_regression.h"
+#include "analytics/statistics/standard_setting.h"
 #include "tests/analytics/statistics/support/published_data.h"
 
 namespace calot::analytics {

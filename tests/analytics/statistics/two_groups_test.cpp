@@ -11,8 +11,6 @@
 #include <random>
 #include <vector>
 
-#include "analytics/statistics/rank_sum_distribution.h"
-#include "analytics/statistics/rank_sum_quantile.h"
 #include "tests/analytics/statistics/support/published_data.h"
 
 namespace calot::analytics {

@@ -11,7 +11,7 @@
 namespace calot {
 
 namespace analytics {
-std::vector<CheckpointEntry> longestTouchEntries();
+std::vector<CheckpointEntry> longestTouchRows();
 }
 namespace recorder {
 extern const DeviceKind pendulumKind;

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "analytics/design/design_report.h"
-#include "analytics/report/csv_reader.h"
+#include "recorder/base/csv.h"
 
 namespace calot::analytics::support {
 

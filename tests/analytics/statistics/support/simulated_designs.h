@@ -7,12 +7,11 @@
 #include <cstdint>
 #include <vector>
 
-#include "analytics/statistics/bland_altman.h"
-#include "analytics/statistics/borderline_regression.h"
-#include "analytics/statistics/deming_regression.h"
-#include "analytics/statistics/measurement_error.h"
-#include "analytics/statistics/random_stream.h"
-#include "analytics/statistics/spearman.h"
+#include "analytics/statistics/method_agreement.h"
+#include "analytics/statistics/rank_tests.h"
+#include "analytics/statistics/reliability.h"
+#include "analytics/statistics/resampling.h"
+#include "analytics/statistics/standard_setting.h"
 
 namespace calot::analytics::simulated {
 

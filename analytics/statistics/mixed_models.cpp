@@ -1,0 +1,302 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#include "analytics/statistics/mixed_models.h"
+
+#include <cmath>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "analytics/statistics/descriptive.h"
+#include "analytics/statistics/distributions.h"
+#include "analytics/statistics/regression.h"
+
+namespace calot::analytics {
+namespace {
+
+/// The rows of the model, ordered by participant.
+struct ClusteredRows {
+  std::vector<std::vector<double>> columns;
+  std::vector<double> y;
+  std::vector<std::size_t> sizes;  ///< of the participants
+};
+
+std::string collectRows(const std::vector<std::vector<double>>& columns, std::span<const std::size_t> participants,
+                        std::span<const double> y, ClusteredRows& rows) {
+  if (participants.size() != y.size()) return "the columns have different lengths";
+  if (!allFinite(y)) return "a value is not finite";
+  std::map<std::size_t, std::vector<std::size_t>> of;
+  for (std::size_t i = 0; i < y.size(); ++i) of[participants[i]].push_back(i);
+  bool repeated = false, scatter = false;
+  rows.columns.resize(columns.size());
+  for (const auto& item : of) {
+    rows.sizes.push_back(item.second.size());
+    repeated = repeated || item.second.size() > 1;
+    for (const std::size_t i : item.second) {
+      scatter = scatter || y[i] != y[item.second.front()];
+      rows.y.push_back(y[i]);
+      for (std::size_t c = 0; c < columns.size(); ++c) {
+        if (columns[c].size() != y.size()) return "the columns have different lengths";
+        rows.columns[c].push_back(columns[c][i]);
+      }
+    }
+  }
+  if (!repeated) return "no participant has two attempts: take the first or the mean";
+  if (!scatter) return "all attempts of each participant are equal: take the mean";
+  return {};
+}
+
+/// A column less `shrink` times each participant's mean.
+std::vector<double> shrunk(const std::vector<double>& column, const std::vector<std::size_t>& sizes, double ratio) {
+  std::vector<double> result;
+  result.reserve(column.size());
+  std::size_t first = 0;
+  for (const std::size_t count : sizes) {
+    const double n = static_cast<double>(count), shrink = 1.0 - 1.0 / std::sqrt(1.0 + n * ratio);
+    double centre = 0.0;
+    for (std::size_t i = first; i < first + count; ++i) centre += column[i] / n;
+    for (std::size_t i = first; i < first + count; ++i) result.push_back(column[i] - shrink * centre);
+    first += count;
+  }
+  return result;
+}
+
+/// The model after the transformation for one ratio of the variances.
+struct RatioProfile {
+  Expected<LeastSquares> fit = Expected<LeastSquares>::none("");
+  double deviance = HUGE_VAL;  ///< -2 restricted log-likelihood without constants
+  double slope = 0.0;          ///< of the deviance over the ratio
+};
+
+RatioProfile profileAt(const ClusteredRows& rows, double ratio) {
+  std::vector<std::vector<double>> columns;
+  for (const std::vector<double>& column : rows.columns) columns.push_back(shrunk(column, rows.sizes, ratio));
+  RatioProfile result;
+  result.fit = leastSquares(columns, shrunk(rows.y, rows.sizes, ratio));
+  if (!result.fit) return result;
+  const LeastSquares& fit = *result.fit;
+  // With V_i = I + ratio 11', d V^-1 = -V^-1 11' V^-1, and the sum of a participant's row of V^-1 is 1 /
+  // (1 + n ratio).
+  const std::size_t p = columns.size();
+  double logs = 0.0, ofSquares = 0.0, ofLogs = 0.0;
+  std::size_t first = 0;
+  for (const std::size_t count : rows.sizes) {
+    const double n = static_cast<double>(count), inflation = 1.0 + n * ratio;
+    logs += std::log1p(n * ratio);
+    double residuals = 0.0;
+    std::vector<double> sums(p, 0.0);
+    for (std::size_t i = first; i < first + count; ++i) {
+      residuals += fit.residuals[i];
+      for (std::size_t a = 0; a < p; ++a) sums[a] += columns[a][i];
+    }
+    ofSquares -= residuals * residuals / inflation;
+    ofLogs += n / inflation;
+    for (std::size_t a = 0; a < p; ++a) {
+      for (std::size_t b = 0; b < p; ++b) ofLogs -= sums[a] * sums[b] / inflation * fit.unscaled[a * p + b];
+    }
+    first += count;
+  }
+  result.deviance = fit.df * std::log(fit.residualSumOfSquares / fit.df) + logs + fit.logDeterminant;
+  result.slope = fit.df * ofSquares / fit.residualSumOfSquares + ofLogs;
+  return result;
+}
+
+}  // namespace
+
+Expected<InterceptModel> fitInterceptModel(const std::vector<std::vector<double>>& columns,
+                                           std::span<const std::size_t> participants, std::span<const double> y) {
+  using Result = Expected<InterceptModel>;
+  ClusteredRows rows;
+  if (const std::string reason = collectRows(columns, participants, y, rows); !reason.empty())
+    return Result::none(reason);
+  // Ratio 0 and a grid over its logarithm, then the root of the slope around the best.
+  const RatioProfile unrelated = profileAt(rows, 0.0);
+  if (!unrelated.fit) return Result::none(unrelated.fit.reason());
+  constexpr double low = -12.0, high = 24.0, step = 0.5;
+  double bestLog = low, least = unrelated.deviance;
+  for (double logRatio = low; logRatio <= high; logRatio += step) {
+    const double deviance = profileAt(rows, std::exp(logRatio)).deviance;
+    if (deviance < least) {
+      least = deviance;
+      bestLog = logRatio;
+    }
+  }
+  if (bestLog + step > high) return Result::none("attempts of each participant scatter too little: take the mean");
+  double ratio = 0.0;  // or so small that the result is the same
+  if (bestLog > low) {
+    // Root of the slope rather than minimum of the deviance, which is known to half of the digits only.
+    const auto slope = [&](double logRatio) { return profileAt(rows, std::exp(logRatio)).slope; };
+    if (!(slope(bestLog - step) < 0.0) || !(slope(bestLog + step) > 0.0))
+      return Result::none("the likelihood has no clear maximum");
+    ratio = std::exp(rootBetween(slope, bestLog - step, bestLog + step));
+  }
+  const RatioProfile best = profileAt(rows, ratio);
+  if (!best.fit) return Result::none(best.fit.reason());
+  InterceptModel result;
+  const LeastSquares& fit = *best.fit;
+  result.coefficients = fit.coefficients;
+  result.errors = fit.standardErrors();
+  result.withinVariance = fit.sigma * fit.sigma;
+  result.betweenVariance = ratio * result.withinVariance;
+  constexpr double logTwoPi = 1.8378770664093454836;
+  result.restrictedLogLikelihood = -0.5 * (fit.df * (1.0 + logTwoPi) + best.deviance);
+  result.participants = rows.sizes.size();
+  result.attempts = rows.y.size();
+  return result;
+}
+
+namespace {
+
+struct Standing {
+  bool inX = false;
+  std::size_t site = 0;
+};
+
+std::string gather(std::span<const ModelAttempt> attempts, std::map<std::size_t, Standing>& participants) {
+  bool anyX = false, anyY = false;
+  for (const ModelAttempt& a : attempts) {
+    if (!std::isfinite(a.value)) return "a value is not finite";
+    (a.inX ? anyX : anyY) = true;
+    const Standing& p = participants.try_emplace(a.participant, Standing{a.inX, a.site}).first->second;
+    if (p.inX != a.inX) return "a participant is in both groups";
+    if (p.site != a.site) return "a participant is at two sites";
+  }
+  if (!anyX) return "the first group is empty";
+  if (!anyY) return "the second group is empty";
+  return {};
+}
+
+}  // namespace
+
+Expected<RandomIntercept> randomIntercept(std::span<const ModelAttempt> attempts, double level) {
+  using Result = Expected<RandomIntercept>;
+  std::map<std::size_t, Standing> participants;
+  if (const std::string reason = gather(attempts, participants); !reason.empty()) return Result::none(reason);
+  std::set<std::size_t> sites;
+  for (const auto& item : participants) sites.insert(item.second.site);
+  std::vector<std::vector<double>> columns(1 + sites.size());
+  std::vector<std::size_t> whose;
+  std::vector<double> y;
+  for (const ModelAttempt& a : attempts) {
+    whose.push_back(a.participant);
+    y.push_back(a.value);
+    columns[0].push_back(a.inX ? 1.0 : 0.0);
+    std::size_t column = 1;
+    for (const std::size_t site : sites) columns[column++].push_back(a.site == site ? 1.0 : 0.0);
+  }
+  const bool few = participants.size() < sites.size() + 2;
+  const Expected<InterceptModel> model = fitInterceptModel(columns, whose, y);
+  if (!model && model.reason().find(": take ") != std::string::npos) return Result::none(model.reason());
+  if (few) return Result::none("too few participants for the model");
+  if (!model) {
+    return Result::none(model.reason() == "the columns depend on each other" ? "group and site can't be told apart"
+                                                                             : model.reason());
+  }
+  RandomIntercept result;
+  result.difference = model->coefficients[0];
+  result.error = model->errors[0];
+  result.df = static_cast<double>(participants.size() - sites.size()) - 1.0;
+  result.t = result.difference / result.error;
+  result.p = studentTwoSided(result.t, result.df);
+  const double half = studentQuantile(0.5 + level / 2.0, result.df) * result.error;
+  result.interval = {result.difference - half, result.difference + half, level, "Student's t, REML"};
+  result.withinVariance = model->withinVariance;
+  result.betweenVariance = model->betweenVariance;
+  result.restrictedLogLikelihood = model->restrictedLogLikelihood;
+  return result;
+}
+
+namespace {
+
+std::string repeatedObjection(std::span<const OccasionValue> values, const std::set<double>& occasions,
+                              OccasionKind kind) {
+  std::map<std::size_t, bool> group;
+  std::map<double, std::set<bool>> at;
+  bool anyX = false, anyY = false;
+  for (const OccasionValue& v : values) {
+    if (!std::isfinite(v.value) || !std::isfinite(v.occasion)) return "a value is not finite";
+    if (group.try_emplace(v.participant, v.inX).first->second != v.inX) return "a participant is in both groups";
+    (v.inX ? anyX : anyY) = true;
+    at[v.occasion].insert(v.inX);
+  }
+  if (!anyX) return "the first group is empty";
+  if (!anyY) return "the second group is empty";
+  if (occasions.size() < 2) return "there is one occasion only";
+  if (group.size() < 4) return "fewer than four participants";
+  for (const auto& item : at) {
+    if (kind == OccasionKind::named && item.second.size() < 2) return "at an occasion there is one group only";
+  }
+  return {};
+}
+
+ModelTerm termOf(const InterceptModel& model, std::size_t column, double df, double level) {
+  ModelTerm term;
+  term.estimate = model.coefficients[column];
+  term.error = model.errors[column];
+  term.df = df;
+  term.t = term.estimate / term.error;
+  term.p = studentTwoSided(term.t, df);
+  const double half = studentQuantile(0.5 + level / 2.0, df) * term.error;
+  term.interval = {term.estimate - half, term.estimate + half, level, "Student's t, REML"};
+  return term;
+}
+
+}  // namespace
+
+Expected<RepeatedGroups> repeatedGroups(std::span<const OccasionValue> values, OccasionKind kind,
+                                        std::span<const std::size_t> sites, double level) {
+  using Result = Expected<RepeatedGroups>;
+  std::set<double> occasions;
+  for (const OccasionValue& v : values) occasions.insert(v.occasion);
+  if (const std::string reason = repeatedObjection(values, occasions, kind); !reason.empty())
+    return Result::none(reason);
+  if (!sites.empty() && sites.size() != values.size()) return Result::none("the columns have different lengths");
+  const std::set<std::size_t> siteSet(sites.begin(), sites.end());
+  const std::size_t steps = kind == OccasionKind::number ? 1 : occasions.size() - 1;
+  const std::size_t strata = siteSet.empty() ? 0 : siteSet.size() - 1;
+  std::vector<std::vector<double>> columns(2 + 2 * steps + strata);
+  std::vector<std::size_t> whose;
+  std::vector<double> y;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const OccasionValue& v = values[i];
+    const double x = v.inX ? 1.0 : 0.0;
+    whose.push_back(v.participant);
+    y.push_back(v.value);
+    columns[0].push_back(1.0);
+    columns[1].push_back(x);
+    auto later = std::next(occasions.begin());
+    for (std::size_t s = 0; s < steps; ++s, ++later) {
+      const double step = kind == OccasionKind::number ? v.occasion - *occasions.begin()
+                          : v.occasion == *later       ? 1.0
+                                                       : 0.0;
+      columns[2 + s].push_back(step);
+      columns[2 + steps + s].push_back(x * step);
+    }
+    if (strata == 0) continue;
+    std::size_t column = 2 + 2 * steps;
+    for (auto site = std::next(siteSet.begin()); site != siteSet.end(); ++site)
+      columns[column++].push_back(sites[i] == *site ? 1.0 : 0.0);
+  }
+  const Expected<InterceptModel> model = fitInterceptModel(columns, whose, y);
+  if (!model) return Result::none(model.reason());
+  const double people = static_cast<double>(model->participants);
+  const double outer = people - 2.0 - static_cast<double>(strata);
+  const double inner = static_cast<double>(model->attempts) - people - 2.0 * static_cast<double>(steps);
+  if (outer < 1.0 || inner < 1.0) return Result::none("too few attempts for the model");
+  RepeatedGroups result;
+  result.group = termOf(*model, 1, outer, level);
+  for (std::size_t s = 0; s < steps; ++s) {
+    result.occasion.push_back(termOf(*model, 2 + s, inner, level));
+    result.interaction.push_back(termOf(*model, 2 + steps + s, inner, level));
+  }
+  result.betweenVariance = model->betweenVariance;
+  result.withinVariance = model->withinVariance;
+  result.restrictedLogLikelihood = model->restrictedLogLikelihood;
+  result.participants = model->participants;
+  result.attempts = model->attempts;
+  result.occasions = occasions.size();
+  return result;
+}
+
+}  // namespace calot::analytics

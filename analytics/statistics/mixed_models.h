@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Repeated attempts: the random-intercept model, and two groups over several occasions.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "analytics/statistics/expected.h"
+
+namespace calot::analytics {
+
+/// y = X b + u_participant + e, u and e independent and normal, fitted by restricted maximum likelihood.
+struct InterceptModel {
+  std::vector<double> coefficients;      ///< b, a column of X each
+  std::vector<double> errors;            ///< of b; the variances taken as known
+  double betweenVariance = 0.0;          ///< of u; 0: at its bound
+  double withinVariance = 0.0;           ///< of e
+  double restrictedLogLikelihood = 0.0;  ///< without the term ln |X'X| / 2 that depends on the coding (as R's nlme)
+  std::size_t participants = 0, attempts = 0;
+};
+
+/// Restricted maximum likelihood (Patterson and Thompson 1971, Biometrika 58:545). With l = var u / var e and w_i = 1 -
+/// 1 / sqrt(1 + n_i l), rows less w_i times their participant's mean are independent of one variance, so the likelihood
+/// is maximised over l alone. No answer for lengths that differ, values not finite, no participant with two attempts,
+/// attempts of each participant all equal, columns that depend on each other, fewer attempts than columns, or a
+/// likelihood without a clear maximum.
+/// @param participants whose attempt each row is @param columns of X, each as long as y
+Expected<InterceptModel> fitInterceptModel(const std::vector<std::vector<double>>& columns,
+                                           std::span<const std::size_t> participants, std::span<const double> y);
+
+struct ModelAttempt {
+  std::size_t participant = 0;
+  bool inX = false;      ///< group; one for all attempts of a participant
+  std::size_t site = 0;  ///< stratum; one for all attempts of a participant
+  double value = 0.0;
+};
+
+struct RandomIntercept {
+  double difference = 0.0;  ///< mean of x less mean of y, within sites
+  double error = 0.0;
+  double t = 0.0, df = 0.0, p = 1.0;  ///< Student, df = participants less sites less 1 (containment); two-sided
+  Interval interval;
+  double betweenVariance =
+      0.0;  ///< of participants; 0: at its bound, attempts of a person are no more alike than others
+  double withinVariance = 0.0;           ///< of attempts of one participant
+  double restrictedLogLikelihood = 0.0;  ///< without the term ln |X'X| / 2 that depends on the coding (as R's nlme)
+};
+
+/// Value = constant + b [x] + site + u_participant + e by restricted maximum likelihood (intercept_model.h). Intervals
+/// and p take the variances as known but for the degrees of freedom. Sites are fixed strata. No answer for an empty
+/// group, a participant in two groups or sites, fewer participants than the model needs, or as fitInterceptModel().
+Expected<RandomIntercept> randomIntercept(std::span<const ModelAttempt> attempts, double level = 0.95);
+
+struct OccasionValue {
+  std::size_t participant = 0;
+  bool inX = false;      ///< group; one for all attempts of a participant
+  double occasion = 0.0; /**< number of the attempt, or the place of a named occasion: 0, 1, ... */
+  double value = 0.0;
+};
+
+enum class OccasionKind {
+  number,  ///< one slope over the occasion, counted from the first
+  named    ///< each occasion against the first
+};
+
+/// One coefficient with its test. Effects of the group are of x less y.
+struct ModelTerm {
+  double estimate = 0.0, error = 0.0, t = 0.0, df = 0.0, p = 1.0;
+  Interval interval;
+};
+
+struct RepeatedGroups {
+  ModelTerm group;                     ///< difference of the groups at the first occasion
+  std::vector<ModelTerm> occasion;     ///< of y: change for each step, or at each later occasion against the first
+  std::vector<ModelTerm> interaction;  ///< by how much that of x differs
+  double betweenVariance = 0.0, withinVariance = 0.0, restrictedLogLikelihood = 0.0;
+  std::size_t participants = 0, attempts = 0, occasions = 0;
+};
+
+/// value = a + b [x] + c occasion + d [x] occasion + u_participant + e by restricted maximum likelihood
+/// (intercept_model.h). Student's t with the degrees of freedom of inner and outer terms (Pinheiro and Bates
+/// 2000, 2.4): the group's has participants - 2, terms of the occasion attempts - participants - their number. Each
+/// site is a constant of its own where `sites` names more than one, which takes their number less one from the group's.
+/// No answer for an empty group, a participant in two groups, fewer than two occasions, a named occasion without both
+/// groups, fewer than four participants, or as fitInterceptModel().
+/// @param sites of each value, as many as values, or empty
+Expected<RepeatedGroups> repeatedGroups(std::span<const OccasionValue> values, OccasionKind kind,
+                                        std::span<const std::size_t> sites = {}, double level = 0.95);
+
+}  // namespace calot::analytics

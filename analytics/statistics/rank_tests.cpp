@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#include "analytics/statistics/rank_tests.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+#include "analytics/statistics/descriptive.h"
+#include "analytics/statistics/distributions.h"
+#include "analytics/statistics/multiplicity.h"
+#include "analytics/statistics/two_groups.h"
+
+namespace calot::analytics {
+namespace {
+
+struct MeanRanks {
+  std::vector<double> of, size;  ///< by group
+  double n = 0.0, tieTerm = 0.0;
+};
+
+Expected<MeanRanks> meanRanks(std::span<const std::vector<double>> groups) {
+  using Result = Expected<MeanRanks>;
+  if (groups.size() < 2) return Result::none("fewer than two groups");
+  std::vector<double> all;
+  for (const std::vector<double>& group : groups) {
+    if (group.empty()) return Result::none("a group is empty");
+    if (!allFinite(group)) return Result::none("a value is not finite");
+    all.insert(all.end(), group.begin(), group.end());
+  }
+  MeanRanks m;
+  m.n = static_cast<double>(all.size());
+  m.tieTerm = tieTerm(all);
+  if (m.tieTerm == m.n * m.n * m.n - m.n) return Result::none("all values are equal");
+  const std::vector<double> ranks = midRanks(all);
+  std::size_t next = 0;
+  for (const std::vector<double>& group : groups) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < group.size(); ++i) sum += ranks[next++];
+    m.size.push_back(static_cast<double>(group.size()));
+    m.of.push_back(sum / m.size.back());
+  }
+  return m;
+}
+
+}  // namespace
+
+Expected<KruskalWallis> kruskalWallis(std::span<const std::vector<double>> groups) {
+  const Expected<MeanRanks> m = meanRanks(groups);
+  if (!m) return Expected<KruskalWallis>::none(m.reason());
+  const double n = m->n;
+  KruskalWallis result;
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    const double distance = m->of[g] - (n + 1.0) / 2.0;
+    result.h += m->size[g] * distance * distance;
+  }
+  result.h *= 12.0 / (n * (n + 1.0)) / (1.0 - m->tieTerm / (n * n * n - n));
+  result.df = static_cast<double>(groups.size() - 1);
+  result.p = chiSquaredUpper(result.h, result.df);
+  result.epsilonSquared = result.h / (n - 1.0);
+  return result;
+}
+
+Expected<std::vector<DunnPair>> dunn(std::span<const std::vector<double>> groups) {
+  using Result = Expected<std::vector<DunnPair>>;
+  const Expected<MeanRanks> m = meanRanks(groups);
+  if (!m) return Result::none(m.reason());
+  const double n = m->n, variance = n * (n + 1.0) / 12.0 - m->tieTerm / (12.0 * (n - 1.0));
+  std::vector<DunnPair> pairs;
+  std::vector<double> p;
+  for (std::size_t a = 0; a < groups.size(); ++a) {
+    for (std::size_t b = a + 1; b < groups.size(); ++b) {
+      DunnPair pair{a, b};
+      pair.z = (m->of[a] - m->of[b]) / std::sqrt(variance * (1.0 / m->size[a] + 1.0 / m->size[b]));
+      pair.p = normalTwoSided(pair.z);
+      p.push_back(pair.p);
+      pairs.push_back(pair);
+    }
+  }
+  const Expected<std::vector<double>> adjusted = holm(p);
+  for (std::size_t i = 0; i < pairs.size(); ++i) pairs[i].adjusted = (*adjusted)[i];
+  return pairs;
+}
+
+namespace {
+
+/// Twice the mid-ranks about their mean: sums of products are whole numbers, and rounding decides nothing.
+std::vector<long> centredRanks(std::span<const double> values) {
+  const std::vector<double> ranks = midRanks(values);
+  std::vector<long> centred(ranks.size());
+  for (std::size_t i = 0; i < ranks.size(); ++i)
+    centred[i] = std::lround(2.0 * ranks[i]) - static_cast<long>(ranks.size()) - 1;
+  return centred;
+}
+
+long product(const std::vector<long>& a, const std::vector<long>& b) {
+  return std::inner_product(a.begin(), a.end(), b.begin(), 0L);
+}
+
+double shareOfOrders(const std::vector<long>& a, std::vector<long> b) {
+  const long observed = std::labs(product(a, b));
+  std::vector<std::size_t> order(b.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::vector<long> moved(b.size());
+  long hits = 0, all = 0;
+  do {
+    for (std::size_t i = 0; i < b.size(); ++i) moved[i] = b[order[i]];
+    ++all;
+    if (std::labs(product(a, moved)) >= observed) ++hits;
+  } while (std::next_permutation(order.begin(), order.end()));
+  return static_cast<double>(hits) / static_cast<double>(all);
+}
+
+/// ln of the product of the factorials of the sizes of the ties.
+double logTieFactorials(std::vector<long> values) {
+  std::sort(values.begin(), values.end());
+  double sum = 0.0;
+  for (auto first = values.begin(); first != values.end();) {
+    const auto next = std::upper_bound(first, values.end(), *first);
+    sum += std::lgamma(static_cast<double>(next - first) + 1.0);
+    first = next;
+  }
+  return sum;
+}
+
+}  // namespace
+
+Expected<Spearman> spearman(std::span<const double> x, std::span<const double> y) {
+  using Result = Expected<Spearman>;
+  if (x.size() != y.size()) return Result::none("the two variables have different lengths");
+  if (x.size() < 3) return Result::none("fewer than three pairs");
+  if (!allFinite(x) || !allFinite(y)) return Result::none("a value is not finite");
+  const std::vector<long> a = centredRanks(x), b = centredRanks(y);
+  const long aa = product(a, a), bb = product(b, b), ab = product(a, b);
+  if (aa == 0 || bb == 0) return Result::none("a variable has all values equal");
+  Spearman result;
+  result.ties = tieTerm(x) > 0.0 || tieTerm(y) > 0.0;
+  const double n = static_cast<double>(x.size());
+  result.rho = static_cast<double>(ab) / (std::sqrt(static_cast<double>(aa)) * std::sqrt(static_cast<double>(bb)));
+  result.rho = std::clamp(result.rho, -1.0, 1.0);
+  if (x.size() <= exactSpearmanLimit) {
+    result.exact = true;
+    result.p = shareOfOrders(a, b);
+  } else if (aa == bb && std::labs(ab) == aa) {
+    result.p = 2.0 * std::exp(logTieFactorials(a) - std::lgamma(n + 1.0));
+  } else {
+    result.p = studentTwoSided(result.rho * std::sqrt((n - 2.0) / ((1.0 - result.rho) * (1.0 + result.rho))), n - 2.0);
+  }
+  return result;
+}
+
+Expected<Interval> spearmanInterval(double rho, std::size_t n, double level) {
+  if (n < 4) return Expected<Interval>::none("fewer than four pairs");
+  constexpr double rounding = 1e-12;
+  if (!(std::abs(rho) < 1.0 - rounding)) return Expected<Interval>::none("the ranks agree perfectly");
+  const double half =
+      normalQuantile(0.5 + level / 2.0) * std::sqrt((1.0 + 0.5 * rho * rho) / (static_cast<double>(n) - 3.0));
+  return Interval{std::tanh(std::atanh(rho) - half), std::tanh(std::atanh(rho) + half), level, "Bonett and Wright"};
+}
+
+}  // namespace calot::analytics

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#include "analytics/statistics/reliability.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "analytics/statistics/descriptive.h"
+#include "analytics/statistics/distributions.h"
+
+namespace calot::analytics {
+
+std::string objection(const RatingTable& table) {
+  if (table.values.size() != table.subjects * table.raters) return "the table is not complete";
+  if (table.subjects < 2) return "fewer than two subjects";
+  if (table.raters < 2) return "fewer than two columns";
+  if (!allFinite(table.values)) return "a value is not finite";
+  if (std::all_of(table.values.begin(), table.values.end(), [&](double v) { return v == table.values.front(); }))
+    return "all values are equal";
+  return {};
+}
+
+MeanSquares meanSquares(const RatingTable& table) {
+  const double n = static_cast<double>(table.subjects), k = static_cast<double>(table.raters);
+  const double grand = *mean(table.values);
+  std::vector<double> row(table.subjects, 0.0), column(table.raters, 0.0);
+  for (std::size_t i = 0; i < table.subjects; ++i) {
+    for (std::size_t j = 0; j < table.raters; ++j) {
+      row[i] += (table.at(i, j) - grand) / k;
+      column[j] += (table.at(i, j) - grand) / n;
+    }
+  }
+  double rows = 0.0, columns = 0.0, rest = 0.0, largest = 0.0;
+  for (const double r : row) rows += k * r * r;
+  for (const double c : column) columns += n * c * c;
+  for (std::size_t i = 0; i < table.subjects; ++i) {
+    for (std::size_t j = 0; j < table.raters; ++j) {
+      const double e = table.at(i, j) - grand - row[i] - column[j];
+      rest += e * e;
+      largest = std::max(largest, std::abs(table.at(i, j)));
+    }
+  }
+  // What rounding alone leaves of an exact fit: some units in the last place of the values, squared.
+  const double last = 8.0 * std::numeric_limits<double>::epsilon() * largest, rounding = n * k * last * last;
+  if (rest < rounding) rest = 0.0;
+  if (rows < rounding) rows = 0.0;
+  if (columns < rounding) columns = 0.0;
+  return {rows / (n - 1.0), columns / (k - 1.0), rest / ((n - 1.0) * (k - 1.0))};
+}
+
+Expected<CronbachAlpha> cronbachAlpha(const RatingTable& items, double level) {
+  using Result = Expected<CronbachAlpha>;
+  assert(level > 0.0 && level < 1.0);
+  if (items.raters < 3) return Result::none("fewer than three items");
+  if (const std::string reason = objection(items); !reason.empty()) return Result::none(reason);
+  const MeanSquares s = meanSquares(items);
+  if (!(s.subjects > 0.0)) return Result::none("the sums of all subjects are equal");
+  CronbachAlpha result;
+  const double error = s.residual / s.subjects;  // 1 - alpha
+  result.value = 1.0 - error;
+  if (!(error > 0.0)) {
+    result.interval = Expected<Interval>::none("the items agree perfectly");
+    return result;
+  }
+  const double df1 = static_cast<double>(items.subjects) - 1.0, df2 = df1 * (static_cast<double>(items.raters) - 1.0);
+  const double tail = (1.0 - level) / 2.0;
+  result.interval = Interval{1.0 - error * fisherQuantile(1.0 - tail, df1, df2),
+                             1.0 - error * fisherQuantile(tail, df1, df2), level, "Feldt's F"};
+  return result;
+}
+
+namespace {
+
+struct Design {
+  MeanSquares s;
+  double n = 0.0, k = 0.0;
+};
+
+/// Of ICC(3,k); lower and upper alone. That of the single form, (F - 1) / (F + k - 1), by Spearman and Brown.
+Interval ofThreeAverage(const Design& d, double p) {
+  const double f = d.s.subjects / d.s.residual, df1 = d.n - 1.0, df2 = df1 * (d.k - 1.0);
+  return {1.0 - fisherQuantile(p, df1, df2) / f, 1.0 - 1.0 / (f * fisherQuantile(p, df2, df1)), 0.0, "F"};
+}
+
+/// Not finite where the approximation breaks down (negative correlations).
+Interval ofTwoSingle(double icc, const Design& d, double p) {
+  const double n = d.n, k = d.k, s = d.s.subjects, r = d.s.raters, e = d.s.residual;
+  const double f = r / e, rest = n * (1.0 + (k - 1.0) * icc) - k * icc;
+  const double numerator = k * icc * f + rest;
+  const double df =
+      (k - 1.0) * (n - 1.0) * numerator * numerator / ((n - 1.0) * k * k * icc * icc * f * f + rest * rest);
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  if (!(df > 0.0) || !std::isfinite(df)) return {none, none, 0.0, {}};
+  const double above = fisherQuantile(p, n - 1.0, df), below = fisherQuantile(p, df, n - 1.0);
+  const double noise = k * r + (k * n - k - n) * e;
+  return {n * (s - above * e) / (above * noise + n * s), n * (below * s - e) / (noise + n * below * s), 0.0,
+          "F, Satterthwaite"};
+}
+
+}  // namespace
+
+const char* nameOf(IccForm form) {
+  switch (form) {
+    case IccForm::twoSingle:
+      return "ICC(2,1)";
+    case IccForm::twoAverage:
+      return "ICC(2,k)";
+    case IccForm::threeAverage:
+      return "ICC(3,k)";
+  }
+  return "";
+}
+
+Expected<IntraclassCorrelation> intraclassCorrelation(const RatingTable& table, IccForm form, double level) {
+  using Result = Expected<IntraclassCorrelation>;
+  assert(level > 0.0 && level < 1.0);
+  if (const std::string reason = objection(table); !reason.empty()) return Result::none(reason);
+  const Design d{meanSquares(table), static_cast<double>(table.subjects), static_cast<double>(table.raters)};
+  const double n = d.n, k = d.k, s = d.s.subjects, r = d.s.raters, e = d.s.residual;
+  const double leniency = form == IccForm::threeAverage ? 0.0 : (r - e) / n;
+  const double ofOne = s + (k - 1.0) * e + k * leniency, ofAll = s + leniency;
+  const double denominator = form == IccForm::twoSingle ? ofOne : ofAll;
+  if (!(denominator > 0.0)) return Result::none("no differences between subjects");
+  IntraclassCorrelation result;
+  result.value = (s - e) / denominator;
+  if (!(e > 0.0)) {
+    result.interval = Expected<Interval>::none("the raters agree perfectly but for leniency");
+    return result;
+  }
+  const double p = 0.5 + level / 2.0;
+  Interval interval = form == IccForm::threeAverage ? ofThreeAverage(d, p) : ofTwoSingle((s - e) / ofOne, d, p);
+  interval.level = level;
+  if (form == IccForm::twoAverage) {
+    for (double* end : {&interval.lower, &interval.upper}) *end = k * *end / (1.0 + (k - 1.0) * *end);
+  }
+  const bool sound = std::isfinite(interval.lower) && std::isfinite(interval.upper) && interval.lower <= interval.upper;
+  result.interval =
+      sound ? Expected<Interval>(interval) : Expected<Interval>::none("the approximate interval breaks down");
+  return result;
+}
+
+DecisionStudy Generalizability::at(std::size_t k) const {
+  assert(k > 0);
+  const double n = static_cast<double>(k), relative = residual / n, absolute = (facet + residual) / n;
+  const auto share = [&](double error) { return person > 0.0 ? person / (person + error) : 0.0; };
+  return {share(relative), share(absolute), std::sqrt(relative), std::sqrt(absolute)};
+}
+
+Expected<Generalizability> generalizability(const RatingTable& table) {
+  if (const std::string reason = objection(table); !reason.empty()) return Expected<Generalizability>::none(reason);
+  const MeanSquares m = meanSquares(table);
+  Generalizability result;
+  result.people = table.subjects;
+  result.levels = table.raters;
+  const auto component = [&result](double difference, std::size_t count) {
+    if (difference < 0.0) result.truncated = true;
+    return difference < 0.0 ? 0.0 : difference / static_cast<double>(count);
+  };
+  result.person = component(m.subjects - m.residual, table.raters);
+  result.facet = component(m.raters - m.residual, table.subjects);
+  result.residual = m.residual;
+  return result;
+}
+
+Expected<MeasurementError> measurementError(std::span<const RepeatedValue> values, double level) {
+  using Result = Expected<MeasurementError>;
+  std::map<std::size_t, std::vector<double>> of;
+  for (const RepeatedValue& v : values) {
+    if (!std::isfinite(v.value)) return Result::none("a value is not finite");
+    of[v.participant].push_back(v.value);
+  }
+  MeasurementError result;
+  double squares = 0.0;
+  for (const auto& item : of) {
+    if (item.second.size() < 2) continue;
+    ++result.people;
+    result.attempts += item.second.size();
+    const double middle = *mean(item.second);
+    for (const double v : item.second) squares += (v - middle) * (v - middle);
+  }
+  if (result.people == 0) return Result::none("nobody has two attempts");
+  if (!(squares > 0.0)) return Result::none("attempts of each participant are all equal");
+  result.df = static_cast<double>(result.attempts - result.people);
+  result.sem = std::sqrt(squares / result.df);
+  const double factor = normalQuantile(0.975) * std::sqrt(2.0);
+  result.sdc = factor * result.sem;
+  const double lower = std::sqrt(squares / chiSquaredQuantile(0.5 + level / 2.0, result.df));
+  const double upper = std::sqrt(squares / chiSquaredQuantile(0.5 - level / 2.0, result.df));
+  result.semInterval = {lower, upper, level, "chi-squared"};
+  result.sdcInterval = {factor * lower, factor * upper, level, "chi-squared"};
+  return result;
+}
+
+}  // namespace calot::analytics

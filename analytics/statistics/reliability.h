@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Agreement and repeatability of ratings and of attempts: intraclass correlation, internal consistency,
+// generalizability theory of one crossed facet, error of measurement.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "analytics/statistics/descriptive.h"
+#include "analytics/statistics/expected.h"
+
+namespace calot::analytics {
+
+/// Complete table of numbers: a row a subject, a column a rater (or an item of a questionnaire).
+struct RatingTable {
+  std::size_t subjects = 0, raters = 0;
+  std::vector<double> values;  ///< row after row
+
+  [[nodiscard]] double at(std::size_t subject, std::size_t rater) const { return values[subject * raters + rater]; }
+};
+
+/// Why such a table has no agreement, or empty: size, fewer than two rows or columns, a value not finite, all equal.
+std::string objection(const RatingTable& table);
+
+/// Mean squares of the two-way analysis of variance without replication.
+struct MeanSquares {
+  double subjects = 0.0;  ///< n - 1 degrees of freedom
+  double raters = 0.0;    ///< k - 1
+  double residual = 0.0;  ///< (n - 1) (k - 1); exactly 0 where below the rounding of the values
+};
+/// @pre objection() is empty.
+MeanSquares meanSquares(const RatingTable& table);
+
+struct CronbachAlpha {
+  double value = 0.0;
+  Expected<Interval> interval = Expected<Interval>::none("not computed");
+};
+
+/// Internal consistency of a scale of k items (columns): k / (k - 1) (1 - sum of the items' variances / variance of the
+/// sum) (Cronbach 1951, Psychometrika 16:297); equal to ICC(3,k). Interval: 1 - (1 - alpha) F at the quantiles of F
+/// with n - 1 and (n - 1)(k - 1) degrees of freedom (Feldt 1965, Psychometrika 30:357). One subscale at a time: the
+/// caller's duty. No answer for fewer than three items, as objection(table), and when the sums of all subjects are
+/// equal; no interval where the items agree perfectly.
+Expected<CronbachAlpha> cronbachAlpha(const RatingTable& items, double level = 0.95);
+
+/// Three of the forms of Shrout and Fleiss (1979, Psychol. Bull. 86:420), by what the design is. 2: the raters are a
+/// sample, and their leniency counts as error; 3: these raters alone, leniency apart. Single: reliability of one rater;
+/// average: of the mean of all k.
+enum class IccForm : std::uint8_t { twoSingle, twoAverage, threeAverage };
+
+/// "ICC(2,1)" and so on.
+const char* nameOf(IccForm form);
+
+struct IntraclassCorrelation {
+  double value = 0.0;  ///< may be negative
+  Expected<Interval> interval = Expected<Interval>::none("not computed");
+};
+
+/// With mean squares S (subjects), R (raters), E (residual), n subjects and k raters:
+///   ICC(2,1) = (S - E) / (S + (k - 1) E + k (R - E) / n)
+///   ICC(2,k) = (S - E) / (S + (R - E) / n)
+///   ICC(3,k) = (S - E) / S
+/// Intervals from the F distribution, for ICC(2,.) with Satterthwaite's degrees of freedom (Shrout and Fleiss; McGraw
+/// and Wong 1996, Psychol. Methods 1:30); that of ICC(2,k) is the single one's by Spearman and Brown. No answer as
+/// objection(table), and where the denominator is not positive. No interval where the raters agree but for leniency.
+Expected<IntraclassCorrelation> intraclassCorrelation(const RatingTable& table, IccForm form, double level = 0.95);
+
+/// What a decision on the mean of k raters (occasions) is worth.
+struct DecisionStudy {
+  double g = 0.0;              ///< relative: p / (p + e / k), ranks people
+  double phi = 0.0;            ///< absolute: p / (p + (f + e) / k), holds them against a mark
+  double relativeError = 0.0;  ///< sqrt(e / k), the figure's unit
+  double absoluteError = 0.0;  ///< sqrt((f + e) / k)
+};
+
+struct Generalizability {
+  std::size_t people = 0, levels = 0;
+  double person = 0.0;     ///< variance p of people
+  double facet = 0.0;      ///< variance f of the raters' leniency, or of occasions
+  double residual = 0.0;   ///< variance e of interaction and error
+  bool truncated = false;  ///< a negative estimate was set to 0
+
+  [[nodiscard]] DecisionStudy at(std::size_t k) const;  ///< @pre k > 0
+};
+
+/// Variance components of a complete table by the analysis of variance (Brennan 2001, Generalizability Theory, 3.2):
+/// with mean squares S of people, R of raters and E of the rest, p = (S - E) / k, f = (R - E) / n, e = E. With all k
+/// raters G is ICC(3,k) and Phi is ICC(2,k). No answer as objection(table).
+Expected<Generalizability> generalizability(const RatingTable& table);
+
+struct MeasurementError {
+  std::size_t people = 0, attempts = 0;  ///< with two attempts or more
+  double df = 0.0;                       ///< attempts less people
+  double sem = 0.0;                      ///< standard error of measurement: deviation of a person's attempts
+  double sdc = 0.0;                      ///< smallest detectable change of one person: 1.96 sqrt(2) SEM
+  Interval semInterval, sdcInterval;
+};
+
+/// Deviation of attempts about their own participant's mean, pooled over participants with two attempts or more: SEM^2
+/// = sum of squares / (attempts - people) (de Vet et al. 2006, J. Clin. Epidemiol. 59:1033; "agreement": a systematic
+/// change from attempt to attempt counts as error). Interval from chi-squared, which assumes normal errors of one
+/// variance. No answer for values not finite, nobody with two attempts, or attempts of each person all equal.
+/// @pre 0 < level < 1.
+Expected<MeasurementError> measurementError(std::span<const RepeatedValue> values, double level = 0.95);
+
+}  // namespace calot::analytics

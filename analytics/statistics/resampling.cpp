@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#include "analytics/statistics/resampling.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "analytics/statistics/descriptive.h"
+#include "analytics/statistics/distributions.h"
+
+namespace calot::analytics {
+namespace {
+
+using Groups = std::vector<std::vector<double>>;
+using OfGroups = std::function<Expected<double>(const Groups&)>;
+
+/// Order statistic (B + 1) p, linear in between; `extreme` is set where that is outside of them.
+double tail(const std::vector<double>& sorted, double p, bool& extreme) {
+  const double count = static_cast<double>(sorted.size()), place = (count + 1.0) * p;
+  if (place <= 1.0 || place >= count) extreme = true;
+  const double inside = std::clamp(place, 1.0, count);
+  const double below = std::min(std::floor(inside), count - 1.0);
+  const auto i = static_cast<std::size_t>(below) - 1;
+  return sorted[i] + (inside - below) * (sorted[i + 1] - sorted[i]);
+}
+
+Expected<Bootstrap> bootstrapOf(const Groups& groups, const OfGroups& statistic, const BootstrapOptions& options) {
+  using Result = Expected<Bootstrap>;
+  assert(options.resamples >= 99 && options.level > 0.0 && options.level < 1.0);
+  const Expected<double> estimate = statistic(groups);
+  if (!estimate) return Result::none(estimate.reason());
+  Bootstrap result;
+  result.estimate = *estimate;
+  result.seed = options.seed;
+  result.resamples = options.resamples;
+  RandomStream random(options.seed);
+  std::vector<double> values;
+  values.reserve(options.resamples);
+  Groups drawn = groups;
+  std::string lastReason;
+  for (std::size_t resample = 0; resample < options.resamples; ++resample) {
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+      for (double& v : drawn[g]) v = groups[g][static_cast<std::size_t>(random.below(groups[g].size()))];
+    }
+    if (const Expected<double> value = statistic(drawn)) {
+      values.push_back(*value);
+    } else {
+      ++result.without;
+      lastReason = value.reason();
+    }
+  }
+  if (static_cast<double>(result.without) > mostResamplesWithout * static_cast<double>(options.resamples)) {
+    return Result::none(std::to_string(result.without) + " of " + std::to_string(options.resamples) +
+                        " resamples have no answer (" + lastReason + ")");
+  }
+  std::sort(values.begin(), values.end());
+  if (values.front() == values.back()) return Result::none("all resamples agree");
+  const double half = (1.0 - options.level) / 2.0;
+  result.interval.lower = tail(values, half, result.extreme);
+  result.interval.upper = tail(values, 1.0 - half, result.extreme);
+  result.interval.level = options.level;
+  result.interval.method = "percentile bootstrap";
+  return result;
+}
+
+}  // namespace
+
+Expected<Bootstrap> bootstrap(std::span<const double> x, const Statistic& statistic, const BootstrapOptions& options) {
+  if (x.empty()) return Expected<Bootstrap>::none("no values");
+  if (!allFinite(x)) return Expected<Bootstrap>::none("a value is not finite");
+  return bootstrapOf(
+      {{x.begin(), x.end()}}, [&](const Groups& g) { return statistic(g[0]); }, options);
+}
+
+Expected<Bootstrap> bootstrap(std::span<const double> x, std::span<const double> y, const TwoGroupStatistic& statistic,
+                              const BootstrapOptions& options) {
+  if (const std::string reason = twoGroupObjection(x, y); !reason.empty()) return Expected<Bootstrap>::none(reason);
+  return bootstrapOf(
+      {{x.begin(), x.end()}, {y.begin(), y.end()}}, [&](const Groups& g) { return statistic(g[0], g[1]); }, options);
+}
+
+std::uint64_t RandomStream::below(std::uint64_t n) {
+  assert(n > 0);
+  const std::uint64_t excess = (std::uint64_t{0} - n) % n;
+  std::uint64_t bits = engine_();
+  while (bits < excess) bits = engine_();
+  return bits % n;
+}
+
+double RandomStream::uniform() { return (static_cast<double>(engine_() >> 12U) + 0.5) * 0x1p-52; }
+
+double RandomStream::normal() { return normalQuantile(uniform()); }
+
+}  // namespace calot::analytics
