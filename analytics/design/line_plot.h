@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "analytics/report/drawing.h"
+#include "analytics/report/plots.h"
 
 namespace calot::analytics {
 
@@ -24,6 +24,7 @@ struct LinePlot {
   std::vector<PlotSeries> series;
   std::vector<double> marks;  ///< of y, drawn as dashed lines
   bool synthetic = false;
+  PlotFrame frame = {};
 };
 
 /// Values over another quantity. None where there are no points, or they are too large or too close for a scale.

@@ -9,8 +9,8 @@
 #include <QSignalBlocker>
 
 #include "gui/attempt/words.h"
-#include "gui/dashboard/comparison_chart.h"
 #include "gui/dashboard/page_begin.h"
+#include "gui/dashboard/plot_view.h"
 
 namespace calot::gui {
 
@@ -31,8 +31,8 @@ ComparePage::ComparePage(QWidget* parent) : FiguresPage("caption", parent) {
   lower->addWidget(synthetic_);
   layout->addLayout(upper);
   layout->addLayout(lower);
-  chart_ = new ComparisonChart;
-  connect(chart_, &DotChart::attemptChosen, this, &ComparePage::attemptActivated);
+  chart_ = new PlotView("comparison-chart", "Attempts by group");
+  connect(chart_, &PlotView::attemptChosen, this, &ComparePage::attemptActivated);
   layout->addWidget(chart_, 1);
   setProperty(beginProperty, QVariant::fromValue<QObject*>(figure_));
   layout->addWidget(caption());
@@ -62,14 +62,20 @@ void ComparePage::redraw() {
   request.includeSynthetic = synthetic_->isChecked();
   const int figure = figure_->currentIndex(), key = key_->currentIndex();
   if (figure < 0 || key < 0) {
-    chart_->showComparison({}, "No checkpoint has a value yet");
+    chart_->clear("No checkpoint has a value yet");
     caption()->clear();
     return;
   }
   request.figure = values()->figures()[static_cast<std::size_t>(figure)];
   request.comparabilityKey = keys_[static_cast<std::size_t>(key)];
   const Comparison comparison = compare(document().attempts(), values()->of(static_cast<std::size_t>(figure)), request);
-  chart_->showComparison(comparison, figureTitle(request.figure.name, request.figure.subject));
+  const QString title = figureTitle(request.figure.name, request.figure.subject);
+  chart_->show(
+      comparison.group.empty() ? title + ": nothing to show" : title,
+      [comparison, name = title.toStdString()](const analytics::PlotFrame& frame) {
+        return drawComparison(comparison, name, frame);
+      },
+      comparison.synthetic);
   caption()->setText(QString::fromStdString(captionOf(comparison)));
 }
 

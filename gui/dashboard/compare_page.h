@@ -11,7 +11,7 @@ class QComboBox;
 
 namespace calot::gui {
 
-class ComparisonChart;
+class PlotView;
 
 /// One checkpoint over attempts by group, within one comparability key.
 class ComparePage : public FiguresPage {
@@ -30,7 +30,7 @@ class ComparePage : public FiguresPage {
   QComboBox* groupBy_ = nullptr;
   QComboBox* key_ = nullptr;
   QCheckBox* synthetic_ = nullptr;
-  ComparisonChart* chart_ = nullptr;
+  PlotView* chart_ = nullptr;
 };
 
 }  // namespace calot::gui

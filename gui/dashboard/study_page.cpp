@@ -31,9 +31,8 @@
 #include "analytics/report/study_tables.h"
 #include "gui/attempt/words.h"
 #include "gui/attempt/work_strip.h"
-#include "gui/dashboard/comparison_chart.h"
 #include "gui/dashboard/page_begin.h"
-#include "gui/dashboard/roc_chart.h"
+#include "gui/dashboard/plot_view.h"
 #include "gui/report/drawing_painter.h"
 
 namespace calot::gui {
@@ -54,7 +53,7 @@ QString effectText(const analytics::StudyRow& row) {
 }
 
 /// What a text shows under forestAddress; null where the study has none. Any thread.
-QImage forestPicture(const analytics::Study& study, double ratio) {
+QImage forestPicture(const analytics::Study& study, const QFont& font, double ratio) {
   const std::optional<analytics::Drawing> forest = analytics::forestOf(study);
   if (!forest) return {};
   QImage image(static_cast<int>(std::ceil(forest->width * ratio)), static_cast<int>(std::ceil(forest->height * ratio)),
@@ -63,7 +62,7 @@ QImage forestPicture(const analytics::Study& study, double ratio) {
   image.fill(Qt::white);
   QPainter painter(&image);
   painter.setRenderHint(QPainter::Antialiasing);
-  paintDrawing(painter, *forest, QRectF(0.0, 0.0, forest->width, forest->height));
+  paintDrawing(painter, *forest, QRectF(0.0, 0.0, forest->width, forest->height), {font});
   return image;
 }
 
@@ -87,7 +86,7 @@ WindowsText textOf(const analytics::Study& study, const TextLook& look) {
   auto text = std::make_unique<QTextDocument>();
   text->setDefaultFont(look.font);
   text->setDefaultTextOption(look.option);
-  const QImage forest = forestPicture(study, look.ratio);
+  const QImage forest = forestPicture(study, look.font, look.ratio);
   if (!forest.isNull()) text->addResource(QTextDocument::ImageResource, QUrl(forestAddress), forest);
   text->setHtml(QString::fromStdString(studyText(study)));
   text->setTextWidth(look.width);
@@ -133,9 +132,8 @@ StudyPage::StudyPage(QWidget* parent) : QWidget(parent) {
   effect_ = new QLabel;
   effect_->setObjectName("study-effect");
   effect_->setWordWrap(true);
-  boxes_ = new ComparisonChart;
-  boxes_->setObjectName("study-boxes");
-  roc_ = new RocChart;
+  boxes_ = new PlotView("study-boxes", "Values by group");
+  roc_ = new PlotView("roc-chart", "Receiver operating characteristic");
   auto* charts = new QWidget;
   auto* chartLayout = new QVBoxLayout(charts);
   chartLayout->setContentsMargins(0, 0, 0, 0);
@@ -383,21 +381,27 @@ void StudyPage::showRow() {
   const int at = row_->currentIndex();
   if (!study_ || at < 0) {
     effect_->clear();
-    boxes_->showComparison({}, "Box plot");
+    boxes_->clear("Box plot");
     roc_->clear("ROC");
     return;
   }
   const analytics::StudyRow& row = study_->rows[static_cast<std::size_t>(at)];
   effect_->setText(effectText(row));
-  boxes_->showComparison(comparisonOf(row, *study_), row_->currentText());
+  boxes_->show(
+      row_->currentText(),
+      [study = study_, &row](const analytics::PlotFrame& frame) { return analytics::boxPlotOf(*study, row, frame); },
+      study_->synthetic);
   if (row.values[0].empty() || row.values[1].empty()) {
     roc_->clear("No ROC: a group has no values");
     return;
   }
   const RocCurve curve = rocOf(row);
-  roc_->showCurve(curve, QString("ROC: %1 values speak for %2; area %3")
-                             .arg(curve.lowerIsPositive ? "small" : "large", QString::fromStdString(study_->groups[0]),
-                                  numberText(curve.area)));
+  const QString title = QString("ROC: %1 values speak for %2; area %3")
+                            .arg(curve.lowerIsPositive ? "small" : "large", QString::fromStdString(study_->groups[0]),
+                                 numberText(curve.area));
+  roc_->show(title, [curve, name = title.toStdString()](const analytics::PlotFrame& frame) {
+    return drawRoc(curve, name, frame);
+  });
 }
 
 void StudyPage::exportCsv(const QString& folder) { write(folder, false); }
