@@ -5,7 +5,7 @@
 #include "recorder/base/errors.h"
 #include "recorder/base/text_output.h"
 #ifdef CALOT_PDF
-#include "gui/report/sheet_pdf.h"
+#include "gui/report/pdf_report.h"
 #endif
 
 namespace calot::apps {

@@ -23,7 +23,6 @@
 #include "apps/calot/rate_files.h"
 #include "apps/calot/stop_request.h"
 #include "apps/common/exit_code.h"
-#include "gui/film/clean_film.h"
 #include "gui/film/film.h"
 #include "recorder/base/errors.h"
 

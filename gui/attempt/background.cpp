@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "gui/attempt/background.h"
 
 #include <QMetaObject>

@@ -4,7 +4,7 @@
 #include <QBoxLayout>
 #include <QLabel>
 
-#include "gui/attempt/words.h"
+#include "gui/attempt/figure_text.h"
 
 namespace calot::gui {
 

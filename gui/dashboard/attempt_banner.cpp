@@ -6,8 +6,8 @@
 #include <QEvent>
 #include <QLabel>
 
+#include "gui/attempt/figure_text.h"
 #include "gui/attempt/theme.h"
-#include "gui/attempt/words.h"
 
 namespace calot::gui {
 

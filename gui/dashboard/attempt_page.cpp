@@ -9,13 +9,13 @@
 #include <QSplitter>
 
 #include "analytics/checkpoints/registry.h"
-#include "gui/attempt/open_recording.h"
+#include "gui/attempt/attempt_recording.h"
+#include "gui/attempt/long_work.h"
+#include "gui/attempt/replay_transport.h"
 #include "gui/attempt/summary_panel.h"
-#include "gui/attempt/transport_bar.h"
-#include "gui/attempt/work_strip.h"
 #include "gui/dashboard/attempt_banner.h"
 #include "gui/dashboard/figure_panel.h"
-#include "gui/dashboard/page_begin.h"
+#include "gui/dashboard/page_parts.h"
 #include "gui/dashboard/settings.h"
 #include "gui/dashboard/timeline_bar.h"
 #include "gui/dashboard/trace_chart.h"

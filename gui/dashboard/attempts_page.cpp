@@ -15,11 +15,10 @@
 #include <QSplitter>
 #include <QTableView>
 
-#include "gui/attempt/words.h"
+#include "gui/attempt/figure_text.h"
 #include "gui/dashboard/attempt_banner.h"
-#include "gui/dashboard/page_begin.h"
+#include "gui/dashboard/page_parts.h"
 #include "gui/dashboard/settings.h"
-#include "gui/dashboard/table_view.h"
 #include "gui/words/problem_words.h"
 #include "recorder/base/errors.h"
 

@@ -22,18 +22,18 @@
 #include <QUrl>
 #include <utility>
 
-#include "gui/attempt/open_recording.h"
+#include "gui/attempt/attempt_recording.h"
 #include "gui/attempt/theme.h"
 #include "gui/dashboard/attempt_page.h"
 #include "gui/dashboard/attempts_page.h"
-#include "gui/dashboard/compare_page.h"
 #include "gui/dashboard/figure_panel.h"
+#include "gui/dashboard/figures_page.h"
 #include "gui/dashboard/greeting_page.h"
 #include "gui/dashboard/import_panel.h"
 #include "gui/dashboard/keys_dialog.h"
-#include "gui/dashboard/page_begin.h"
+#include "gui/dashboard/page_parts.h"
 #include "gui/dashboard/pair_page.h"
-#include "gui/dashboard/rating_page.h"
+#include "gui/dashboard/ratings_page.h"
 #include "gui/dashboard/settings.h"
 #include "gui/dashboard/study_page.h"
 #include "gui/dashboard/trainee_page.h"

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "gui/dashboard/figure_panel.h"
 
 #include <algorithm>
@@ -16,13 +17,28 @@
 
 #include "analytics/assessment/norm_rule.h"
 #include "gui/attempt/figure_standing.h"
-#include "gui/attempt/words.h"
-#include "gui/dashboard/band_delegate.h"
-#include "gui/dashboard/table_view.h"
+#include "gui/attempt/figure_text.h"
+#include "gui/dashboard/checkpoint_table_model.h"
+#include "gui/dashboard/page_parts.h"
 #include "gui/words/problem_words.h"
 #include "recorder/base/errors.h"
 
 namespace calot::gui {
+
+std::optional<double> MomentCycle::next(const analytics::FigureMoments& figure) {
+  const std::vector<analytics::Moment>& moments = figure.moments;
+  if (moments.empty()) return std::nullopt;
+  const std::string name = figure.checkpoint + '\n' + figure.subject;
+  if (name == figure_) {
+    at_ = (at_ + 1) % moments.size();
+  } else {
+    const auto most = std::max_element(moments.begin(), moments.end(),
+                                       [](const auto& a, const auto& b) { return a.share < b.share; });
+    at_ = static_cast<std::size_t>(most - moments.begin());
+    figure_ = name;
+  }
+  return std::max(0.0, moments[at_].begin - leadIn);
+}
 
 FigurePanel::FigurePanel(QWidget* parent)
     : QWidget(parent),

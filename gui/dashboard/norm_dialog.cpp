@@ -14,8 +14,8 @@
 #include <utility>
 
 #include "analytics/assessment/create_norm.h"
+#include "gui/attempt/long_work.h"
 #include "gui/attempt/theme.h"
-#include "gui/attempt/work_strip.h"
 #include "gui/dashboard/comparison.h"
 #include "gui/dashboard/settings.h"
 #include "gui/dashboard/study_view.h"

@@ -16,7 +16,7 @@
 #include <utility>
 
 #include "gui/attempt/theme.h"
-#include "gui/dashboard/page_begin.h"
+#include "gui/dashboard/page_parts.h"
 #include "gui/dashboard/trace_chart.h"
 #include "gui/words/event_words.h"
 

@@ -29,9 +29,9 @@
 #include <QUrl>
 
 #include "analytics/report/study_tables.h"
-#include "gui/attempt/words.h"
-#include "gui/attempt/work_strip.h"
-#include "gui/dashboard/page_begin.h"
+#include "gui/attempt/figure_text.h"
+#include "gui/attempt/long_work.h"
+#include "gui/dashboard/page_parts.h"
 #include "gui/dashboard/plot_view.h"
 #include "gui/report/drawing_painter.h"
 

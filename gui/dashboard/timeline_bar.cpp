@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "gui/dashboard/timeline_bar.h"
 
 #include <cmath>
@@ -10,7 +11,6 @@
 #include <utility>
 
 #include "gui/attempt/theme.h"
-#include "gui/dashboard/palette.h"
 #include "gui/words/event_words.h"
 
 namespace calot::gui {

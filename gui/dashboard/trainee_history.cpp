@@ -8,7 +8,7 @@
 
 #include "analytics/checkpoints/registry.h"
 #include "analytics/report/plots.h"
-#include "gui/attempt/words.h"
+#include "gui/attempt/figure_text.h"
 
 namespace calot::gui {
 namespace {

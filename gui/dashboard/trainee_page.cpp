@@ -13,9 +13,9 @@
 
 #include "analytics/assessment/attempt_summary.h"
 #include "gui/attempt/figure_standing.h"
+#include "gui/attempt/figure_text.h"
 #include "gui/attempt/theme.h"
-#include "gui/attempt/words.h"
-#include "gui/dashboard/page_begin.h"
+#include "gui/dashboard/page_parts.h"
 #include "gui/dashboard/plot_view.h"
 #include "gui/words/problem_words.h"
 #include "recorder/base/errors.h"

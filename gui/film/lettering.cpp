@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "gui/film/lettering.h"
 
 #include <ft2build.h>
-
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <vector>
 
-#include "gui/film/blend.h"
 #include "recorder/base/errors.h"
-#include FT_FREETYPE_H
 
 namespace calot::gui {
 namespace {

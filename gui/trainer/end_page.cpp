@@ -9,10 +9,10 @@
 #include <utility>
 
 #include "analytics/assess.h"
+#include "gui/attempt/figure_text.h"
+#include "gui/attempt/long_work.h"
+#include "gui/attempt/replay_transport.h"
 #include "gui/attempt/theme.h"
-#include "gui/attempt/transport_bar.h"
-#include "gui/attempt/words.h"
-#include "gui/attempt/work_strip.h"
 #include "gui/trainer/panel_parts.h"
 #include "gui/trainer/trainer_texts.h"
 #include "gui/view/scene_picture_widget.h"

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "analytics/checkpoints/registry.h"
-#include "gui/dashboard/figure_values.h"
+#include "gui/dashboard/cohort_document.h"
 
 namespace calot::gui {
 namespace {
