@@ -64,8 +64,8 @@ namespace {
 constexpr double gap = 0.002;     // between all of it and what may not be hidden (m)
 constexpr double buried = 0.011;  // how far the omentum's highest fold lies below the bowel's highest (m)
 
-// The omentum: a grid of ligamentCells about the hilum, from below the camera to below the liver.
-constexpr double ligamentCell = 0.007;  // m
+// The omentum: a grid of cells about the hilum, from below the camera to below the liver.
+constexpr double omentumCell = 0.007;  // m
 constexpr double halfWidth = 0.24, towards = 0.13, beyond = 0.22;
 
 /// Folds of the apron, from 0 down (m): long ones across it, lobes on them.
@@ -80,11 +80,11 @@ double sunk(double share) { return 0.06 * std::pow(std::abs(share), 8.0); }
 
 Mesh omentum(double x0, double z0, double top) {
   Mesh mesh;
-  const int across = static_cast<int>(2.0 * halfWidth / ligamentCell),
-            along = static_cast<int>((towards + beyond) / ligamentCell);
+  const int across = static_cast<int>(2.0 * halfWidth / omentumCell),
+            along = static_cast<int>((towards + beyond) / omentumCell);
   for (int i = 0; i <= across; ++i) {
     for (int j = 0; j <= along; ++j) {
-      const double x = x0 - halfWidth + i * ligamentCell, z = z0 - towards + j * ligamentCell;
+      const double x = x0 - halfWidth + i * omentumCell, z = z0 - towards + j * omentumCell;
       const double y = top + apron(x, z) - sunk((x - x0) / halfWidth);
       mesh.position.emplace_back(x, y, z);
     }
