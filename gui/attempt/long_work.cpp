@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "gui/attempt/long_work.h"
 
 #include <cmath>
@@ -11,6 +10,7 @@
 #include <QTimer>
 #include <utility>
 
+#include "gui/attempt/widget_parts.h"
 #include "gui/view/thread_rank.h"
 #include "gui/words/problem_words.h"
 
@@ -111,8 +111,7 @@ WorkStrip::WorkStrip(LongWork& work, QWidget* parent)
   bar_->setRange(0, 100);
   bar_->setAccessibleName("Progress of the work");
   cancel_->setObjectName("work-cancel");
-  auto* layout = new QHBoxLayout(this);
-  layout->setContentsMargins(0, 0, 0, 0);
+  auto* layout = parts::bare<QHBoxLayout>(this);
   layout->addWidget(text_, 1);
   layout->addWidget(bar_, 1);
   layout->addWidget(cancel_);

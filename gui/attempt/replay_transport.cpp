@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "gui/attempt/replay_transport.h"
 
 #include <algorithm>
@@ -17,6 +16,7 @@
 
 #include "gui/attempt/attempt_recording.h"
 #include "gui/attempt/theme.h"
+#include "gui/attempt/widget_parts.h"
 
 namespace calot::gui {
 
@@ -115,11 +115,9 @@ static_assert(speeds.front() == slowestReplay && speeds.back() == fastestReplay)
 }  // namespace
 
 TransportBar::TransportBar(Replay& replay, QWidget* parent) : QWidget(parent), replay_(replay) {
-  auto* layout = new QHBoxLayout(this);
-  layout->setContentsMargins(0, 0, 0, 0);
+  auto* layout = parts::bare<QHBoxLayout>(this);
   const auto button = [&](const char* name, const char* what, QStyle::StandardPixmap icon) {
-    auto* made = new QToolButton;
-    made->setObjectName(name);
+    auto* made = parts::named(name, new QToolButton);
     made->setAccessibleName(what);
     made->setToolTip(what);
     made->setIcon(theme::buttonIcon(icon));
@@ -132,17 +130,13 @@ TransportBar::TransportBar(Replay& replay, QWidget* parent) : QWidget(parent), r
   forward_ = button("step-forward", "One step forward (.)", QStyle::SP_MediaSkipForward);
   back_->setAutoRepeat(true);
   forward_->setAutoRepeat(true);
-  scrub_ = new QSlider(Qt::Horizontal);
-  scrub_->setObjectName("scrub");
+  scrub_ = parts::named("scrub", new QSlider(Qt::Horizontal));
   scrub_->setAccessibleName("Moment of the replay");
   scrub_->setRange(0, scrubSteps);
   layout->addWidget(scrub_, 1);
-  time_ = new QLabel;
-  time_->setObjectName("replay-time");
-  time_->setTextFormat(Qt::PlainText);
+  time_ = parts::plainLabel("replay-time", false);
   layout->addWidget(time_);
-  speed_ = new QComboBox;
-  speed_->setObjectName("speed");
+  speed_ = parts::named("speed", new QComboBox);
   speed_->setAccessibleName("Speed of the replay");
   for (const double speed : speeds) speed_->addItem(QLocale().toString(speed, 'g', 3) + QString::fromUtf8(" ×"), speed);
   speed_->setCurrentIndex(3);

@@ -24,6 +24,7 @@
 
 #include "gui/attempt/attempt_recording.h"
 #include "gui/attempt/theme.h"
+#include "gui/attempt/widget_parts.h"
 #include "gui/dashboard/attempt_page.h"
 #include "gui/dashboard/attempts_page.h"
 #include "gui/dashboard/figure_panel.h"
@@ -121,8 +122,7 @@ DashboardWindow::DashboardWindow(const AssessProgram& program, const std::vector
 DashboardWindow::~DashboardWindow() = default;
 
 void DashboardWindow::buildImport() {
-  importDock_ = new QDockWidget("Import", this);
-  importDock_->setObjectName("import");
+  importDock_ = parts::named("import", new QDockWidget("Import", this));
   importDock_->setWidget(new ImportPanel(imports_));
   addDockWidget(Qt::BottomDockWidgetArea, importDock_);
   importDock_->hide();

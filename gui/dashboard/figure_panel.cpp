@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "gui/dashboard/figure_panel.h"
 
 #include <algorithm>
@@ -18,6 +17,7 @@
 #include "analytics/assessment/norm_rule.h"
 #include "gui/attempt/figure_standing.h"
 #include "gui/attempt/figure_text.h"
+#include "gui/attempt/widget_parts.h"
 #include "gui/dashboard/checkpoint_table_model.h"
 #include "gui/dashboard/page_parts.h"
 #include "gui/words/problem_words.h"
@@ -53,12 +53,10 @@ FigurePanel::FigurePanel(QWidget* parent)
   figureTable_->header()->setSortIndicator(-1, Qt::AscendingOrder);
   setWidths(*eventTable_, {360});
   figureTable_->setMinimumHeight(8 * figureTable_->fontMetrics().height());
-  auto* tabs = new QTabWidget;
-  tabs->setObjectName("figure-tabs");
+  auto* tabs = parts::named("figure-tabs", new QTabWidget);
   tabs->addTab(figureTable_, "&Checkpoints");
   tabs->addTab(eventTable_, "Even&ts");
-  auto* layout = new QVBoxLayout(this);
-  layout->setContentsMargins(0, 0, 0, 0);
+  auto* layout = parts::bare<QVBoxLayout>(this);
   layout->addWidget(buildNormRow());
   layout->addWidget(tabs, 1);
 
@@ -87,15 +85,12 @@ QWidget* FigurePanel::buildNormRow() {
   verdict_->setTextFormat(Qt::PlainText);
   auto* label = new QLabel("&Norm");
   label->setBuddy(norm_);
-  sheet_ = new QPushButton("Gr&ade sheet …");
-  sheet_->setObjectName("grade-sheet");
+  sheet_ = parts::named("grade-sheet", new QPushButton("Gr&ade sheet …"));
   sheet_->setToolTip("Write the attempt against this norm as a PDF");
-  onePage_ = new QPushButton("&One page …");
-  onePage_->setObjectName("one-page");
+  onePage_ = parts::named("one-page", new QPushButton("&One page …"));
   onePage_->setToolTip("Write the attempt on one page, with pictures of its worst moments, as a PDF");
   auto* made = new QWidget;
-  auto* row = new QHBoxLayout(made);
-  row->setContentsMargins(0, 0, 0, 0);
+  auto* row = parts::bare<QHBoxLayout>(made);
   row->addWidget(label);
   row->addWidget(norm_);
   row->addWidget(verdict_, 1);

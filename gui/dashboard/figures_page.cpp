@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "gui/dashboard/figures_page.h"
 
 #include <algorithm>
@@ -11,6 +10,7 @@
 #include <QSignalBlocker>
 
 #include "gui/attempt/figure_text.h"
+#include "gui/attempt/widget_parts.h"
 #include "gui/dashboard/page_parts.h"
 #include "gui/dashboard/plot_view.h"
 #include "gui/words/problem_words.h"
@@ -66,14 +66,8 @@ void FiguresPage::fillFigures(QComboBox* box) const {
 }
 
 QComboBox* FiguresPage::addChoice(QHBoxLayout* row, const char* name, const char* text, int stretch) {
-  auto* const box = new QComboBox;
-  box->setObjectName(name);
-  box->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
-  box->setMinimumContentsLength(13);
-  auto* const label = new QLabel(text);
-  label->setBuddy(box);
-  row->addWidget(label);
-  row->addWidget(box, stretch);
+  auto* const box = parts::choice(name, 13);
+  parts::labelled(*row, text, box, stretch);
   return box;
 }
 
@@ -87,8 +81,7 @@ ComparePage::ComparePage(QWidget* parent) : FiguresPage("caption", parent) {
   groupBy_->addItems({"group", "performer's profile", "participant"});
   for (QComboBox* const box : {figure_, groupBy_, key_})
     connect(box, &QComboBox::currentIndexChanged, this, [this] { redraw(); });
-  synthetic_ = new QCheckBox("&Synthetic attempts");
-  synthetic_->setObjectName("synthetic");
+  synthetic_ = parts::named("synthetic", new QCheckBox("&Synthetic attempts"));
   synthetic_->setChecked(true);
   connect(synthetic_, &QCheckBox::toggled, this, [this] { redraw(); });
   lower->addWidget(synthetic_);

@@ -6,6 +6,8 @@
 #include <QPushButton>
 #include <utility>
 
+#include "gui/attempt/widget_parts.h"
+
 namespace calot::gui {
 
 GreetingPage::GreetingPage(AssessProgram program, QWidget* parent)
@@ -22,18 +24,15 @@ GreetingPage::GreetingPage(AssessProgram program, QWidget* parent)
   text_->setWordWrap(true);
   text_->setTextFormat(Qt::PlainText);
   text_->setTextInteractionFlags(Qt::TextSelectableByMouse | Qt::TextSelectableByKeyboard);
-  auto* open = new QPushButton("&Open a cohort database …");
-  open->setObjectName("open");
+  auto* open = parts::named("open", new QPushButton("&Open a cohort database …"));
   connect(open, &QPushButton::clicked, this, &GreetingPage::openRequested);
   layout->addWidget(title_);
   layout->addSpacing(12);
   layout->addWidget(text_);
   layout->addSpacing(18);
-  auto* fresh = new QPushButton("&Make a new one …");
-  fresh->setObjectName("new");
+  auto* fresh = parts::named("new", new QPushButton("&Make a new one …"));
   connect(fresh, &QPushButton::clicked, this, &GreetingPage::newRequested);
-  import_ = new QPushButton("&Import recordings …");
-  import_->setObjectName("import-recordings");
+  import_ = parts::named("import-recordings", new QPushButton("&Import recordings …"));
   connect(import_, &QPushButton::clicked, this, &GreetingPage::importRequested);
   auto* buttons = new QHBoxLayout;
   buttons->addStretch(1);

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "gui/dashboard/page_parts.h"
 
 #include <QAbstractItemModel>
@@ -9,12 +8,12 @@
 #include <QTreeView>
 
 #include "gui/attempt/theme.h"
+#include "gui/attempt/widget_parts.h"
 
 namespace calot::gui {
 
 QTableView* makeTable(QAbstractItemModel& model, const char* name, const char* spokenName) {
-  auto* table = new QTableView;
-  table->setObjectName(name);
+  auto* table = parts::named(name, new QTableView);
   table->setAccessibleName(spokenName);
   table->setModel(&model);
   table->setSelectionBehavior(QAbstractItemView::SelectRows);
@@ -32,8 +31,7 @@ QTableView* makeTable(QAbstractItemModel& model, const char* name, const char* s
 }
 
 QTreeView* makeTree(QAbstractItemModel& model, const char* name, const char* spokenName) {
-  auto* tree = new QTreeView;
-  tree->setObjectName(name);
+  auto* tree = parts::named(name, new QTreeView);
   tree->setAccessibleName(spokenName);
   tree->setModel(&model);
   tree->setSelectionBehavior(QAbstractItemView::SelectRows);

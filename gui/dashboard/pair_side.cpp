@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "gui/dashboard/pair_side.h"
 
 #include <algorithm>
@@ -10,6 +9,7 @@
 
 #include "gui/attempt/attempt_recording.h"
 #include "gui/attempt/figure_text.h"
+#include "gui/attempt/widget_parts.h"
 #include "gui/dashboard/attempt_banner.h"
 #include "gui/dashboard/settings.h"
 #include "gui/dashboard/timeline_bar.h"
@@ -41,8 +41,7 @@ PairSide::PairSide(const QString& name, QWidget* parent)
   choice_->setAccessibleName("Attempt on the " + name);
   choice_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
   choice_->setMinimumContentsLength(20);
-  auto* layout = new QVBoxLayout(this);
-  layout->setContentsMargins(0, 0, 0, 0);
+  auto* layout = parts::bare<QVBoxLayout>(this);
   layout->addWidget(choice_);
   banner_->makeNarrow();
   layout->addWidget(banner_);

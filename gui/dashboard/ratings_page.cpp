@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "gui/dashboard/ratings_page.h"
 
 #include <algorithm>
@@ -19,6 +18,7 @@
 
 #include "gui/attempt/attempt_recording.h"
 #include "gui/attempt/replay_transport.h"
+#include "gui/attempt/widget_parts.h"
 #include "gui/dashboard/attempt_banner.h"
 #include "gui/dashboard/page_parts.h"
 #include "gui/dashboard/settings.h"
@@ -61,8 +61,7 @@ QWidget* RatingPage::buildReplay() {
   replay_ = std::make_unique<Replay>(
       [picture = picture_](std::shared_ptr<const SceneView> view) { picture->showView(std::move(view)); });
   auto* made = new QWidget;
-  auto* layout = new QVBoxLayout(made);
-  layout->setContentsMargins(0, 0, 0, 0);
+  auto* layout = parts::bare<QVBoxLayout>(made);
   layout->addWidget(picture_, 1);
   layout->addWidget(new TransportBar(*replay_));
   connect(replay_.get(), &Replay::opened, this, [this] { opening_ = false; });
@@ -75,32 +74,25 @@ QWidget* RatingPage::buildReplay() {
 
 QWidget* RatingPage::buildForm() {
   auto* made = new QWidget;
-  auto* layout = new QVBoxLayout(made);
-  layout->setContentsMargins(0, 0, 0, 0);
+  auto* layout = parts::bare<QVBoxLayout>(made);
   auto* row = new QHBoxLayout;
   const auto add = [&](QLabel* label, QWidget* field, int stretch) {
     label->setBuddy(field);
     row->addWidget(label);
     row->addWidget(field, stretch);
   };
-  choice_ = new QComboBox;
-  choice_->setObjectName("form");
-  choice_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
-  choice_->setMinimumContentsLength(12);
+  choice_ = parts::choice("form", 12);
   add(new QLabel("Fo&rm"), choice_, 2);
-  rater_ = new QLineEdit;
-  rater_->setObjectName("rater");
+  rater_ = parts::named("rater", new QLineEdit);
   rater_->setMaxLength(64);
   rater_->setPlaceholderText("pseudonym");
   raterLabel_ = new QLabel("Rated b&y");
   add(raterLabel_, rater_, 1);
-  participant_ = new QComboBox;
-  participant_->setObjectName("rating-participant");
+  participant_ = parts::named("rating-participant", new QComboBox);
   participantLabel_ = new QLabel("Part&icipant");
   add(participantLabel_, participant_, 1);
   layout->addLayout(row);
-  reveal_ = new QCheckBox("Sho&w who it was");
-  reveal_->setObjectName("reveal");
+  reveal_ = parts::named("reveal", new QCheckBox("Sho&w who it was"));
   reveal_->setToolTip("Who rates blinded judges what was done, not who did it");
   layout->addWidget(reveal_);
   banner_ = new AttemptBanner;
@@ -109,19 +101,13 @@ QWidget* RatingPage::buildForm() {
   source_->setTextFormat(Qt::PlainText);
   source_->setWordWrap(true);
   layout->addWidget(source_);
-  area_ = new QScrollArea;
-  area_->setObjectName("form-area");
+  area_ = parts::named("form-area", new QScrollArea);
   area_->setWidgetResizable(true);
   layout->addWidget(area_, 1);
   auto* lower = new QHBoxLayout;
-  state_ = new QLabel;
-  state_->setObjectName("rating-state");
-  state_->setTextFormat(Qt::PlainText);
-  state_->setWordWrap(true);
-  store_ = new QPushButton("&Store");
-  store_->setObjectName("store-rating");
-  next_ = new QPushButton("Store, &next");
-  next_->setObjectName("store-next");
+  state_ = parts::plainLabel("rating-state");
+  store_ = parts::named("store-rating", new QPushButton("&Store"));
+  next_ = parts::named("store-next", new QPushButton("Store, &next"));
   next_->setToolTip("Store it and go to the next attempt (Ctrl+Return)");
   lower->addWidget(state_, 1);
   lower->addWidget(store_);
@@ -288,9 +274,7 @@ void RatingPage::addItem(QVBoxLayout& layout, const analytics::FormItem& item) {
   auto* text = new QLabel(QString::fromStdString(item.text));
   text->setTextFormat(Qt::PlainText);
   text->setWordWrap(true);
-  QFont bold = text->font();
-  bold.setBold(true);
-  text->setFont(bold);
+  parts::embolden(text);
   layout.addWidget(text);
   auto* buttons = new QButtonGroup(text);
   auto* row = new QHBoxLayout;

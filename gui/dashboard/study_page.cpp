@@ -31,6 +31,7 @@
 #include "analytics/report/study_tables.h"
 #include "gui/attempt/figure_text.h"
 #include "gui/attempt/long_work.h"
+#include "gui/attempt/widget_parts.h"
 #include "gui/dashboard/page_parts.h"
 #include "gui/dashboard/plot_view.h"
 #include "gui/report/drawing_painter.h"
@@ -109,34 +110,27 @@ struct StudyPage::Computed {
 StudyPage::StudyPage(QWidget* parent) : QWidget(parent) {
   auto* layout = new QVBoxLayout(this);
   buildChoices(*layout);
-  state_ = new QLabel;
-  state_->setObjectName("study-state");
-  state_->setTextFormat(Qt::PlainText);
-  state_->setWordWrap(true);
+  state_ = parts::plainLabel("study-state");
   layout->addWidget(state_);
   strip_ = new WorkStrip(work_);
   layout->addWidget(strip_);
 
-  text_ = new QTextBrowser;
-  text_->setObjectName("study-text");
+  text_ = parts::named("study-text", new QTextBrowser);
   text_->setAccessibleName("Tables of the study");
   text_->setOpenLinks(false);
   text_->setWordWrapMode(QTextOption::WordWrap);
-  row_ = new QComboBox;
-  row_->setObjectName("study-row");
+  row_ = parts::named("study-row", new QComboBox);
   auto* rowLabel = new QLabel("&Checkpoint");
   rowLabel->setBuddy(row_);
   auto* rowLayout = new QHBoxLayout;
   rowLayout->addWidget(rowLabel);
   rowLayout->addWidget(row_, 1);
-  effect_ = new QLabel;
-  effect_->setObjectName("study-effect");
+  effect_ = parts::named("study-effect", new QLabel);
   effect_->setWordWrap(true);
   boxes_ = new PlotView("study-boxes", "Values by group");
   roc_ = new PlotView("roc-chart", "Receiver operating characteristic");
   auto* charts = new QWidget;
-  auto* chartLayout = new QVBoxLayout(charts);
-  chartLayout->setContentsMargins(0, 0, 0, 0);
+  auto* chartLayout = parts::bare<QVBoxLayout>(charts);
   chartLayout->addLayout(rowLayout);
   chartLayout->addWidget(effect_);
   chartLayout->addWidget(boxes_, 1);
@@ -155,14 +149,8 @@ StudyPage::StudyPage(QWidget* parent) : QWidget(parent) {
 
 void StudyPage::buildChoices(QBoxLayout& layout) {
   const auto add = [](QHBoxLayout& row, const char* name, const char* text, int stretch) {
-    auto* box = new QComboBox;
-    box->setObjectName(name);
-    box->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
-    box->setMinimumContentsLength(6);
-    auto* label = new QLabel(text);
-    label->setBuddy(box);
-    row.addWidget(label);
-    row.addWidget(box, stretch);
+    auto* box = parts::choice(name, 6);
+    parts::labelled(row, text, box, stretch);
     return box;
   };
   auto* upper = new QHBoxLayout;
@@ -188,10 +176,8 @@ void StudyPage::buildChoices(QBoxLayout& layout) {
   protocol_->setMinimumContentsLength(8);
   protocol_->setToolTip("A protocol that is registered in this cohort makes the choices (calot protocol register)");
   key_ = add(*lower, "study-key", "Comparable &within", 1);
-  synthetic_ = new QCheckBox("S&ynthetic attempts");
-  synthetic_->setObjectName("study-synthetic");
-  practice_ = new QCheckBox("&Practice attempts");
-  practice_->setObjectName("study-practice");
+  synthetic_ = parts::named("study-synthetic", new QCheckBox("S&ynthetic attempts"));
+  practice_ = parts::named("study-practice", new QCheckBox("&Practice attempts"));
   lower->addWidget(synthetic_);
   lower->addWidget(practice_);
   layout.addLayout(lower);

@@ -15,6 +15,7 @@
 #include "gui/attempt/figure_standing.h"
 #include "gui/attempt/figure_text.h"
 #include "gui/attempt/theme.h"
+#include "gui/attempt/widget_parts.h"
 #include "gui/dashboard/page_parts.h"
 #include "gui/dashboard/plot_view.h"
 #include "gui/words/problem_words.h"
@@ -48,16 +49,10 @@ TraineePage::TraineePage(QWidget* parent) : FiguresPage("trainee-caption", paren
   key_ = addChoice(lower, "trainee-key", "Comparable &within", 3);
   layout->addLayout(upper);
   layout->addLayout(lower);
-  goal_ = new QLabel;
-  goal_->setObjectName("trainee-goal");
-  goal_->setTextFormat(Qt::PlainText);
-  goal_->setWordWrap(true);
-  QFont bold = goal_->font();
-  bold.setBold(true);
-  goal_->setFont(bold);
+  goal_ = parts::plainLabel("trainee-goal");
+  parts::embolden(goal_);
   layout->addWidget(goal_);
-  tasks_ = new QTableWidget(0, 5);
-  tasks_->setObjectName("trainee-tasks");
+  tasks_ = parts::named("trainee-tasks", new QTableWidget(0, 5));
   tasks_->setAccessibleName("Tasks of the trainee");
   tasks_->setHorizontalHeaderLabels({"Task", "Attempts", "First", "Last", "Last started"});
   tasks_->setEditTriggers(QAbstractItemView::NoEditTriggers);
@@ -69,8 +64,7 @@ TraineePage::TraineePage(QWidget* parent) : FiguresPage("trainee-caption", paren
   tasks_->horizontalHeader()->setStretchLastSection(true);
   tasks_->setColumnWidth(0, theme::inType(560));
   chart_ = new PlotView("history-chart", "A figure over the attempts");
-  table_ = new QTableWidget(0, 6);
-  table_->setObjectName("trainee-attempts");
+  table_ = parts::named("trainee-attempts", new QTableWidget(0, 6));
   table_->setAccessibleName("Attempts of the trainee");
   table_->setHorizontalHeaderLabels({"No.", "Started", "Value", "Outcome", "Verification", "Remark"});
   table_->setEditTriggers(QAbstractItemView::NoEditTriggers);

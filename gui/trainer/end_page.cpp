@@ -13,7 +13,7 @@
 #include "gui/attempt/long_work.h"
 #include "gui/attempt/replay_transport.h"
 #include "gui/attempt/theme.h"
-#include "gui/trainer/panel_parts.h"
+#include "gui/attempt/widget_parts.h"
 #include "gui/trainer/trainer_texts.h"
 #include "gui/view/scene_picture_widget.h"
 #include "gui/words/problem_words.h"
@@ -83,8 +83,7 @@ EndPage::EndPage(Setup setup, QWidget* parent)
   auto* const row = new QHBoxLayout;
   row->addWidget(replaySide_, 3);
   row->addWidget(buildWords(), 2);
-  auto* const layout = new QVBoxLayout(this);
-  layout->setContentsMargins(0, 0, 0, 0);
+  auto* const layout = parts::bare<QVBoxLayout>(this);
   layout->addLayout(row, 1);
   layout->addWidget(strip_);
   layout->addWidget(buildButtons());
@@ -129,8 +128,7 @@ QWidget* EndPage::buildReplay() {
   moments_->setWordWrap(true);
   moments_->setToolTip("A click replays the moment, from two seconds before it");
   auto* const made = new QWidget;
-  auto* const layout = new QVBoxLayout(made);
-  layout->setContentsMargins(0, 0, 0, 0);
+  auto* const layout = parts::bare<QVBoxLayout>(made);
   layout->addWidget(picture_, 3);
   layout->addWidget(new TransportBar(*replay_));
   layout->addWidget(momentsTitle_);
@@ -142,9 +140,7 @@ QWidget* EndPage::buildWords() {
   QFont large = font();
   large.setPointSizeF(1.5 * large.pointSizeF());
   title_->setFont(large);
-  QFont bold = font();
-  bold.setBold(true);
-  verdict_->setFont(bold);
+  parts::embolden(verdict_);
   syntheticMark_->setFont(bold);
   syntheticMark_->setText("SYNTHETIC: made by a performer, no person's attempt");
   theme::setGround(*syntheticMark_, QColor(0xf0, 0xe4, 0x42), Qt::black);
@@ -166,8 +162,7 @@ QWidget* EndPage::buildButtons() {
   store_->setToolTip("Simulates the attempt again, which verifies it, and stores its figures");
   back_->setToolTip("Simulates the attempt again up to two seconds before the mistake, and goes on from there");
   auto* const made = new QWidget;
-  auto* const row = new QHBoxLayout(made);
-  row->setContentsMargins(0, 0, 0, 0);
+  auto* const row = parts::bare<QHBoxLayout>(made);
   row->addWidget(store_);
   row->addStretch(1);
   for (QPushButton* const button : {back_, again_, next_, scenes_}) row->addWidget(button);

@@ -15,7 +15,7 @@
 #include <QStackedWidget>
 
 #include "gui/attempt/theme.h"
-#include "gui/trainer/panel_parts.h"
+#include "gui/attempt/widget_parts.h"
 
 namespace calot::gui {
 
@@ -33,16 +33,13 @@ constexpr const char* assistantKeys = "assistantKeys";
 
 QWidget* keyPage(bool mouse, bool scope, bool pauses) {
   auto* const page = new QWidget;
-  auto* const grid = new QGridLayout(page);
-  grid->setContentsMargins(0, 0, 0, 0);
+  auto* const grid = parts::bare<QGridLayout>(page);
   grid->setVerticalSpacing(3);
   grid->setColumnStretch(1, 1);
   int row = 0;
   for (const KeyHelp& help : keyHelp(mouse, scope, pauses)) {
     auto* const keys = new QLabel(QString::fromStdString(help.keys));
-    QFont bold = keys->font();
-    bold.setBold(true);
-    keys->setFont(bold);
+    parts::embolden(keys);
     auto* const what = new QLabel(QString::fromStdString(help.what));
     what->setWordWrap(true);
     if (help.assistant) {
@@ -96,9 +93,7 @@ RunPanel::RunPanel(recorder::Mode mode, bool mouse, bool scope, QWidget* parent)
       scenes_(button("&Other scene", "otherScene")) {
   setMinimumWidth(theme::inType(270));
   setMaximumWidth(theme::inType(320));
-  QFont bold = font();
-  bold.setBold(true);
-  stage_->setFont(bold);
+  parts::embolden(stage_);
   phase_->setFont(bold);
   QFont large = font();
   large.setPointSizeF(2.0 * large.pointSizeF());
@@ -112,8 +107,7 @@ RunPanel::RunPanel(recorder::Mode mode, bool mouse, bool scope, QWidget* parent)
   list_->setWordWrap(true);
   back_->setToolTip("Simulates the attempt again up to two seconds before the mistake, and goes on from there");
 
-  auto* const lower = new QVBoxLayout(mistakes_);
-  lower->setContentsMargins(0, 0, 0, 0);
+  auto* const lower = parts::bare<QVBoxLayout>(mistakes_);
   mistakesTitle_->setAlignment(Qt::AlignTop | Qt::AlignLeft);  // also where there is no list below it
   lower->addWidget(mistakesTitle_);
   lower->addWidget(list_, 1);

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "gui/trainer/scenes_page.h"
 
 #include <algorithm>
@@ -14,6 +13,7 @@
 
 #include "gui/attempt/figure_standing.h"
 #include "gui/attempt/figure_text.h"
+#include "gui/attempt/widget_parts.h"
 #include "gui/trainer/trainer_texts.h"
 
 namespace calot::gui {
@@ -121,8 +121,7 @@ ScenesPage::ScenesPage(bool practice, bool demonstrates, QWidget* parent)
     button->setAutoDefault(true);  // Enter presses it
   }
 
-  auto* const side = new QVBoxLayout(pastSide_);
-  side->setContentsMargins(0, 0, 0, 0);
+  auto* const side = parts::bare<QVBoxLayout>(pastSide_);
   side->addWidget(pastTitle_);
   side->addWidget(past_, 1);
   pastSide_->hide();

@@ -14,6 +14,7 @@
 #include <QStackedWidget>
 #include <utility>
 
+#include "gui/attempt/widget_parts.h"
 #include "gui/trainer/end_page.h"
 #include "gui/trainer/operation_view.h"
 #include "gui/trainer/run_panel.h"
@@ -48,8 +49,7 @@ TrainerWindow::TrainerWindow(TrainerSetup setup, QWidget* parent)
   problem_->setStyleSheet(
       "QLabel { background: #fbe3d6; color: #5a1e00; border-left: 6px solid #d55e00; padding: 8px; }");
   problem_->hide();
-  auto* const row = new QHBoxLayout(operation_);
-  row->setContentsMargins(0, 0, 0, 0);
+  auto* const row = parts::bare<QHBoxLayout>(operation_);
   row->addWidget(view_, 1);
   row->addWidget(panel_);
   for (QWidget* const page : {static_cast<QWidget*>(scenes_), operation_, static_cast<QWidget*>(end_)})
