@@ -56,12 +56,10 @@ class TimelineBar : public QWidget {
 namespace calot::gui::palette {
 
 inline const QColor blue(0x00, 0x72, 0xb2);
-inline const QColor vermillion(0xd5, 0x5e, 0x00);
 inline const QColor skyBlue(0x56, 0xb4, 0xe9);
 inline const QColor orange(0xe6, 0x9f, 0x00);
 inline const QColor grey(0xb8, 0xb8, 0xb8);
 inline const QColor darkText(0x22, 0x22, 0x22);
-inline const QColor mutedText(0x50, 0x50, 0x50);
 
 inline QColor ofPhase(Phase phase) {
   switch (phase) {

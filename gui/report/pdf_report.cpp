@@ -2,6 +2,7 @@
 #include "gui/report/pdf_report.h"
 
 #include <algorithm>
+#include <functional>
 #include <QAbstractTextDocumentLayout>
 #include <QBuffer>
 #include <QFont>
@@ -46,22 +47,34 @@ void paintFoot(QPainter& painter, const QRectF& foot, QFont font, const QString&
   painter.restore();
 }
 
-}  // namespace
+QString titleOf(const analytics::ReportDocument& document) {
+  return QString(document.synthetic ? "SYNTHETIC: " : "") + QString::fromStdString(document.title);
+}
 
-std::string pdfReport(const analytics::ReportDocument& document, const std::string& maker) {
+/// Bytes of a PDF that `paint` fills: A4, of `dots` an inch, all margins alike (mm).
+std::string pdfOf(const QString& title, const std::string& maker, int dots, double margin,
+                  const std::function<void(QPdfWriter& writer, const QFont& font)>& paint) {
   const OffscreenApplication application;
   const QFont font = reportFont();
   QBuffer bytes;
   bytes.open(QIODevice::WriteOnly);
   {
-    const QString title = QString(document.synthetic ? "SYNTHETIC: " : "") + QString::fromStdString(document.title);
     QPdfWriter writer(&bytes);
-    writer.setResolution(dotsPerInch);
+    writer.setResolution(dots);
     writer.setPageSize(QPageSize(QPageSize::A4));
-    writer.setPageMargins(QMarginsF(marginMillimetres, marginMillimetres, marginMillimetres, marginMillimetres),
-                          QPageLayout::Millimeter);
+    writer.setPageMargins(QMarginsF(margin, margin, margin, margin), QPageLayout::Millimeter);
     writer.setTitle(title);
     writer.setCreator(QString::fromStdString(maker));
+    paint(writer, font);
+  }
+  return bytes.data().toStdString();
+}
+
+}  // namespace
+
+std::string pdfReport(const analytics::ReportDocument& document, const std::string& maker) {
+  const QString title = titleOf(document);
+  return pdfOf(title, maker, dotsPerInch, marginMillimetres, [&](QPdfWriter& writer, const QFont& font) {
     const double footHeight = footMillimetres * dotsPerInch / 25.4;
     const QSizeF whole(writer.width(), writer.height()), page(whole.width(), whole.height() - footHeight);
     ReportTextDocument text(document, &writer, page);
@@ -81,17 +94,15 @@ std::string pdfReport(const analytics::ReportDocument& document, const std::stri
       painter.restore();
       paintFoot(painter, QRectF(0.0, page.height(), whole.width(), footHeight), font, title, i + 1, pages);
     }
-  }
-  return bytes.data().toStdString();
+  });
 }
 
 namespace {
 
-constexpr int onePageDots = 600;                                                                          // an inch
-constexpr double onePageMargin = 15.0, betweenPictures = 4.0, captionHeight = 10.0, captionPoints = 7.5;  // mm; points
+constexpr double betweenPictures = 4.0, captionHeight = 10.0, captionPoints = 7.5;  // mm; points
 constexpr int columns = 3;
 
-double dots(double millimetres) { return millimetres * onePageDots / 25.4; }
+double dots(double millimetres) { return millimetres * dotsPerInch / 25.4; }
 
 /// @return height that the pictures take (dots)
 double paintPictures(QPainter& painter, const std::vector<CaptionedPicture>& pictures, const QSizeF& page, QFont font) {
@@ -120,18 +131,7 @@ double paintPictures(QPainter& painter, const std::vector<CaptionedPicture>& pic
 
 std::string onePagePdf(const analytics::ReportDocument& document, const std::vector<CaptionedPicture>& pictures,
                        const std::string& maker) {
-  const OffscreenApplication application;
-  const QFont font = reportFont();
-  QBuffer bytes;
-  bytes.open(QIODevice::WriteOnly);
-  {
-    QPdfWriter writer(&bytes);
-    writer.setResolution(onePageDots);
-    writer.setPageSize(QPageSize(QPageSize::A4));
-    writer.setPageMargins(QMarginsF(onePageMargin, onePageMargin, onePageMargin, onePageMargin),
-                          QPageLayout::Millimeter);
-    writer.setTitle(QString(document.synthetic ? "SYNTHETIC: " : "") + QString::fromStdString(document.title));
-    writer.setCreator(QString::fromStdString(maker));
+  return pdfOf(titleOf(document), maker, dotsPerInch, marginMillimetres, [&](QPdfWriter& writer, const QFont& font) {
     const QSizeF page(writer.width(), writer.height());
     QPainter painter(&writer);
     const double room = page.height() - paintPictures(painter, pictures, page, font);
@@ -149,8 +149,7 @@ std::string onePagePdf(const analytics::ReportDocument& document, const std::vec
     context.palette.setColor(QPalette::Text, Qt::black);
     context.clip = QRectF(0.0, 0.0, page.width(), used);
     text.documentLayout()->draw(&painter, context);
-  }
-  return bytes.data().toStdString();
+  });
 }
 
 namespace {
@@ -203,15 +202,7 @@ void paintSheet(QPainter& painter, const recorder::MarkerSheet& sheet,
 
 std::string sheetsPdf(const std::vector<recorder::MarkerSheet>& sheets, const std::string& maker,
                       const std::function<std::array<bool, 100>(int id)>& cells) {
-  const OffscreenApplication application;
-  const QFont font = reportFont();
-  QBuffer bytes;
-  bytes.open(QIODevice::WriteOnly);
-  {
-    QPdfWriter writer(&bytes);
-    writer.setResolution(sheetDotsPerInch);
-    writer.setTitle("Calot: handles and board");
-    writer.setCreator(QString::fromStdString(maker));
+  return pdfOf("Calot: handles and board", maker, sheetDotsPerInch, 0.0, [&](QPdfWriter& writer, const QFont& font) {
     const auto layOut = [&](const recorder::MarkerSheet& sheet) {
       const auto way = sheet.width > sheet.height ? QPageLayout::Landscape : QPageLayout::Portrait;
       writer.setPageLayout(QPageLayout(QPageSize(QPageSize::A4), way, QMarginsF(), QPageLayout::Millimeter));
@@ -228,8 +219,7 @@ std::string sheetsPdf(const std::vector<recorder::MarkerSheet>& sheets, const st
       paintSheet(painter, sheets[i], cells, font);
       painter.restore();
     }
-  }
-  return bytes.data().toStdString();
+  });
 }
 
 }  // namespace calot::gui

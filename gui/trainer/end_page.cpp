@@ -141,7 +141,7 @@ QWidget* EndPage::buildWords() {
   large.setPointSizeF(1.5 * large.pointSizeF());
   title_->setFont(large);
   parts::embolden(verdict_);
-  syntheticMark_->setFont(bold);
+  parts::embolden(syntheticMark_);
   syntheticMark_->setText("SYNTHETIC: made by a performer, no person's attempt");
   theme::setGround(*syntheticMark_, QColor(0xf0, 0xe4, 0x42), Qt::black);
   figures_->setAccessibleName("Figures that count");

@@ -94,7 +94,7 @@ RunPanel::RunPanel(recorder::Mode mode, bool mouse, bool scope, QWidget* parent)
   setMinimumWidth(theme::inType(270));
   setMaximumWidth(theme::inType(320));
   parts::embolden(stage_);
-  phase_->setFont(bold);
+  parts::embolden(phase_);
   QFont large = font();
   large.setPointSizeF(2.0 * large.pointSizeF());
   time_->setFont(large);
