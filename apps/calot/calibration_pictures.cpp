@@ -8,7 +8,7 @@
 #include <set>
 
 #include "gui/film/lettering.h"
-#include "gui/render/image.h"
+#include "gui/render/png_file.h"
 
 namespace calot::apps {
 namespace {

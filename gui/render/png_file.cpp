@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "gui/render/image.h"
+#include "gui/render/png_file.h"
 
 #include <fmt/format.h>
 #include <png.h>
