@@ -101,16 +101,12 @@ QString leftText(double seconds) {
 
 WorkStrip::WorkStrip(LongWork& work, QWidget* parent)
     : QWidget(parent),
-      text_(new QLabel),
-      bar_(new QProgressBar),
-      cancel_(new QPushButton("Cance&l")),
+      text_(parts::plainLabel("work-text", false)),
+      bar_(parts::named("work-progress", new QProgressBar)),
+      cancel_(parts::named("work-cancel", new QPushButton("Cance&l"))),
       appear_(new QTimer(this)) {
-  text_->setObjectName("work-text");
-  text_->setTextFormat(Qt::PlainText);
-  bar_->setObjectName("work-progress");
   bar_->setRange(0, 100);
   bar_->setAccessibleName("Progress of the work");
-  cancel_->setObjectName("work-cancel");
   auto* layout = parts::bare<QHBoxLayout>(this);
   layout->addWidget(text_, 1);
   layout->addWidget(bar_, 1);

@@ -77,7 +77,7 @@ QStringList localFiles(const QMimeData& data) {
 DashboardWindow::DashboardWindow(const AssessProgram& program, const std::vector<std::filesystem::path>& assetFolders,
                                  QWidget* parent)
     : QMainWindow(parent),
-      problem_(new QLabel),
+      problem_(parts::plainLabel("problem")),
       stack_(new QStackedWidget),
       greeting_(new GreetingPage(program)),
       tabs_(new QTabWidget),
@@ -93,9 +93,6 @@ DashboardWindow::DashboardWindow(const AssessProgram& program, const std::vector
   setWindowTitle("Calot");
   resize(theme::windowSizeFor(screen()->availableSize()));
   setAcceptDrops(true);
-  problem_->setObjectName("problem");
-  problem_->setTextFormat(Qt::PlainText);
-  problem_->setWordWrap(true);
   problem_->setTextInteractionFlags(Qt::TextSelectableByMouse | Qt::TextSelectableByKeyboard);
   theme::setGround(*problem_, QColor(0xfb, 0xe3, 0xd6), QColor(0x5a, 0x1e, 0x00));
   problem_->hide();

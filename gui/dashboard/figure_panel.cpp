@@ -42,8 +42,8 @@ std::optional<double> MomentCycle::next(const analytics::FigureMoments& figure) 
 
 FigurePanel::FigurePanel(QWidget* parent)
     : QWidget(parent),
-      norm_(new QComboBox),
-      verdict_(new QLabel),
+      norm_(parts::named("norm", new QComboBox)),
+      verdict_(parts::plainLabel("verdict-of-norm")),
       figureTable_(makeTree(families_, "attempt-checkpoints", "Checkpoints of the attempt, by family")),
       eventTable_(makeTree(events_, "events", "Events of the attempt, by kind")) {
   figureTable_->setItemDelegateForColumn(CheckpointTableModel::normColumn, new BandDelegate(figureTable_));
@@ -78,11 +78,7 @@ FigurePanel::FigurePanel(QWidget* parent)
 }
 
 QWidget* FigurePanel::buildNormRow() {
-  norm_->setObjectName("norm");
   norm_->setAccessibleName("Norm that the attempt is held against");
-  verdict_->setObjectName("verdict-of-norm");
-  verdict_->setWordWrap(true);
-  verdict_->setTextFormat(Qt::PlainText);
   auto* label = new QLabel("&Norm");
   label->setBuddy(norm_);
   sheet_ = parts::named("grade-sheet", new QPushButton("Gr&ade sheet …"));

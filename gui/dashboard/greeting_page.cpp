@@ -11,7 +11,11 @@
 namespace calot::gui {
 
 GreetingPage::GreetingPage(AssessProgram program, QWidget* parent)
-    : QWidget(parent), program_(std::move(program)), title_(new QLabel), text_(new QLabel), import_(nullptr) {
+    : QWidget(parent),
+      program_(std::move(program)),
+      title_(new QLabel),
+      text_(parts::plainLabel("greeting")),
+      import_(nullptr) {
   auto* layout = new QVBoxLayout(this);
   layout->addStretch(1);
   QFont large = font();
@@ -19,10 +23,7 @@ GreetingPage::GreetingPage(AssessProgram program, QWidget* parent)
   title_->setFont(large);
   title_->setAlignment(Qt::AlignHCenter);
   title_->setTextFormat(Qt::PlainText);
-  text_->setObjectName("greeting");
   text_->setAlignment(Qt::AlignHCenter);
-  text_->setWordWrap(true);
-  text_->setTextFormat(Qt::PlainText);
   text_->setTextInteractionFlags(Qt::TextSelectableByMouse | Qt::TextSelectableByKeyboard);
   auto* open = parts::named("open", new QPushButton("&Open a cohort database …"));
   connect(open, &QPushButton::clicked, this, &GreetingPage::openRequested);

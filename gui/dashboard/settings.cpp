@@ -19,6 +19,7 @@
 #include <utility>
 
 #include "gui/attempt/theme.h"
+#include "gui/attempt/widget_parts.h"
 
 namespace calot::gui::settings {
 namespace {
@@ -86,15 +87,14 @@ namespace calot::gui {
 
 SettingsDialog::SettingsDialog(QWidget* parent)
     : QDialog(parent),
-      folders_(new QListWidget),
-      program_(new QLineEdit),
-      threads_(new QSpinBox),
-      person_(new QLineEdit),
-      colours_(new QComboBox),
-      type_(new QSpinBox) {
+      folders_(parts::named("settings-folders", new QListWidget)),
+      program_(parts::named("settings-program", new QLineEdit)),
+      threads_(parts::named("settings-threads", new QSpinBox)),
+      person_(parts::named("settings-person", new QLineEdit)),
+      colours_(parts::named("settings-colours", new QComboBox)),
+      type_(parts::named("settings-type", new QSpinBox)) {
   setWindowTitle("Settings");
   resize(theme::inType(560), theme::inType(400));
-  folders_->setObjectName("settings-folders");
   folders_->addItems(settings::recordingFolders());
   auto* addFolder = new QPushButton("&Add …");
   auto* removeFolder = new QPushButton("&Remove");
@@ -105,25 +105,20 @@ SettingsDialog::SettingsDialog(QWidget* parent)
   auto* folderRow = new QHBoxLayout;
   folderRow->addWidget(folders_, 1);
   folderRow->addLayout(buttons);
-  program_->setObjectName("settings-program");
   program_->setText(settings::chosenCalotProgram());
   const QString found = settings::calotProgram();
   program_->setPlaceholderText(found.isEmpty() ? "not found: name it here" : "the calot that was found");
   program_->setToolTip(found);
-  threads_->setObjectName("settings-threads");
   threads_->setRange(1, 64);
   threads_->setValue(settings::importThreads());
-  person_->setObjectName("settings-person");
   person_->setMaxLength(64);
   person_->setText(settings::person());
   person_->setPlaceholderText("pseudonym of who rates and excludes");
-  colours_->setObjectName("settings-colours");
   for (const auto& [text, choice] : {std::pair{"as the system has them", theme::Choice::system},
                                      {"dark letters on light", theme::Choice::light},
                                      {"light letters on dark", theme::Choice::dark}})
     colours_->addItem(text, theme::wordOf(choice));
   colours_->setCurrentIndex(colours_->findData(theme::wordOf(settings::colours())));
-  type_->setObjectName("settings-type");
   type_->setRange(theme::usualType, theme::largestType);
   type_->setSingleStep(25);
   type_->setSuffix(" %");

@@ -69,7 +69,7 @@ EndPage::EndPage(Setup setup, QWidget* parent)
       figures_(words("endFigures")),
       momentsTitle_(words("momentsTitle")),
       storeText_(words("storeText")),
-      moments_(new QListWidget),
+      moments_(parts::named("moments", new QListWidget)),
       store_(button("&Put into the cohort", "store")),
       back_(button("Go &back to 2 s before it", "endBack")),
       again_(button("Sta&rt again", "again")),
@@ -123,7 +123,6 @@ EndPage::EndPage(Setup setup, QWidget* parent)
 EndPage::~EndPage() { replay_.reset(); }  // its threads use the picture
 
 QWidget* EndPage::buildReplay() {
-  moments_->setObjectName("moments");
   moments_->setAccessibleName("Moments to see again");
   moments_->setWordWrap(true);
   moments_->setToolTip("A click replays the moment, from two seconds before it");

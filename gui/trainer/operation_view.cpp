@@ -10,6 +10,8 @@
 #include <QWheelEvent>
 #include <utility>
 
+#include "gui/attempt/widget_parts.h"
+
 namespace calot::gui {
 namespace {
 
@@ -37,13 +39,12 @@ OperationView::OperationView(std::shared_ptr<recorder::MouseInput> mouse, std::s
     : ScenePictureWidget(parent, drawersAtOnce, wantedRate),
       mouse_(std::move(mouse)),
       scope_(std::move(scope)),
-      over_(new QLabel(this)) {
+      over_(parts::named("over", new QLabel(this))) {
   setObjectName("operation");
   setAccessibleName("Picture of the operation");
   setAccessibleDescription("Mouse and keyboard drive an instrument here; Escape frees the mouse, Tab leaves.");
   setFocusPolicy(Qt::StrongFocus);
   setMouseTracking(true);
-  over_->setObjectName("over");
   over_->setTextFormat(Qt::PlainText);
   over_->setAlignment(Qt::AlignCenter);
   over_->setAttribute(Qt::WA_TransparentForMouseEvents);

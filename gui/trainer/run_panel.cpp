@@ -80,12 +80,12 @@ RunPanel::RunPanel(recorder::Mode mode, bool mouse, bool scope, QWidget* parent)
       result_(plainLabel("result")),
       hand_{plainLabel("left"), plainLabel("right")},
       assistant_(plainLabel("assistant")),
-      progress_(new QProgressBar),
+      progress_(parts::named("progress", new QProgressBar)),
       lower_(new QStackedWidget),
       keys_(scrolled(keyPage(mouse, scope, mode == recorder::Mode::practice))),
       mistakes_(new QWidget),
       mistakesTitle_(plainLabel("mistakesTitle")),
-      list_(new QListWidget),
+      list_(parts::named("mistakes", new QListWidget)),
       back_(button("Go &back to 2 s before it", "back")),
       pause_(button("&Pause", "pause")),
       finish_(button("&End the attempt", "finish")),
@@ -100,9 +100,7 @@ RunPanel::RunPanel(recorder::Mode mode, bool mouse, bool scope, QWidget* parent)
   time_->setFont(large);
   hint_->setStyleSheet(hintStyle);
   result_->setTextInteractionFlags(Qt::TextSelectableByMouse | Qt::TextSelectableByKeyboard);
-  progress_->setObjectName("progress");
   progress_->setRange(0, 100);
-  list_->setObjectName("mistakes");
   list_->setAccessibleName("Mistakes");
   list_->setWordWrap(true);
   back_->setToolTip("Simulates the attempt again up to two seconds before the mistake, and goes on from there");

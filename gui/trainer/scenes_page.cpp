@@ -80,13 +80,13 @@ QString titleOf(const SceneChoice& scene, std::size_t number) {
 
 ScenesPage::ScenesPage(bool practice, bool demonstrates, QWidget* parent)
     : QWidget(parent),
-      list_(new QListWidget),
-      past_(new QListWidget),
+      list_(parts::named("scenes", new QListWidget)),
+      past_(parts::named("past", new QListWidget)),
       pastTitle_(new QLabel),
       pastSide_(new QWidget),
-      begin_(new QPushButton("&Begin")),
-      tutorial_(new QPushButton("&Learn the controls")),
-      demonstration_(new QPushButton("&Watch a demonstration")) {
+      begin_(parts::named("begin", new QPushButton("&Begin"))),
+      tutorial_(parts::named("tutorial", new QPushButton("&Learn the controls"))),
+      demonstration_(parts::named("demonstration", new QPushButton("&Watch a demonstration"))) {
   auto* const title = new QLabel("Welcome to the trainer");
   QFont large = font();
   large.setPointSizeF(1.6 * large.pointSizeF());
@@ -97,25 +97,20 @@ ScenesPage::ScenesPage(bool practice, bool demonstrates, QWidget* parent)
             "and go back to before a mistake and try again."
           : "Choose a task. Every attempt is recorded and can be assessed; there is no pause and no going back.");
   text->setWordWrap(true);
-  list_->setObjectName("scenes");
   list_->setAccessibleName("Scenes");
   list_->setWordWrap(true);
   list_->setIconSize(pictureSize);
   list_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);  // texts are wrapped
   list_->setStyleSheet("QListWidget::item { padding: 6px; }");
-  past_->setObjectName("past");
   past_->setAccessibleName("Your attempts at this task");
   past_->setWordWrap(true);
   pastTitle_->setTextFormat(Qt::PlainText);
   pastTitle_->setWordWrap(true);
   pastTitle_->setAlignment(Qt::AlignTop | Qt::AlignLeft);  // also where there is no list below it
-  tutorial_->setObjectName("tutorial");
   tutorial_->setToolTip("Asks for one control after the other, on the first task's scene");
-  demonstration_->setObjectName("demonstration");
   demonstration_->setToolTip("A skilled performer does it: a program, no person; its recording is marked synthetic");
   demonstration_->setVisible(demonstrates);
   tutorial_->setVisible(practice);
-  begin_->setObjectName("begin");
   for (QPushButton* const button : {begin_, tutorial_, demonstration_}) {
     button->setEnabled(false);
     button->setAutoDefault(true);  // Enter presses it
