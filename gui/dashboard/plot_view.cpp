@@ -19,7 +19,7 @@ namespace {
 
 constexpr double usualScale = 1.15;                    // pixels of a unit: letters of 11 units are as high as a label's
 constexpr double leastWidth = 300, leastHeight = 180;  // units: a smaller plot would cut its letters off
-constexpr double reach = 8.0;                          // pixels from a mark that still count as on it
+constexpr double markReach = 8.0;                      // pixels from a mark that still count as on it
 constexpr double ring = 9.0;                           // pixels: radius around the chosen mark
 
 }  // namespace
@@ -75,7 +75,7 @@ QPointF PlotView::placeOf(const analytics::DrawnMark& mark) const { return QPoin
 
 const analytics::DrawnMark* PlotView::markAt(const QPointF& place) {
   const analytics::DrawnMark* nearest = nullptr;
-  double best = reach;
+  double best = markReach;
   for (const analytics::DrawnMark& mark : marks()) {
     const QPointF away = placeOf(mark) - place;
     const double distance = std::hypot(away.x(), away.y());

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "recorder/base/errors.h"
+#include FT_FREETYPE_H
 
 namespace calot::gui {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "gui/film/film_source.h"
 #include "gui/film/lettering.h"
+#include "gui/film/moment_track.h"
 #include "gui/render/image.h"
 #include "sim/scene/scene_view.h"
 

@@ -225,8 +225,8 @@ void Surroundings::update(const SceneView& view) {
 
 namespace {
 
-constexpr double cell = 0.0035;    // m
-constexpr double reach = 0.050;    // how far it goes to the sides, where it has long left the picture below (m)
+constexpr double cell = 0.0035;          // m
+constexpr double ligamentReach = 0.050;  // how far it goes to the sides, where it has long left the picture below (m)
 constexpr double behind = 0.0055;  // its crest, below the upper side of a vessel: as deep as the bile duct is thick (m)
 constexpr double crest = 0.015;    // radius of its crest (m)
 // What can be injured is not to be hidden: wherever another vessel lies deeper, the fold gives way.
@@ -243,8 +243,8 @@ Mesh makeLigament(std::span<const Vec3> vessels) {
   if (vessels.empty()) return mesh;
   Box box;
   for (const Vec3& p : vessels) box.include(p);
-  const double x0 = box.lower.x() - reach, z0 = box.lower.z() - reach;
-  const auto cells = [](double length) { return static_cast<int>(std::ceil((length + 2.0 * reach) / cell)); };
+  const double x0 = box.lower.x() - ligamentReach, z0 = box.lower.z() - ligamentReach;
+  const auto cells = [](double length) { return static_cast<int>(std::ceil((length + 2.0 * ligamentReach) / cell)); };
   const int across = cells(box.upper.x() - box.lower.x()), along = cells(box.upper.z() - box.lower.z());
   for (int i = 0; i <= across; ++i) {
     for (int j = 0; j <= along; ++j) {

@@ -71,7 +71,7 @@ namespace {
 constexpr int maxUnderway = 3;
 constexpr std::chrono::milliseconds period(30);  // every third step: some are lost, thirty a second are to stay
 /// A window that is hidden shows nothing; it is tried again so often.
-constexpr std::chrono::milliseconds patience(500);
+constexpr std::chrono::milliseconds retryAfter(500);
 
 }  // namespace
 
@@ -87,7 +87,7 @@ void ViewTap::give() { sink_(std::make_shared<const SceneView>(viewer_->view(ses
 void ViewTap::onStep(const recorder::StepRecord& /*record*/) {
   const Clock::time_point now = Clock::now();
   if (now < next_) return;
-  if (underway_ >= maxUnderway && now < last_ + patience) return;
+  if (underway_ >= maxUnderway && now < last_ + retryAfter) return;
   // The mean is kept, not the distance.
   next_ = now - next_ > period ? now + period : next_ + period;
   last_ = now;
