@@ -14,7 +14,7 @@ build=(
   nlohmann-json3-dev libfmt-dev libspdlog-dev libcli11-dev libpng-dev libosmesa6-dev libegl-dev
   libavcodec-dev libavformat-dev libavutil-dev libswscale-dev libapriltag-dev libfreetype-dev
   libsdl2-dev libopenigtlink-dev libspnav-dev libseccomp-dev libbenchmark-dev
-  qt6-base-dev qt6-charts-dev qt6-speech-dev qt6-declarative-dev libqt6opengl6-dev
+  qt6-base-dev qt6-speech-dev qt6-declarative-dev
   # Optional, but whoever adds them later builds everything anew.
   libbullet-dev pybind11-dev python3-dev
 )

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <utility>
 
-#include "analytics/report/plots.h"
 #include "analytics/report/report_text.h"
 #include "analytics/statistics/multiplicity.h"
 #include "recorder/attempt.h"
@@ -148,21 +147,21 @@ std::optional<Drawing> drawLines(const LinePlot& plot) {
       y.push_back(py);
     }
   }
-  const std::optional<PlotScale> across = plotScale(x), scale = plotScale(y);
+  const std::optional<PlotScale> across = plotScale(x, plot.frame), scale = plotScale(y, plot.frame);
   if (x.empty() || !across || !scale) return std::nullopt;
-  const auto at = [&](double value) {
-    return plotLeft + (value - across->low) / (across->high - across->low) * (plotRight - plotLeft);
-  };
+  const PlotFrame& frame = plot.frame;
+  const auto at = [&](double value) { return across->x(value); };
   Drawing drawing = beginPlot(plot.title, plot.axis, *scale);
   // Attempts are counted: no tick between two.
   const bool whole = std::all_of(x.begin(), x.end(), [](double v) { return v == std::floor(v); });
   for (const double tick : roundTicks(across->low, across->high)) {
     if (whole && tick != std::floor(tick)) continue;
-    drawing.text(Ink::count, at(tick), plotBottom + 14.0, fmt::format("{:.6g}", tick == 0.0 ? 0.0 : tick));
+    drawing.text(Ink::count, at(tick), frame.bottom() + 14.0, fmt::format("{:.6g}", tick == 0.0 ? 0.0 : tick));
   }
-  drawing.text(Ink::group, (plotLeft + plotRight) / 2.0, plotBottom + 32.0, plot.below);
-  for (const double mark : plot.marks) drawing.line(Ink::cut, plotLeft, scale->y(mark), plotRight, scale->y(mark));
-  double legend = plotTop + 8.0;
+  drawing.text(Ink::group, (frame.left() + frame.right()) / 2.0, frame.bottom() + 32.0, plot.below);
+  for (const double mark : plot.marks)
+    drawing.line(Ink::cut, frame.left(), scale->y(mark), frame.right(), scale->y(mark));
+  double legend = frame.top() + 8.0;
   for (const PlotSeries& s : plot.series) {
     const std::size_t ink = s.ink < 2 ? s.ink : 2;
     for (std::size_t i = 0; i < s.points.size(); ++i) {
@@ -178,8 +177,8 @@ std::optional<Drawing> drawLines(const LinePlot& plot) {
       }
     }
     if (s.label.empty()) continue;
-    drawing.line(lineInks[ink], plotRight - 110.0, legend - 4.0, plotRight - 96.0, legend - 4.0);
-    drawing.text(Ink::label, plotRight - 92.0, legend, cutTo(s.label, maxLegend));
+    drawing.line(lineInks[ink], frame.right() - 110.0, legend - 4.0, frame.right() - 96.0, legend - 4.0);
+    drawing.text(Ink::label, frame.right() - 92.0, legend, cutTo(s.label, maxLegend));
     legend += legendHeight;
   }
   endPlot(drawing, plot.synthetic);

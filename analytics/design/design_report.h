@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "analytics/design/design_data.h"
-#include "analytics/report/drawing.h"
+#include "analytics/report/plots.h"
 #include "analytics/report/report_document.h"
 #include "analytics/statistics/expected.h"
 
@@ -54,6 +54,7 @@ struct LinePlot {
   std::vector<PlotSeries> series;
   std::vector<double> marks;  ///< of y, drawn as dashed lines
   bool synthetic = false;
+  PlotFrame frame = {};
 };
 
 /// Values over another quantity. None where there are no points, or they are too large or too close for a scale.

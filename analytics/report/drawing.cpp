@@ -33,6 +33,8 @@ constexpr std::array<InkStyle, static_cast<std::size_t>(Ink::watermark) + 1> sty
     {"line first", blue, 1.5, false, "", 1.0, 0.0, false, Anchor::start},
     {"line second", brown, 1.5, false, "", 1.0, 0.0, false, Anchor::start},
     {"line third", grey, 1.5, false, "", 1.0, 0.0, false, Anchor::start},
+    {"point hollow", brown, 1.5, false, "#ffffff", 1.0, 0.0, false, Anchor::start},
+    {"band", "", 0.0, false, "#d6e8f3", 1.0, 0.0, false, Anchor::start},
     {"score low3", "#ffffff", 0.5, false, "#c9702b", 1.0, 0.0, false, Anchor::start},
     {"score low2", "#ffffff", 0.5, false, "#e5a366", 1.0, 0.0, false, Anchor::start},
     {"score low1", "#ffffff", 0.5, false, "#f6d3a8", 1.0, 0.0, false, Anchor::start},

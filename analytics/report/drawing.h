@@ -29,6 +29,8 @@ enum class Ink : std::uint8_t {
   firstLine,
   secondLine,
   thirdLine,
+  hollowPoint,
+  band,  ///< around a curve
   low3,  ///< a score far below the middle of its scale, of seven steps
   low2,
   low1,
@@ -72,6 +74,12 @@ struct DrawnText {
   double degrees = 0.0;  ///< clockwise about the anchor
 };
 
+/// A place of a drawing that stands for an attempt or a participant: a window shows its text and opens it.
+struct DrawnMark {
+  double x, y;
+  std::string key, text;  ///< uuid or pseudonym; what the mark is, in words
+};
+
 struct Shape {
   Ink ink;
   std::variant<DrawnLine, DrawnBox, DrawnPoint, DrawnText> form;
@@ -81,6 +89,7 @@ struct Drawing {
   std::string title;  ///< alternative text
   double width = 0.0, height = 0.0;
   std::vector<Shape> shapes;  ///< later ones over earlier ones
+  std::vector<DrawnMark> marks = {};
 
   void line(Ink ink, double x1, double y1, double x2, double y2);
   void box(Ink ink, double x, double y, double boxWidth, double boxHeight);

@@ -275,11 +275,17 @@ ReportDocument gradeDocument(const Grade& g, const std::string& recording, const
     document.add(curveNote);
     Figures figures;
     for (const GradedFigure& f : g.figures) {
-      std::vector<double> values;
-      for (const HistoryPoint& p : f.history) values.push_back(p.value);
+      std::vector<HistoryPlot::Value> values;
+      for (const HistoryPoint& p : f.history)
+        values.push_back({.attempt = static_cast<double>(values.size() + 1), .value = p.value});
+      if (values.size() < 2) continue;
       std::optional<double> cut;
       if (f.mark.cut) cut = *f.mark.cut * f.displayFactor;
-      if (auto plot = drawHistory({nameOf(f), f.unit == "1" ? "" : f.unit, values, cut, synthetic(g)}))
+      if (auto plot = drawHistory({.title = nameOf(f),
+                                   .axis = f.unit == "1" ? "" : f.unit,
+                                   .values = std::move(values),
+                                   .mark = cut,
+                                   .synthetic = synthetic(g)}))
         figures.drawings.push_back(std::move(*plot));
     }
     if (!figures.drawings.empty()) document.parts.emplace_back(std::move(figures));

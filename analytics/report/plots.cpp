@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <numeric>
 #include <string>
 #include <utility>
 
@@ -15,17 +16,18 @@
 namespace calot::analytics {
 namespace {
 
-constexpr std::size_t maxPlotTitle = 42;  // in letters: what fits at the size of page_html.cpp
+constexpr double titleLetter = 7.5;   // mean width of a heading's letter
+constexpr double legendLetter = 6.0;  // of a label's
 
 }  // namespace
 
-std::optional<PlotScale> plotScale(std::span<const double> values) {
+std::optional<PlotScale> plotScale(std::span<const double> values, const PlotFrame& frame) {
   double low = HUGE_VAL, high = -HUGE_VAL;
   for (const double v : values) {
     low = std::min(low, v);
     high = std::max(high, v);
   }
-  const double size = std::max(std::abs(low), std::abs(high));
+  const double size = std::max(std::abs(low), std::abs(high)), least = low >= 0.0 && low < high ? 0.0 : -HUGE_VAL;
   if (!(low <= high) || size > 1e300) return std::nullopt;
   if (low == high) {
     const double around = size > 0.0 ? size * 0.1 : 1.0;
@@ -34,17 +36,18 @@ std::optional<PlotScale> plotScale(std::span<const double> values) {
   }
   if (!(high - low > size * 1e-12)) return std::nullopt;
   const double margin = (high - low) * 0.05;
-  return PlotScale{low - margin, high + margin};
+  return PlotScale{std::max(least, low - margin), high + margin, frame};
 }
 
 Drawing beginPlot(const std::string& title, const std::string& axis, const PlotScale& scale) {
-  Drawing drawing{title, plotWidth, plotHeight, {}};
-  drawing.text(Ink::heading, 12.0, 18.0, cutTo(title, maxPlotTitle));
+  const PlotFrame& frame = scale.frame;
+  Drawing drawing{title, frame.width, frame.height, {}};
+  drawing.text(Ink::heading, 12.0, 18.0, cutTo(title, static_cast<std::size_t>(frame.width / titleLetter)));
   for (const double tick : roundTicks(scale.low, scale.high)) {
-    drawing.line(Ink::grid, plotLeft, scale.y(tick), plotRight, scale.y(tick));
-    drawing.text(Ink::tick, plotLeft - 6.0, scale.y(tick) + 4.0, fmt::format("{:.6g}", tick == 0.0 ? 0.0 : tick));
+    drawing.line(Ink::grid, frame.left(), scale.y(tick), frame.right(), scale.y(tick));
+    drawing.text(Ink::tick, frame.left() - 6.0, scale.y(tick) + 4.0, fmt::format("{:.6g}", tick == 0.0 ? 0.0 : tick));
   }
-  if (!axis.empty()) drawing.text(Ink::axis, 12.0, (plotTop + plotBottom) / 2.0, axis, -90.0);
+  if (!axis.empty()) drawing.text(Ink::axis, 12.0, (frame.top() + frame.bottom()) / 2.0, axis, -90.0);
   return drawing;
 }
 
@@ -53,43 +56,84 @@ void endPlot(Drawing& drawing, bool synthetic) {
   drawing.text(Ink::watermark, drawing.width / 2.0, drawing.height / 2.0 + 14.0, "SYNTHETIC", -30.0);
 }
 
+void drawLegend(Drawing& drawing, const PlotFrame& frame, const std::vector<LegendEntry>& entries) {
+  const double y = frame.height - 8.0;
+  double x = frame.left();
+  for (const auto& [ink, label] : entries) {
+    if (styleOf(ink).letters == 0.0 && *styleOf(ink).fill == '\0')
+      drawing.line(ink, x, y - 4.0, x + 14.0, y - 4.0);
+    else if (ink == Ink::band)
+      drawing.box(ink, x, y - 8.0, 14.0, 8.0);
+    else
+      drawing.point(ink, x + 9.0, y - 4.0, 4.0);
+    drawing.text(Ink::label, x + 18.0, y, label);
+    x += 34.0 + legendLetter * static_cast<double>(label.size());
+  }
+}
+
 namespace {
 
 constexpr std::size_t maxGroup = 20;     // in letters
 constexpr std::size_t minBox = 5;        // values: quartiles of fewer are interpolations between two of them
 constexpr std::size_t mostPoints = 200;  // drawn of a group: more are one dark column, and a report of megabytes
-constexpr double boxHalf = 26.0, pointRadius = 2.6;
+constexpr double mostBoxHalf = 26.0, pointRadius = 2.6;
+constexpr double groupLetter = 6.5, minName = 4.0;  // mean width of a letter; a name of fewer says nothing
 
-void drawBox(Drawing& drawing, const std::vector<double>& sorted, double x, const PlotScale& scale, std::size_t g) {
+/// Where a group stands, and in what.
+struct Column {
+  double x, boxHalf;
+  Ink box, point;
+};
+
+void drawBox(Drawing& drawing, const std::vector<double>& sorted, const Column& column, const PlotScale& scale) {
   const double q1 = quantileOfSorted(sorted, 0.25), q2 = quantileOfSorted(sorted, 0.5),
                q3 = quantileOfSorted(sorted, 0.75);
   const double reach = 1.5 * (q3 - q1);
   const double lower = std::min(q1, *std::lower_bound(sorted.begin(), sorted.end(), q1 - reach));
   const double upper = std::max(q3, *(std::upper_bound(sorted.begin(), sorted.end(), q3 + reach) - 1));
+  const auto& [x, boxHalf, boxInk, pointInk] = column;
   drawing.line(Ink::whisker, x, scale.y(lower), x, scale.y(q1));
   drawing.line(Ink::whisker, x, scale.y(q3), x, scale.y(upper));
   drawing.line(Ink::whisker, x - boxHalf / 2, scale.y(lower), x + boxHalf / 2, scale.y(lower));
   drawing.line(Ink::whisker, x - boxHalf / 2, scale.y(upper), x + boxHalf / 2, scale.y(upper));
-  drawing.box(g == 0 ? Ink::firstBox : Ink::secondBox, x - boxHalf, scale.y(q3), 2 * boxHalf,
-              std::max(0.0, scale.y(q1) - scale.y(q3)));
+  drawing.box(boxInk, x - boxHalf, scale.y(q3), 2 * boxHalf, std::max(0.0, scale.y(q1) - scale.y(q3)));
   drawing.line(Ink::median, x - boxHalf, scale.y(q2), x + boxHalf, scale.y(q2));
 }
 
 /// Every value is drawn, or one in so many of those in order.
-std::size_t strideOf(std::size_t values) { return 1 + (values - 1) / mostPoints; }
+std::size_t strideOf(std::size_t values) { return values == 0 ? 1 : 1 + (values - 1) / mostPoints; }
 
-void drawGroup(Drawing& drawing, std::span<const double> values, double x, const PlotScale& scale, std::size_t g) {
-  std::vector<double> sorted(values.begin(), values.end());
-  std::sort(sorted.begin(), sorted.end());
-  if (sorted.size() >= minBox) drawBox(drawing, sorted, x, scale, g);
+void drawGroup(Drawing& drawing, const BoxPlot& plot, std::size_t group, const Column& column, const PlotScale& scale) {
+  const std::span<const double> values = plot.values[group];
+  std::vector<std::size_t> order(values.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return values[a] < values[b]; });
+  std::vector<double> sorted;
+  sorted.reserve(values.size());
+  for (const std::size_t i : order) sorted.push_back(values[i]);
+  if (sorted.size() >= minBox) drawBox(drawing, sorted, column, scale);
   const auto draw = [&](std::size_t i, std::size_t place) {
     // Side by side in five places in turn, so that equal values do not hide each other.
-    const double aside = (static_cast<double>(place * 2 % 5) - 2.0) * 7.0;
-    drawing.point(g == 0 ? Ink::firstPoint : Ink::secondPoint, x + aside, scale.y(sorted[i]), pointRadius);
+    const double x = column.x + (static_cast<double>(place * 2 % 5) - 2.0) * column.boxHalf * (7.0 / mostBoxHalf);
+    const double y = scale.y(sorted[i]);
+    const BoxPlot::Point point = plot.point ? plot.point(group, order[i]) : BoxPlot::Point{};
+    drawing.point(point.synthetic ? Ink::hollowPoint : column.point, x, y, pointRadius);
+    if (!point.key.empty()) drawing.marks.push_back({x, y, point.key, point.text});
   };
   const std::size_t stride = strideOf(sorted.size());
   for (std::size_t i = 0; i + 1 < sorted.size(); i += stride) draw(i, i / stride);
   draw(sorted.size() - 1, (sorted.size() - 1) / stride);  // both extremes, always
+}
+
+void nameGroup(Drawing& drawing, const BoxPlot& plot, std::size_t group, double x, double width) {
+  const double letters = width / groupLetter, bottom = plot.frame.bottom();
+  if (letters < minName || group >= plot.groups.size()) return;
+  const std::size_t n = plot.values[group].size(), stride = strideOf(n);
+  drawing.text(Ink::group, x, bottom + 17.0,
+               cutTo(plot.groups[group], std::min(maxGroup, static_cast<std::size_t>(letters))));
+  std::string count = fmt::format("n = {}", n);
+  if (stride > 1) count += fmt::format(", one in {} drawn", stride);
+  if (static_cast<double>(count.size()) < letters + 1.0) drawing.text(Ink::group, x, bottom + 32.0, count);
 }
 
 }  // namespace
@@ -110,17 +154,20 @@ std::vector<double> roundTicks(double low, double high) {
 std::optional<Drawing> drawBoxPlot(const BoxPlot& plot) {
   std::vector<double> all;
   for (const auto& values : plot.values) all.insert(all.end(), values.begin(), values.end());
-  const std::optional<PlotScale> scale = plotScale(all);
+  const std::optional<PlotScale> scale = plotScale(all, plot.frame);
   if (!scale) return std::nullopt;
   Drawing drawing = beginPlot(plot.title, plot.axis, *scale);
-  for (std::size_t g = 0; g < 2; ++g) {
-    const double x = plotLeft + (plotRight - plotLeft) * (g == 0 ? 0.27 : 0.73);
-    drawing.text(Ink::group, x, plotBottom + 17.0, cutTo(plot.groups[g], maxGroup));
-    const std::size_t n = plot.values[g].size();
-    const bool each = n == 0 || strideOf(n) == 1;
-    drawing.text(Ink::group, x, plotBottom + 32.0,
-                 each ? fmt::format("n = {}", n) : fmt::format("n = {}, one in {} drawn", n, strideOf(n)));
-    if (n > 0) drawGroup(drawing, plot.values[g], x, *scale, g);
+  const double apart = (plot.frame.right() - plot.frame.left()) / static_cast<double>(plot.values.size());
+  for (std::size_t g = 0; g < plot.values.size(); ++g) {
+    const Column column{plot.frame.left() + apart * (static_cast<double>(g) + 0.5), std::min(mostBoxHalf, 0.35 * apart),
+                        g % 2 == 0 ? Ink::firstBox : Ink::secondBox, g % 2 == 0 ? Ink::firstPoint : Ink::secondPoint};
+    nameGroup(drawing, plot, g, column.x, apart);
+    if (!plot.values[g].empty()) drawGroup(drawing, plot, g, column, *scale);
+  }
+  if (plot.frame.legend) {
+    std::vector<LegendEntry> legend{{Ink::firstPoint, "attempt"}};
+    if (plot.synthetic) legend.push_back({Ink::hollowPoint, "performer (synthetic)"});
+    drawLegend(drawing, plot.frame, legend);
   }
   endPlot(drawing, plot.synthetic);
   return drawing;
@@ -162,23 +209,73 @@ Drawing drawForest(const ForestPlot& plot) {
   return drawing;
 }
 
-std::optional<Drawing> drawHistory(const HistoryPlot& plot) {
-  if (plot.values.size() < 2) return std::nullopt;
-  std::vector<double> all = plot.values;
-  if (plot.mark) all.push_back(*plot.mark);
-  const std::optional<PlotScale> scale = plotScale(all);
-  if (!scale) return std::nullopt;
-  Drawing drawing = beginPlot(plot.title, plot.axis, *scale);
-  if (plot.mark) drawing.line(Ink::cut, plotLeft, scale->y(*plot.mark), plotRight, scale->y(*plot.mark));
-  const double apart = (plotRight - plotLeft) / static_cast<double>(plot.values.size());
-  const auto x = [&](std::size_t i) { return plotLeft + apart * (static_cast<double>(i) + 0.5); };
-  for (std::size_t i = 1; i < plot.values.size(); ++i)
-    drawing.line(Ink::whisker, x(i - 1), scale->y(plot.values[i - 1]), x(i), scale->y(plot.values[i]));
-  for (std::size_t i = 0; i < plot.values.size(); ++i) {
-    drawing.point(Ink::firstPoint, x(i), scale->y(plot.values[i]), 3.0);
-    if (plot.values.size() <= 12) drawing.text(Ink::group, x(i), plotBottom + 17.0, fmt::format("{}", i + 1));
+namespace {
+
+constexpr int curveParts = 120;
+constexpr double historyRadius = 3.0;
+
+/// Points of the curve and its band over attempts 1 to `last`.
+struct CurvePart {
+  double x, y;
+  std::optional<Interval> band;
+};
+std::vector<CurvePart> partsOf(const LearningCurve& curve, double last) {
+  std::vector<CurvePart> parts;
+  for (int i = 0; i <= curveParts; ++i) {
+    const double x = 1.0 + (last - 1.0) * i / curveParts;
+    const Expected<Interval> band = bandOf(curve, x);
+    parts.push_back({x, curve.at(x), band ? std::optional(*band) : std::nullopt});
   }
-  drawing.text(Ink::group, (plotLeft + plotRight) / 2.0, plotBottom + 32.0, "attempt");
+  return parts;
+}
+
+}  // namespace
+
+std::optional<Drawing> drawHistory(const HistoryPlot& plot) {
+  const double last = std::max(1.0, plot.attempts > 0.0 ? plot.attempts : static_cast<double>(plot.values.size()));
+  std::vector<CurvePart> curve;
+  if (plot.curve != nullptr) curve = partsOf(*plot.curve, last);
+  std::vector<double> all;
+  for (const HistoryPlot::Value& v : plot.values) all.push_back(v.value);
+  for (const CurvePart& p : curve) all.push_back(p.y);
+  if (plot.mark) all.push_back(*plot.mark);
+  const std::optional<PlotScale> scale = plotScale(all, plot.frame);
+  if (!scale) return std::nullopt;
+  const PlotFrame& frame = plot.frame;
+  Drawing drawing = beginPlot(plot.title, plot.axis, *scale);
+  const double apart = (frame.right() - frame.left()) / last;
+  const auto x = [&](double attempt) { return frame.left() + apart * (attempt - 0.5); };
+  const auto y = [&](double value) { return std::clamp(scale->y(value), frame.top(), frame.bottom()); };
+  std::vector<LegendEntry> legend{{Ink::firstPoint, "attempt"}};
+  // Boxes overlap: their edges would show.
+  for (std::size_t i = 0; i + 1 < curve.size(); ++i) {
+    const auto& band = curve[i].band;
+    if (band)
+      drawing.box(Ink::band, x(curve[i].x), y(band->upper), x(curve[i + 1].x) - x(curve[i].x) + 1.0,
+                  y(band->lower) - y(band->upper));
+  }
+  for (std::size_t i = 1; i < curve.size(); ++i)
+    drawing.line(Ink::secondLine, x(curve[i - 1].x), y(curve[i - 1].y), x(curve[i].x), y(curve[i].y));
+  if (!curve.empty()) legend.push_back({Ink::secondLine, "learning curve a - b / x"});
+  if (!curve.empty() && curve.front().band) legend.push_back({Ink::band, "95 % band of the curve"});
+  if (plot.mark) {
+    drawing.line(Ink::cut, frame.left(), y(*plot.mark), frame.right(), y(*plot.mark));
+    legend.push_back({Ink::cut, "norm's cut"});
+  }
+  for (std::size_t i = 1; i < plot.values.size() && curve.empty(); ++i)
+    drawing.line(Ink::whisker, x(plot.values[i - 1].attempt), y(plot.values[i - 1].value), x(plot.values[i].attempt),
+                 y(plot.values[i].value));
+  for (const HistoryPlot::Value& v : plot.values) {
+    drawing.point(v.outside ? Ink::hollowPoint : Ink::firstPoint, x(v.attempt), y(v.value), historyRadius);
+    if (!v.key.empty()) drawing.marks.push_back({x(v.attempt), y(v.value), v.key, v.text});
+  }
+  if (std::any_of(plot.values.begin(), plot.values.end(), [](const auto& v) { return v.outside; }))
+    legend.push_back({Ink::hollowPoint, "attempt that is not in the curve"});
+  const double every = std::max(1.0, std::ceil(20.0 / apart));
+  for (double n = 1.0; n <= last; n += every)
+    drawing.text(Ink::group, x(n), frame.bottom() + 17.0, fmt::format("{:.0f}", n));
+  drawing.text(Ink::group, (frame.left() + frame.right()) / 2.0, frame.bottom() + 32.0, "attempt");
+  if (frame.legend) drawLegend(drawing, frame, legend);
   endPlot(drawing, plot.synthetic);
   return drawing;
 }

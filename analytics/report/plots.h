@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The plots of a report: boxes with points, effects with intervals, a history, distributions of scores.
+// The plots of a report, on a page, on paper and on the screen: boxes with points, effects with intervals, a history,
+// distributions of scores.
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -12,39 +13,70 @@
 
 #include "analytics/report/drawing.h"
 #include "analytics/report/ratings.h"
+#include "analytics/statistics/learning_curve.h"
 
 namespace calot::analytics {
 
-// In the drawing's own units, as many as pixels where the page is not scaled.
-inline constexpr double plotWidth = 320.0, plotHeight = 240.0;
-inline constexpr double plotLeft = 62.0, plotRight = 310.0, plotTop = 30.0, plotBottom = 200.0;
+inline constexpr double plotWidth = 320.0, plotHeight = 240.0;  ///< of a page's plots, in the drawing's units
+
+/// Size of a plot in the drawing's units and its area between the axes. A page's unit is a pixel where it is not
+/// scaled; letters keep their size whatever the frame's.
+struct PlotFrame {
+  double width = plotWidth, height = plotHeight;
+  bool legend = false;  ///< space for drawLegend()
+
+  [[nodiscard]] double left() const { return 62.0; }
+  [[nodiscard]] double right() const { return width - 10.0; }
+  [[nodiscard]] double top() const { return 30.0; }
+  [[nodiscard]] double bottom() const { return height - (legend ? 58.0 : 40.0); }
+};
 
 struct PlotScale {
   double low = 0.0, high = 1.0;
+  PlotFrame frame;
   [[nodiscard]] double y(double value) const {
-    return plotBottom - (value - low) / (high - low) * (plotBottom - plotTop);
+    return frame.bottom() - (value - low) / (high - low) * (frame.bottom() - frame.top());
+  }
+  [[nodiscard]] double x(double value) const {
+    return frame.left() + (value - low) / (high - low) * (frame.right() - frame.left());
   }
 };
 
-/// Holds all values with a margin; none where they are too large or too close, or there are none.
-std::optional<PlotScale> plotScale(std::span<const double> values);
+/// Holds all values with a margin, not below zero unless a value is; none where they are too large or too close, or
+/// there are none.
+std::optional<PlotScale> plotScale(std::span<const double> values, const PlotFrame& frame = {});
 
 /// A drawing with its title, a grid with its ticks, and the unit beside them.
 Drawing beginPlot(const std::string& title, const std::string& axis, const PlotScale& scale);
 /// The watermark over all of it where it is synthetic.
 void endPlot(Drawing& drawing, bool synthetic);
 
+struct LegendEntry {
+  Ink ink;
+  std::string label;
+};
+/// One line below the plot. @pre the frame has space for it
+void drawLegend(Drawing& drawing, const PlotFrame& frame, const std::vector<LegendEntry>& entries);
+
 struct BoxPlot {
   std::string title, axis;  ///< axis: what the values are, with their unit
-  std::array<std::string, 2> groups;
-  std::array<std::span<const double>, 2> values;
-  bool synthetic = false;  ///< watermarked
+  std::vector<std::string> groups;
+  std::vector<std::span<const double>> values;  ///< of each group
+  bool synthetic = false;                       ///< watermarked
+  struct Point {
+    std::string key, text;   ///< as DrawnMark
+    bool synthetic = false;  ///< hollow
+  };
+  /// The attempt or participant behind a value, or empty: points are not marked.
+  std::function<Point(std::size_t group, std::size_t value)> point = {};
+  PlotFrame frame = {};
 };
 
 /// For each group a box from quartile to quartile (type 7) with the median, whiskers to the outermost
 /// values within 1.5 times the box's height (Tukey 1977), and every value as a point beside it; of fewer than five
-/// values the points alone, of over 200 one in so many in order, with both extremes, which is said. Values too large or
-/// too close for a scale are answered with none, as are two empty groups.
+/// values the points alone, of over 200 one in so many in order, with both extremes, which is said. Groups are named
+/// where there is space for names. Values too large or too close for a scale are answered with none, as are groups that
+/// are all empty.
 std::optional<Drawing> drawBoxPlot(const BoxPlot& plot);
 
 /// Four to nine round numbers (1, 2 or 5 times a power of ten apart) that lie within [low, high].
@@ -69,14 +101,23 @@ struct ForestPlot {
 Drawing drawForest(const ForestPlot& plot);
 
 struct HistoryPlot {
-  std::string title, axis;     ///< axis: the unit, or empty
-  std::vector<double> values;  ///< of the first attempt, the second, ...
+  struct Value {
+    double attempt = 1.0;  ///< its number
+    double value = 0.0;
+    bool outside = false;             ///< not one of those that the curve is fitted to: hollow
+    std::string key = {}, text = {};  ///< as DrawnMark; no key: not marked
+  };
+  std::string title, axis;  ///< axis: the unit, or empty
+  std::vector<Value> values;
   std::optional<double> mark;  ///< a pass mark, drawn as a line
   bool synthetic = false;
+  const LearningCurve* curve = nullptr;  ///< drawn with its 95 % band; without one, values are joined
+  double attempts = 0.0;                 ///< in all; 0: as many as values
+  PlotFrame frame = {};
 };
 
-/// Values over the number of the attempt, joined. Fewer than two values, and values too large or too
-/// close for a scale, are answered with none.
+/// Values over the number of the attempt, joined or with their learning curve. No value and no mark, and
+/// values too large or too close for a scale, are answered with none.
 std::optional<Drawing> drawHistory(const HistoryPlot& plot);
 
 /// Distribution of a form's scores: for each item and group a bar from the lowest to the highest score, with parts

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
 
 #include <optional>
 #include <utility>
@@ -13,12 +14,7 @@ namespace {
 Figures boxPlots(const Study& study) {
   Figures figures;
   for (const StudyRow& row : study.rows) {
-    if (auto plot = drawBoxPlot({.title = rowName(row),
-                                 .axis = row.unit == "1" ? "" : row.unit,
-                                 .groups = study.groups,
-                                 .values = {row.values[0], row.values[1]},
-                                 .synthetic = study.synthetic}))
-      figures.drawings.push_back(std::move(*plot));
+    if (auto plot = boxPlotOf(study, row)) figures.drawings.push_back(std::move(*plot));
   }
   return figures;
 }
@@ -32,6 +28,21 @@ Figures scorePlots(const Study& study) {
 }
 
 }  // namespace
+
+std::optional<Drawing> boxPlotOf(const Study& study, const StudyRow& row, const PlotFrame& frame) {
+  return drawBoxPlot({.title = rowName(row),
+                      .axis = row.unit == "1" ? "" : row.unit,
+                      .groups = {study.groups[0], study.groups[1]},
+                      .values = {row.values[0], row.values[1]},
+                      .synthetic = study.synthetic,
+                      .point = [&](std::size_t group, std::size_t i) -> BoxPlot::Point {
+                        if (i >= row.participants[group].size()) return {};
+                        const std::string& who = row.participants[group][i];
+                        return {who, fmt::format("{}: {:.6g} {}\n{}", study.groups[group], row.values[group][i],
+                                                 row.unit == "1" ? "" : row.unit, who)};
+                      },
+                      .frame = frame});
+}
 
 ReportDocument studyDocument(const Study& study) {
   ReportDocument document{studyTitle(study), study.synthetic, {}};

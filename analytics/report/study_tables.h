@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "analytics/checkpoints/registry.h"
+#include "analytics/report/plots.h"
 #include "analytics/report/report_document.h"
 #include "analytics/report/study.h"
 
@@ -35,6 +36,8 @@ ReportTable primaryTable(const Study& study);
 ReportTable secondaryTable(const Study& study);
 /// A of the first result's rows with intervals, one below the other; none where there is none.
 std::optional<Drawing> forestOf(const Study& study);
+/// A row's values in both groups; marks are participants. None where it has no values.
+std::optional<Drawing> boxPlotOf(const Study& study, const StudyRow& row, const PlotFrame& frame = {});
 /// What belongs to the first result: its columns, whether the groups can reach the level at all, warnings, remarks,
 /// deviations from the protocol, and what its rows lack.
 std::vector<std::string> primaryNotes(const Study& study);

@@ -16,12 +16,14 @@
 #include "apps/calot/source_options.h"
 #include "apps/calot/terminal_text.h"
 #include "apps/calot/wrong_word.h"
-#include "gui/report/sheet_pdf.h"
 #include "recorder/attempt.h"
 #include "recorder/base/errors.h"
 #include "recorder/base/text_output.h"
 #include "recorder/sources/devices/force/force_server.h"
 #include "recorder/sources/devices/openigtlink_server.h"
+#ifdef CALOT_PDF
+#include "gui/report/pdf_report.h"
+#endif
 
 namespace calot::apps {
 namespace {

@@ -24,7 +24,6 @@
 #include "apps/calot/environment.h"
 #include "apps/calot/rate_files.h"
 #include "apps/common/exit_code.h"
-#include "gui/film/clean_film.h"
 #include "gui/film/film.h"
 #include "recorder/base/errors.h"
 #include "recorder/base/text_words.h"

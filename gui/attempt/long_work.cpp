@@ -3,8 +3,14 @@
 
 #include <cmath>
 #include <exception>
+#include <QBoxLayout>
+#include <QLabel>
+#include <QProgressBar>
+#include <QPushButton>
+#include <QTimer>
 #include <utility>
 
+#include "gui/attempt/widget_parts.h"
 #include "gui/view/thread_rank.h"
 #include "gui/words/problem_words.h"
 
@@ -91,6 +97,44 @@ QString leftText(double seconds) {
   if (seconds < 0.0) return {};
   if (seconds < 60.0) return QString("about %1 s left").arg(std::max(1L, std::lround(seconds)));
   return QString("about %1 min left").arg(std::lround(seconds / 60.0));
+}
+
+WorkStrip::WorkStrip(LongWork& work, QWidget* parent)
+    : QWidget(parent),
+      text_(parts::plainLabel("work-text", false)),
+      bar_(parts::named("work-progress", new QProgressBar)),
+      cancel_(parts::named("work-cancel", new QPushButton("Cance&l"))),
+      appear_(new QTimer(this)) {
+  bar_->setRange(0, 100);
+  bar_->setAccessibleName("Progress of the work");
+  auto* layout = parts::bare<QHBoxLayout>(this);
+  layout->addWidget(text_, 1);
+  layout->addWidget(bar_, 1);
+  layout->addWidget(cancel_);
+  hide();
+  appear_->setSingleShot(true);
+  connect(appear_, &QTimer::timeout, this, &QWidget::show);
+  connect(cancel_, &QPushButton::clicked, &work, &LongWork::cancel);
+  connect(&work, &LongWork::progressed, this, [this, &work](double share, const QString& what) {
+    bar_->setValue(static_cast<int>(100.0 * share));
+    const QString left = leftText(work.secondsLeft());
+    text_->setText(left.isEmpty() ? what : what + ", " + left);
+  });
+  const auto end = [this] {
+    appear_->stop();
+    hide();
+  };
+  for (const auto ended : {&LongWork::done, &LongWork::failed}) connect(&work, ended, this, end);
+  connect(&work, &LongWork::cancelled, this, end);
+}
+
+void WorkStrip::begin(const QString& what, int after) {
+  text_->setText(what);
+  bar_->setValue(0);
+  if (after > 0 && !isVisible())
+    appear_->start(after);
+  else
+    show();
 }
 
 }  // namespace calot::gui

@@ -8,8 +8,9 @@
 #include <QElapsedTimer>
 #include <QObject>
 #include <QString>
+#include <QWidget>
 
-#include "gui/attempt/link.h"
+#include "gui/attempt/background.h"
 
 namespace calot::gui {
 
@@ -65,5 +66,30 @@ class LongWork : public QObject {
 
 /// "12 s", "about 2 min": what is left, or nothing where it is not known.
 [[nodiscard]] QString leftText(double seconds);
+
+}  // namespace calot::gui
+
+class QLabel;
+class QProgressBar;
+class QPushButton;
+class QTimer;
+
+namespace calot::gui {
+
+/// How long work goes: what is being done, how far, what is left, and a button that breaks it off. Hidden in between.
+class WorkStrip : public QWidget {
+  Q_OBJECT
+ public:
+  /// @param work outlives this
+  explicit WorkStrip(LongWork& work, QWidget* parent = nullptr);
+  /// @param after ms: shorter work shows nothing, so that a page does not jump
+  void begin(const QString& what, int after = 0);
+
+ private:
+  QLabel* text_;
+  QProgressBar* bar_;
+  QPushButton* cancel_;
+  QTimer* appear_;
+};
 
 }  // namespace calot::gui

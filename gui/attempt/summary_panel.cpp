@@ -4,19 +4,18 @@
 #include <QBoxLayout>
 #include <QLabel>
 
-#include "gui/attempt/words.h"
+#include "gui/attempt/figure_text.h"
+#include "gui/attempt/widget_parts.h"
 
 namespace calot::gui {
 
 SummaryPanel::SummaryPanel(QWidget* parent) : QWidget(parent) {
-  auto* layout = new QHBoxLayout(this);
-  layout->setContentsMargins(0, 0, 0, 0);
+  auto* layout = parts::bare<QHBoxLayout>(this);
   layout->setSpacing(16);
   auto* words = new QVBoxLayout;
   words->setSpacing(2);
   const auto label = [](const char* name, QBoxLayout& into, int stretch) {
-    auto* made = new QLabel;
-    made->setObjectName(name);
+    auto* made = parts::named(name, new QLabel);
     made->setWordWrap(true);
     made->setTextFormat(Qt::PlainText);
     made->setTextInteractionFlags(Qt::TextSelectableByMouse);
@@ -24,9 +23,7 @@ SummaryPanel::SummaryPanel(QWidget* parent) : QWidget(parent) {
     return made;
   };
   verdict_ = label("summary-verdict", *words, 0);
-  QFont bold = verdict_->font();
-  bold.setBold(true);
-  verdict_->setFont(bold);
+  parts::embolden(verdict_);
   criticalView_ = label("summary-critical-view", *words, 0);
   errors_ = label("summary-errors", *words, 0);
   words->addStretch(1);

@@ -6,17 +6,16 @@
 #include <QEvent>
 #include <QLabel>
 
+#include "gui/attempt/figure_text.h"
 #include "gui/attempt/theme.h"
-#include "gui/attempt/words.h"
+#include "gui/attempt/widget_parts.h"
 
 namespace calot::gui {
 
 AttemptBanner::AttemptBanner(QWidget* parent) : QWidget(parent) {
-  auto* layout = new QHBoxLayout(this);
-  layout->setContentsMargins(0, 0, 0, 0);
+  auto* layout = parts::bare<QHBoxLayout>(this);
   const auto label = [&](const char* name, int stretch) {
-    auto* made = new QLabel;
-    made->setObjectName(name);
+    auto* made = parts::named(name, new QLabel);
     made->setWordWrap(true);
     made->setTextFormat(Qt::PlainText);
     made->setTextInteractionFlags(Qt::TextSelectableByMouse);
@@ -27,9 +26,7 @@ AttemptBanner::AttemptBanner(QWidget* parent) : QWidget(parent) {
   watermark_->setText("SYNTHETIC — made by a performer");
   watermark_->setWordWrap(false);
   watermark_->setToolTip("It shows that the pipeline works and says nothing about people.");
-  QFont bold = watermark_->font();
-  bold.setBold(true);
-  watermark_->setFont(bold);
+  parts::embolden(watermark_);
   theme::setGround(*watermark_, QColor(0xf0, 0xe4, 0x42), Qt::black);
   watermark_->hide();
   identity_ = label("identity", 3);

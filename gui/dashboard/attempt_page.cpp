@@ -9,13 +9,14 @@
 #include <QSplitter>
 
 #include "analytics/checkpoints/registry.h"
-#include "gui/attempt/open_recording.h"
+#include "gui/attempt/attempt_recording.h"
+#include "gui/attempt/long_work.h"
+#include "gui/attempt/replay_transport.h"
 #include "gui/attempt/summary_panel.h"
-#include "gui/attempt/transport_bar.h"
-#include "gui/attempt/work_strip.h"
+#include "gui/attempt/widget_parts.h"
 #include "gui/dashboard/attempt_banner.h"
 #include "gui/dashboard/figure_panel.h"
-#include "gui/dashboard/page_begin.h"
+#include "gui/dashboard/page_parts.h"
 #include "gui/dashboard/settings.h"
 #include "gui/dashboard/timeline_bar.h"
 #include "gui/dashboard/trace_chart.h"
@@ -72,8 +73,7 @@ AttemptPage::AttemptPage(QWidget* parent) : QWidget(parent) {
   force_ = new TraceChart("force-trace", "Force on the hand (N): left solid, right dashed");
   speed_ = new TraceChart("speed-trace", "Speed of the tip (mm/s)");
   auto* traces = new QWidget;
-  auto* traceLayout = new QVBoxLayout(traces);
-  traceLayout->setContentsMargins(0, 0, 0, 0);
+  auto* traceLayout = parts::bare<QVBoxLayout>(traces);
   traceLayout->setSpacing(2);
   for (QWidget* row : {static_cast<QWidget*>(timeline_), static_cast<QWidget*>(force_), static_cast<QWidget*>(speed_)})
     traceLayout->addWidget(row);
@@ -97,11 +97,9 @@ AttemptPage::~AttemptPage() {
 }
 
 QWidget* AttemptPage::buildReplay() {
-  find_ = new QPushButton("Find the &recording …");
-  find_->setObjectName("find-recording");
+  find_ = parts::named("find-recording", new QPushButton("Find the &recording …"));
   auto* made = new QWidget;
-  auto* layout = new QVBoxLayout(made);
-  layout->setContentsMargins(0, 0, 0, 0);
+  auto* layout = parts::bare<QVBoxLayout>(made);
   layout->addWidget(picture_, 1);
   layout->addWidget(find_, 0, Qt::AlignHCenter);
   layout->addWidget(new TransportBar(*replay_));

@@ -6,7 +6,7 @@
 #include <QWidget>
 
 #include "gui/attempt/long_work.h"
-#include "gui/attempt/replay.h"
+#include "gui/attempt/replay_transport.h"
 #include "gui/dashboard/cohort_document.h"
 #include "gui/dashboard/recording_reader.h"
 

@@ -9,7 +9,7 @@
 
 #include "analytics/assessment/grade.h"
 #include "analytics/report/report_document.h"
-#include "gui/attempt/attempt_track.h"
+#include "gui/attempt/attempt_recording.h"
 #include "gui/attempt/long_work.h"
 #include "gui/render/image.h"
 

@@ -15,11 +15,11 @@
 #include <QSplitter>
 #include <QTableView>
 
-#include "gui/attempt/words.h"
+#include "gui/attempt/figure_text.h"
+#include "gui/attempt/widget_parts.h"
 #include "gui/dashboard/attempt_banner.h"
-#include "gui/dashboard/page_begin.h"
+#include "gui/dashboard/page_parts.h"
 #include "gui/dashboard/settings.h"
-#include "gui/dashboard/table_view.h"
 #include "gui/words/problem_words.h"
 #include "recorder/base/errors.h"
 
@@ -35,8 +35,7 @@ constexpr std::array verdicts{Verdict::verified, Verdict::diverged, Verdict::dam
 AttemptsPage::AttemptsPage(QWidget* parent) : QWidget(parent) {
   filter_.setSourceModel(&attempts_);
   auto* upper = new QWidget;
-  auto* upperLayout = new QVBoxLayout(upper);
-  upperLayout->setContentsMargins(0, 0, 0, 0);
+  auto* upperLayout = parts::bare<QVBoxLayout>(upper);
   buildFilters(*upperLayout);
   table_ = makeTable(filter_, "attempts", "Attempts");
   table_->setSelectionMode(QAbstractItemView::ExtendedSelection);
@@ -51,8 +50,7 @@ AttemptsPage::AttemptsPage(QWidget* parent) : QWidget(parent) {
   setProperty(beginProperty, QVariant::fromValue<QObject*>(table_));
 
   auto* lower = new QWidget;
-  auto* lowerLayout = new QVBoxLayout(lower);
-  lowerLayout->setContentsMargins(0, 0, 0, 0);
+  auto* lowerLayout = parts::bare<QVBoxLayout>(lower);
   buildDetails(*lowerLayout);
 
   auto* splitter = new QSplitter(Qt::Vertical);
@@ -71,33 +69,21 @@ AttemptsPage::AttemptsPage(QWidget* parent) : QWidget(parent) {
 
 void AttemptsPage::buildFilters(QBoxLayout& layout) {
   auto* row = new QHBoxLayout;
-  search_ = new QLineEdit;
-  search_->setObjectName("search");
+  search_ = parts::named("search", new QLineEdit);
   search_->setAccessibleName("Search attempts");
   search_->setPlaceholderText("Search (Ctrl+F): participant, profile, group, scene, date …");
   search_->setClearButtonEnabled(true);
-  verdict_ = new QComboBox;
-  verdict_->setObjectName("verdict");
+  verdict_ = parts::named("verdict", new QComboBox);
   verdict_->addItem("All verdicts");
   for (const Verdict verdict : verdicts) verdict_->addItem(badgeText(verdict), static_cast<int>(verdict));
-  operators_ = new QComboBox;
-  operators_->setObjectName("operators");
+  operators_ = parts::named("operators", new QComboBox);
   operators_->addItem("People and synthetic");
   operators_->addItem("Not synthetic");
   operators_->addItem("Synthetic only");
-  tag_ = new QComboBox;
-  tag_->setObjectName("tag");
-  tag_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
-  tag_->setMinimumContentsLength(8);
+  tag_ = parts::choice("tag", 8);
   tag_->setToolTip("Tags are put on attempts by the menu Edit, or by calot attempt tag");
-  count_ = new QLabel;
-  count_->setObjectName("count");
-  const auto add = [&](const char* text, QWidget* field, int stretch) {
-    auto* label = new QLabel(text);
-    label->setBuddy(field);
-    row->addWidget(label);
-    row->addWidget(field, stretch);
-  };
+  count_ = parts::named("count", new QLabel);
+  const auto add = [&](const char* text, QWidget* field, int stretch) { parts::labelled(*row, text, field, stretch); };
   add("&Search", search_, 1);
   add("Verifi&cation", verdict_, 0);
   add("&Made by", operators_, 0);
@@ -125,8 +111,7 @@ void AttemptsPage::buildFilters(QBoxLayout& layout) {
 }
 
 void AttemptsPage::buildColumns(QBoxLayout& layout) {
-  auto* button = new QPushButton("Co&lumns");
-  button->setObjectName("columns");
+  auto* button = parts::named("columns", new QPushButton("Co&lumns"));
   auto* menu = new QMenu(button);
   // The table is made after its filters.
   connect(menu, &QMenu::aboutToShow, this, [this, menu] {

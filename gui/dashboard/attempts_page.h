@@ -5,7 +5,6 @@
 #include <QWidget>
 #include <vector>
 
-#include "gui/dashboard/attempt_filter.h"
 #include "gui/dashboard/attempt_table_model.h"
 #include "gui/dashboard/checkpoint_table_model.h"
 #include "gui/dashboard/cohort_document.h"

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <QAbstractTableModel>
+#include <QStyledItemDelegate>
 #include <vector>
 
 #include "analytics/assessment/moments.h"
@@ -66,6 +67,16 @@ class CheckpointTableModel : public QAbstractTableModel {
   std::vector<FigureStanding> standings_;
   std::vector<analytics::FigureMoments> moments_;
   QString momentsText_;
+};
+
+/// Draws where a figure stands in a norm: the competent members' 10th to 90th percentile as a pale bar, their quartiles
+/// as a darker one, median as a line, the cut as a dashed line, the attempt's value as a diamond; the text beside it.
+/// Figures without a band show their text alone.
+class BandDelegate : public QStyledItemDelegate {
+  Q_OBJECT
+ public:
+  using QStyledItemDelegate::QStyledItemDelegate;
+  void paint(QPainter* painter, const QStyleOptionViewItem& option, const QModelIndex& index) const override;
 };
 
 }  // namespace calot::gui

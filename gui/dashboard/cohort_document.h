@@ -1,18 +1,78 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <QString>
+#include <QStringList>
 #include <string>
 #include <vector>
 
 #include "analytics/cohort/assessment_database.h"
 #include "analytics/cohort/cohort_database.h"
-#include "gui/dashboard/attempt_lines.h"
-#include "gui/dashboard/figure_values.h"
+#include "gui/dashboard/comparison.h"
 
 namespace calot::gui {
+
+/// The attempts of a cohort with what a table shows of them. Made where the cohort is read: to put ten thousand rows
+/// into words and in order takes longer than an interface may be kept waiting. Never changes.
+class AttemptLines {
+ public:
+  enum Column {
+    attemptColumn,
+    operatorColumn,
+    groupColumn,
+    sceneColumn,
+    modeColumn,
+    outcomeColumn,
+    startColumn,
+    verificationColumn,
+    syntheticColumn,
+    tagsColumn,
+    columnTotal
+  };
+
+  explicit AttemptLines(std::vector<analytics::AttemptRow> attempts);
+
+  [[nodiscard]] const std::vector<analytics::AttemptRow>& attempts() const { return attempts_; }
+  [[nodiscard]] const QString& cell(int row, int column) const { return lines_[at(row)].cells[at(column)]; }
+  /// All that the search box looks through, in small letters.
+  [[nodiscard]] const QString& search(int row) const { return lines_[at(row)].search; }
+  /// Position of the row in the order of a column; equal cells have equal ranks.
+  [[nodiscard]] int rank(int row, int column) const { return ranks_[at(column)][at(row)]; }
+  [[nodiscard]] const QStringList& tags() const { return tags_; }  ///< that any attempt has, by name
+
+ private:
+  struct Line {
+    std::array<QString, columnTotal> cells;
+    QString search;
+  };
+  static std::size_t at(int index) { return static_cast<std::size_t>(index); }
+
+  std::vector<analytics::AttemptRow> attempts_;
+  std::vector<Line> lines_;
+  std::array<std::vector<int>, columnTotal> ranks_;
+  QStringList tags_;
+};
+
+/// All values of a cohort, by figure: pages look at one figure of thousands of attempts at a time. Knows no window.
+class FigureValues {
+ public:
+  using Take = std::function<void(const analytics::AttemptValue&)>;
+  /// @param each gives every value to what it is called with, by attempt: CohortDatabase::eachValue()
+  explicit FigureValues(const std::function<void(const Take&)>& each);
+  /// All figures with at least one value, in the order of first appearance.
+  [[nodiscard]] const std::vector<Figure>& figures() const { return figures_; }
+  /// By attempt. @param index of figures()
+  [[nodiscard]] const std::vector<analytics::AttemptValue>& of(std::size_t index) const { return values_[index]; }
+
+ private:
+  std::vector<Figure> figures_;
+  std::vector<std::vector<analytics::AttemptValue>> values_;
+};
 
 /// An open cohort database, for looking only: what the dashboard's models stand on. Knows no window.
 class CohortDocument {

@@ -5,9 +5,12 @@
 #include <memory>
 #include <QObject>
 #include <QThreadPool>
+#include <QUndoCommand>
 #include <string>
+#include <vector>
 
-#include "gui/attempt/link.h"
+#include "analytics/cohort/cohort_database.h"
+#include "gui/attempt/background.h"
 
 namespace calot::analytics {
 class CohortDatabase;
@@ -37,5 +40,37 @@ class CohortWriter : public QObject {
   std::shared_ptr<Link<CohortWriter>> back_;
   QThreadPool thread_;  // last: it uses what is above
 };
+
+/// What a person decides about attempts, and how it is taken back; the database notes both.
+class DecisionCommand : public QUndoCommand {
+ public:
+  /// @param writer outlives this
+  DecisionCommand(CohortWriter& writer, std::string database, const QString& text, CohortWriter::Change redo,
+                  CohortWriter::Change undo);
+  void redo() override { write(redo_); }
+  void undo() override { write(undo_); }
+
+ private:
+  struct State;
+  void write(const CohortWriter::Change& change);
+
+  CohortWriter& writer_;
+  std::string database_;
+  CohortWriter::Change redo_, undo_;
+  std::shared_ptr<State> state_;
+};
+
+/// Who decides, and about which attempts of which database.
+struct Decision {
+  std::string database, by;
+  std::vector<analytics::AttemptRow> attempts;
+};
+
+/// Keeps the attempts out of studies, or takes that back.
+std::unique_ptr<DecisionCommand> exclusionCommand(CohortWriter& writer, const Decision& decision, bool exclude,
+                                                  const std::string& reason);
+/// Puts a tag on those attempts that do not have it, or takes it off those that do.
+std::unique_ptr<DecisionCommand> tagCommand(CohortWriter& writer, const Decision& decision, bool add,
+                                            const std::string& tag);
 
 }  // namespace calot::gui

@@ -4,10 +4,11 @@
 #include <algorithm>
 #include <map>
 #include <string_view>
+#include <tuple>
 #include <unordered_map>
 
-#include "analytics/statistics/descriptive.h"
-#include "gui/attempt/words.h"
+#include "analytics/report/plots.h"
+#include "gui/attempt/figure_text.h"
 
 namespace calot::gui {
 
@@ -34,19 +35,6 @@ std::string groupName(const AttemptRow& attempt, GroupBy by) {
                             : by == GroupBy::profile ? attempt.profile
                                                      : attempt.participant;
   return name.empty() ? "(none)" : name;
-}
-
-void summarize(ComparisonGroup& group) {
-  std::sort(group.point.begin(), group.point.end(), [](const ComparisonPoint& a, const ComparisonPoint& b) {
-    return a.value != b.value ? a.value < b.value : a.attempt < b.attempt;
-  });
-  std::vector<double> sorted;
-  for (const ComparisonPoint& p : group.point) sorted.push_back(p.value);
-  group.smallest = sorted.front();
-  group.lowerQuartile = analytics::quantileOfSorted(sorted, 0.25);
-  group.median = analytics::quantileOfSorted(sorted, 0.5);
-  group.upperQuartile = analytics::quantileOfSorted(sorted, 0.75);
-  group.largest = sorted.back();
 }
 
 }  // namespace
@@ -100,7 +88,10 @@ Comparison compare(const std::vector<AttemptRow>& attempts, const std::vector<At
     }
   }
   for (auto& entry : groups) {
-    summarize(entry.second);
+    std::sort(entry.second.point.begin(), entry.second.point.end(),
+              [](const ComparisonPoint& p, const ComparisonPoint& q) {
+                return std::tie(p.value, p.attempt) < std::tie(q.value, q.attempt);
+              });
     result.group.push_back(std::move(entry.second));
   }
   return result;
@@ -120,6 +111,32 @@ std::string captionOf(const Comparison& comparison) {
   std::string text = std::to_string(comparison.shown) + (comparison.shown == 1 ? " attempt." : " attempts.");
   if (!leftOut.empty()) text += " Left out: " + leftOut + ".";
   return text;
+}
+
+std::optional<analytics::Drawing> drawComparison(const Comparison& comparison, const std::string& title,
+                                                 const analytics::PlotFrame& frame) {
+  analytics::BoxPlot plot;
+  plot.title = title;
+  plot.axis = comparison.unit;
+  plot.synthetic = comparison.synthetic;
+  plot.frame = frame;
+  plot.frame.legend = true;
+  std::vector<std::vector<double>> values;
+  for (const ComparisonGroup& group : comparison.group) {
+    plot.groups.push_back(group.name);
+    std::vector<double>& own = values.emplace_back();
+    for (const ComparisonPoint& p : group.point) own.push_back(p.value);
+  }
+  plot.values.assign(values.begin(), values.end());
+  plot.point = [&](std::size_t g, std::size_t i) -> analytics::BoxPlot::Point {
+    const ComparisonPoint& p = comparison.group[g].point[i];
+    const QString unit = QString::fromStdString(comparison.unit);
+    return {
+        p.attempt,
+        comparison.group[g].name + ": " + (numberText(p.value) + ' ' + unit).trimmed().toStdString() + '\n' + p.attempt,
+        p.synthetic};
+  };
+  return analytics::drawBoxPlot(plot);
 }
 
 }  // namespace calot::gui

@@ -2,10 +2,12 @@
 // One checkpoint over attempts, by group: the numbers behind the chart. Knows no window.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "analytics/cohort/cohort_database.h"
+#include "analytics/report/plots.h"
 
 namespace calot::gui {
 
@@ -36,8 +38,6 @@ struct ComparisonPoint {
 struct ComparisonGroup {
   std::string name;                    ///< "(none)" for attempts without one
   std::vector<ComparisonPoint> point;  ///< ascending by value, then attempt
-  /// Smallest, lower quartile, median, upper quartile, largest; quartiles of type 7 (Hyndman and Fan, 1996).
-  double smallest = 0.0, lowerQuartile = 0.0, median = 0.0, upperQuartile = 0.0, largest = 0.0;
 };
 
 struct Comparison {
@@ -56,5 +56,9 @@ struct Comparison {
 
 /// "12 attempts. Left out: 2 of another comparability key, 1 excluded."
 [[nodiscard]] std::string captionOf(const Comparison& comparison);
+
+/// A box plot of the groups; points of performers are hollow. None without a point.
+[[nodiscard]] std::optional<analytics::Drawing> drawComparison(const Comparison& comparison, const std::string& title,
+                                                               const analytics::PlotFrame& frame);
 
 }  // namespace calot::gui

@@ -22,18 +22,19 @@
 #include <QUrl>
 #include <utility>
 
-#include "gui/attempt/open_recording.h"
+#include "gui/attempt/attempt_recording.h"
 #include "gui/attempt/theme.h"
+#include "gui/attempt/widget_parts.h"
 #include "gui/dashboard/attempt_page.h"
 #include "gui/dashboard/attempts_page.h"
-#include "gui/dashboard/compare_page.h"
 #include "gui/dashboard/figure_panel.h"
+#include "gui/dashboard/figures_page.h"
 #include "gui/dashboard/greeting_page.h"
 #include "gui/dashboard/import_panel.h"
 #include "gui/dashboard/keys_dialog.h"
-#include "gui/dashboard/page_begin.h"
+#include "gui/dashboard/page_parts.h"
 #include "gui/dashboard/pair_page.h"
-#include "gui/dashboard/rating_page.h"
+#include "gui/dashboard/ratings_page.h"
 #include "gui/dashboard/settings.h"
 #include "gui/dashboard/study_page.h"
 #include "gui/dashboard/trainee_page.h"
@@ -76,7 +77,7 @@ QStringList localFiles(const QMimeData& data) {
 DashboardWindow::DashboardWindow(const AssessProgram& program, const std::vector<std::filesystem::path>& assetFolders,
                                  QWidget* parent)
     : QMainWindow(parent),
-      problem_(new QLabel),
+      problem_(parts::plainLabel("problem")),
       stack_(new QStackedWidget),
       greeting_(new GreetingPage(program)),
       tabs_(new QTabWidget),
@@ -92,9 +93,6 @@ DashboardWindow::DashboardWindow(const AssessProgram& program, const std::vector
   setWindowTitle("Calot");
   resize(theme::windowSizeFor(screen()->availableSize()));
   setAcceptDrops(true);
-  problem_->setObjectName("problem");
-  problem_->setTextFormat(Qt::PlainText);
-  problem_->setWordWrap(true);
   problem_->setTextInteractionFlags(Qt::TextSelectableByMouse | Qt::TextSelectableByKeyboard);
   theme::setGround(*problem_, QColor(0xfb, 0xe3, 0xd6), QColor(0x5a, 0x1e, 0x00));
   problem_->hide();
@@ -121,8 +119,7 @@ DashboardWindow::DashboardWindow(const AssessProgram& program, const std::vector
 DashboardWindow::~DashboardWindow() = default;
 
 void DashboardWindow::buildImport() {
-  importDock_ = new QDockWidget("Import", this);
-  importDock_->setObjectName("import");
+  importDock_ = parts::named("import", new QDockWidget("Import", this));
   importDock_->setWidget(new ImportPanel(imports_));
   addDockWidget(Qt::BottomDockWidgetArea, importDock_);
   importDock_->hide();

@@ -16,18 +16,34 @@
 
 #include "analytics/assessment/norm_rule.h"
 #include "gui/attempt/figure_standing.h"
-#include "gui/attempt/words.h"
-#include "gui/dashboard/band_delegate.h"
-#include "gui/dashboard/table_view.h"
+#include "gui/attempt/figure_text.h"
+#include "gui/attempt/widget_parts.h"
+#include "gui/dashboard/checkpoint_table_model.h"
+#include "gui/dashboard/page_parts.h"
 #include "gui/words/problem_words.h"
 #include "recorder/base/errors.h"
 
 namespace calot::gui {
 
+std::optional<double> MomentCycle::next(const analytics::FigureMoments& figure) {
+  const std::vector<analytics::Moment>& moments = figure.moments;
+  if (moments.empty()) return std::nullopt;
+  const std::string name = figure.checkpoint + '\n' + figure.subject;
+  if (name == figure_) {
+    at_ = (at_ + 1) % moments.size();
+  } else {
+    const auto most = std::max_element(moments.begin(), moments.end(),
+                                       [](const auto& a, const auto& b) { return a.share < b.share; });
+    at_ = static_cast<std::size_t>(most - moments.begin());
+    figure_ = name;
+  }
+  return std::max(0.0, moments[at_].begin - leadIn);
+}
+
 FigurePanel::FigurePanel(QWidget* parent)
     : QWidget(parent),
-      norm_(new QComboBox),
-      verdict_(new QLabel),
+      norm_(parts::named("norm", new QComboBox)),
+      verdict_(parts::plainLabel("verdict-of-norm")),
       figureTable_(makeTree(families_, "attempt-checkpoints", "Checkpoints of the attempt, by family")),
       eventTable_(makeTree(events_, "events", "Events of the attempt, by kind")) {
   figureTable_->setItemDelegateForColumn(CheckpointTableModel::normColumn, new BandDelegate(figureTable_));
@@ -37,12 +53,10 @@ FigurePanel::FigurePanel(QWidget* parent)
   figureTable_->header()->setSortIndicator(-1, Qt::AscendingOrder);
   setWidths(*eventTable_, {360});
   figureTable_->setMinimumHeight(8 * figureTable_->fontMetrics().height());
-  auto* tabs = new QTabWidget;
-  tabs->setObjectName("figure-tabs");
+  auto* tabs = parts::named("figure-tabs", new QTabWidget);
   tabs->addTab(figureTable_, "&Checkpoints");
   tabs->addTab(eventTable_, "Even&ts");
-  auto* layout = new QVBoxLayout(this);
-  layout->setContentsMargins(0, 0, 0, 0);
+  auto* layout = parts::bare<QVBoxLayout>(this);
   layout->addWidget(buildNormRow());
   layout->addWidget(tabs, 1);
 
@@ -64,22 +78,15 @@ FigurePanel::FigurePanel(QWidget* parent)
 }
 
 QWidget* FigurePanel::buildNormRow() {
-  norm_->setObjectName("norm");
   norm_->setAccessibleName("Norm that the attempt is held against");
-  verdict_->setObjectName("verdict-of-norm");
-  verdict_->setWordWrap(true);
-  verdict_->setTextFormat(Qt::PlainText);
   auto* label = new QLabel("&Norm");
   label->setBuddy(norm_);
-  sheet_ = new QPushButton("Gr&ade sheet …");
-  sheet_->setObjectName("grade-sheet");
+  sheet_ = parts::named("grade-sheet", new QPushButton("Gr&ade sheet …"));
   sheet_->setToolTip("Write the attempt against this norm as a PDF");
-  onePage_ = new QPushButton("&One page …");
-  onePage_->setObjectName("one-page");
+  onePage_ = parts::named("one-page", new QPushButton("&One page …"));
   onePage_->setToolTip("Write the attempt on one page, with pictures of its worst moments, as a PDF");
   auto* made = new QWidget;
-  auto* row = new QHBoxLayout(made);
-  row->setContentsMargins(0, 0, 0, 0);
+  auto* row = parts::bare<QHBoxLayout>(made);
   row->addWidget(label);
   row->addWidget(norm_);
   row->addWidget(verdict_, 1);

@@ -4,14 +4,33 @@
 #include <memory>
 #include <optional>
 #include <QWidget>
+#include <string>
 
 #include "analytics/assessment/grade.h"
 #include "gui/dashboard/attempt_sheet.h"
 #include "gui/dashboard/checkpoint_table_model.h"
 #include "gui/dashboard/cohort_document.h"
-#include "gui/dashboard/event_tree_model.h"
-#include "gui/dashboard/family_tree_model.h"
-#include "gui/dashboard/moment_cycle.h"
+#include "gui/dashboard/tree_models.h"
+
+namespace calot::gui {
+
+/// Clicks on figures to moments of the replay: a figure's first click goes to the moment that made most of it, each
+/// further one to the next in time, around.
+class MomentCycle {
+ public:
+  /// How long before a moment's begin one looks at it (s): to see what led to it.
+  static constexpr double leadIn = 0.5;
+
+  /// @return when to look (s), or none where the figure has no moments
+  std::optional<double> next(const analytics::FigureMoments& figure);
+  void forget() { figure_.clear(); }
+
+ private:
+  std::string figure_;  ///< checkpoint and subject of the last click
+  std::size_t at_ = 0;  ///< its moment
+};
+
+}  // namespace calot::gui
 
 class QComboBox;
 class QLabel;

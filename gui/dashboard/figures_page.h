@@ -3,9 +3,11 @@
 
 #include <memory>
 #include <QWidget>
+#include <vector>
 
 #include "gui/attempt/background.h"
 #include "gui/dashboard/cohort_document.h"
+#include "gui/dashboard/comparison.h"
 
 class QComboBox;
 class QHBoxLayout;
@@ -49,6 +51,35 @@ class FiguresPage : public QWidget {
   bool read_ = false, ready_ = false;
   QLabel* caption_;
   Background background_;
+};
+
+}  // namespace calot::gui
+
+class QCheckBox;
+class QComboBox;
+
+namespace calot::gui {
+
+class PlotView;
+
+/// One checkpoint over attempts by group, within one comparability key.
+class ComparePage : public FiguresPage {
+  Q_OBJECT
+ public:
+  explicit ComparePage(QWidget* parent = nullptr);
+
+ protected:
+  void takeValues() override;
+
+ private:
+  void redraw();
+
+  std::vector<std::string> keys_;
+  QComboBox* figure_ = nullptr;
+  QComboBox* groupBy_ = nullptr;
+  QComboBox* key_ = nullptr;
+  QCheckBox* synthetic_ = nullptr;
+  PlotView* chart_ = nullptr;
 };
 
 }  // namespace calot::gui

@@ -6,10 +6,16 @@
 #include <QPushButton>
 #include <utility>
 
+#include "gui/attempt/widget_parts.h"
+
 namespace calot::gui {
 
 GreetingPage::GreetingPage(AssessProgram program, QWidget* parent)
-    : QWidget(parent), program_(std::move(program)), title_(new QLabel), text_(new QLabel), import_(nullptr) {
+    : QWidget(parent),
+      program_(std::move(program)),
+      title_(new QLabel),
+      text_(parts::plainLabel("greeting")),
+      import_(nullptr) {
   auto* layout = new QVBoxLayout(this);
   layout->addStretch(1);
   QFont large = font();
@@ -17,23 +23,17 @@ GreetingPage::GreetingPage(AssessProgram program, QWidget* parent)
   title_->setFont(large);
   title_->setAlignment(Qt::AlignHCenter);
   title_->setTextFormat(Qt::PlainText);
-  text_->setObjectName("greeting");
   text_->setAlignment(Qt::AlignHCenter);
-  text_->setWordWrap(true);
-  text_->setTextFormat(Qt::PlainText);
   text_->setTextInteractionFlags(Qt::TextSelectableByMouse | Qt::TextSelectableByKeyboard);
-  auto* open = new QPushButton("&Open a cohort database …");
-  open->setObjectName("open");
+  auto* open = parts::named("open", new QPushButton("&Open a cohort database …"));
   connect(open, &QPushButton::clicked, this, &GreetingPage::openRequested);
   layout->addWidget(title_);
   layout->addSpacing(12);
   layout->addWidget(text_);
   layout->addSpacing(18);
-  auto* fresh = new QPushButton("&Make a new one …");
-  fresh->setObjectName("new");
+  auto* fresh = parts::named("new", new QPushButton("&Make a new one …"));
   connect(fresh, &QPushButton::clicked, this, &GreetingPage::newRequested);
-  import_ = new QPushButton("&Import recordings …");
-  import_->setObjectName("import-recordings");
+  import_ = parts::named("import-recordings", new QPushButton("&Import recordings …"));
   connect(import_, &QPushButton::clicked, this, &GreetingPage::importRequested);
   auto* buttons = new QHBoxLayout;
   buttons->addStretch(1);

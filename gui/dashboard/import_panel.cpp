@@ -12,22 +12,18 @@
 
 #include "gui/attempt/long_work.h"
 #include "gui/attempt/theme.h"
+#include "gui/attempt/widget_parts.h"
 
 namespace calot::gui {
 
 ImportPanel::ImportPanel(ImportQueue& queue, QWidget* parent)
     : QWidget(parent),
       queue_(queue),
-      text_(new QLabel),
-      bar_(new QProgressBar),
-      stop_(new QPushButton("Stop importin&g")),
-      results_(new QListWidget),
+      text_(parts::plainLabel("import-text", false)),
+      bar_(parts::named("import-progress", new QProgressBar)),
+      stop_(parts::named("import-stop", new QPushButton("Stop importin&g"))),
+      results_(parts::named("import-results", new QListWidget)),
       tick_(new QTimer(this)) {
-  text_->setObjectName("import-text");
-  text_->setTextFormat(Qt::PlainText);
-  bar_->setObjectName("import-progress");
-  stop_->setObjectName("import-stop");
-  results_->setObjectName("import-results");
   results_->setAccessibleName("Results of the import");
   auto* row = new QHBoxLayout;
   row->addWidget(bar_, 1);

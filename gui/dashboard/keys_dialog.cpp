@@ -25,7 +25,7 @@ KeyList keysOf(const QMenuBar& menus) {
   }
   keys.insert(keys.end(), {{"Tab, Shift+Tab", "Next field, last field"},
                            {"Alt and a letter", "The field whose letter is underlined"},
-                           {"Arrows", "Rows of a table; dots of a chart; events of a timeline"},
+                           {"Arrows", "Rows of a table; dots of a plot; events of a timeline"},
                            {"Left, Right", "In a tree: fold, unfold"},
                            {"Enter", "Open what is chosen; its worst moment, then the next one"},
                            {"Space", "Play or pause the replay"},

@@ -14,8 +14,9 @@
 #include <utility>
 
 #include "analytics/assessment/create_norm.h"
+#include "gui/attempt/long_work.h"
 #include "gui/attempt/theme.h"
-#include "gui/attempt/work_strip.h"
+#include "gui/attempt/widget_parts.h"
 #include "gui/dashboard/comparison.h"
 #include "gui/dashboard/settings.h"
 #include "gui/dashboard/study_view.h"
@@ -28,12 +29,6 @@ constexpr const char* explanation =
     "errors, perforations and burns, as far as they have a pass mark. Other figures, raters' judgements and marks that "
     "a person sets: calot norm create.";
 
-template <class T>
-T* named(T* widget, const char* name) {
-  widget->setObjectName(name);
-  return widget;
-}
-
 }  // namespace
 
 NormDialog::NormDialog(std::shared_ptr<const CohortDocument> document, std::vector<std::string> selected,
@@ -41,20 +36,20 @@ NormDialog::NormDialog(std::shared_ptr<const CohortDocument> document, std::vect
     : QDialog(parent),
       document_(std::move(document)),
       selected_(std::move(selected)),
-      name_(named(new QLineEdit, "norm-name")),
-      by_(named(new QLineEdit, "norm-by")),
-      attempts_(named(new QComboBox, "norm-attempts")),
-      groupBy_(named(new QComboBox, "norm-group-by")),
-      competent_(named(new QComboBox, "norm-competent")),
-      others_(named(new QComboBox, "norm-others")),
-      key_(named(new QComboBox, "norm-key")),
-      rule_(named(new QComboBox, "norm-rule")),
-      least_(named(new QSpinBox, "norm-least")),
-      first_(named(new QCheckBox("Of a participant's several attempts the &first counts"), "norm-first")),
-      practice_(named(new QCheckBox("&Practice attempts, too"), "norm-practice")),
-      synthetic_(named(new QCheckBox("&Synthetic attempts, too (the norm is marked)"), "norm-synthetic")),
-      result_(named(new QLabel, "norm-result")),
-      make_(named(new QPushButton("&Make the norm"), "norm-make")),
+      name_(parts::named("norm-name", new QLineEdit)),
+      by_(parts::named("norm-by", new QLineEdit)),
+      attempts_(parts::named("norm-attempts", new QComboBox)),
+      groupBy_(parts::named("norm-group-by", new QComboBox)),
+      competent_(parts::named("norm-competent", new QComboBox)),
+      others_(parts::named("norm-others", new QComboBox)),
+      key_(parts::named("norm-key", new QComboBox)),
+      rule_(parts::named("norm-rule", new QComboBox)),
+      least_(parts::named("norm-least", new QSpinBox)),
+      first_(parts::named("norm-first", new QCheckBox("Of a participant's several attempts the &first counts"))),
+      practice_(parts::named("norm-practice", new QCheckBox("&Practice attempts, too"))),
+      synthetic_(parts::named("norm-synthetic", new QCheckBox("&Synthetic attempts, too (the norm is marked)"))),
+      result_(parts::named("norm-result", new QLabel)),
+      make_(parts::named("norm-make", new QPushButton("&Make the norm"))),
       strip_(new WorkStrip(work_)) {
   setWindowTitle("Make a norm");
   resize(theme::inType(620), theme::inType(460));

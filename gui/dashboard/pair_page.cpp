@@ -16,7 +16,8 @@
 #include <utility>
 
 #include "gui/attempt/theme.h"
-#include "gui/dashboard/page_begin.h"
+#include "gui/attempt/widget_parts.h"
+#include "gui/dashboard/page_parts.h"
 #include "gui/dashboard/trace_chart.h"
 #include "gui/words/event_words.h"
 
@@ -62,34 +63,25 @@ PairPage::PairPage(QWidget* parent) : QWidget(parent), sides_{new PairSide("left
 
 QWidget* PairPage::buildTransport() {
   auto* made = new QWidget;
-  auto* layout = new QHBoxLayout(made);
-  layout->setContentsMargins(0, 0, 0, 0);
-  from_ = new QComboBox;
-  from_->setObjectName("align");
-  from_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
-  from_->setMinimumContentsLength(13);
+  auto* layout = parts::bare<QHBoxLayout>(made);
+  from_ = parts::choice("align", 13);
   auto* label = new QLabel("In &step from");
   label->setBuddy(from_);
-  play_ = new QToolButton;
-  play_->setObjectName("pair-play");
+  play_ = parts::named("pair-play", new QToolButton);
   play_->setAccessibleName("Play or pause both");
   play_->setToolTip("Play or pause both (Space)");
   play_->setIcon(theme::buttonIcon(QStyle::SP_MediaPlay));
   play_->setFocusPolicy(Qt::TabFocus);
-  scrub_ = new QSlider(Qt::Horizontal);
-  scrub_->setObjectName("pair-scrub");
+  scrub_ = parts::named("pair-scrub", new QSlider(Qt::Horizontal));
   scrub_->setAccessibleName("Moment of both");
   scrub_->setRange(0, scrubSteps);
-  time_ = new QLabel;
-  time_->setObjectName("pair-time");
-  speed_ = new QComboBox;
-  speed_->setObjectName("pair-speed");
+  time_ = parts::named("pair-time", new QLabel);
+  speed_ = parts::named("pair-speed", new QComboBox);
   speed_->setAccessibleName("Speed of both");
   for (const double speed : {0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0})
     speed_->addItem(QLocale().toString(speed, 'g', 3) + QString::fromUtf8(" ×"), speed);
   speed_->setCurrentIndex(3);
-  trace_ = new QComboBox;
-  trace_->setObjectName("pair-trace");
+  trace_ = parts::named("pair-trace", new QComboBox);
   trace_->addItems(
       {"force, left hand (N)", "force, right hand (N)", "speed, left tip (mm/s)", "speed, right tip (mm/s)"});
   trace_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);

@@ -8,7 +8,6 @@
 #include <QWidget>
 
 #include "gui/dashboard/cohort_document.h"
-#include "gui/dashboard/pair_alignment.h"
 #include "gui/dashboard/pair_side.h"
 
 class QComboBox;

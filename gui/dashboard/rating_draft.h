@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A form that is being filled in. Knows no window.
+// Forms that are not stored yet, kept among the user's settings: a rater who is called away goes on where they were.
 #pragma once
 
 #include <filesystem>
@@ -47,5 +48,17 @@ class RatingDraft {
 std::optional<analytics::Rating> earlierRating(const std::vector<analytics::Rating>& ratings,
                                                const analytics::RatingForm& form, const std::string& attempt,
                                                const std::string& rater, const std::string& participant);
+
+/// What a draft is of.
+struct DraftSubject {
+  std::string database, form;
+  std::uint32_t formVersion = 1;
+  std::string attempt, rater, participant;
+};
+using DraftAnswers = std::map<std::string, std::optional<int>>;  ///< by item; none: left blank
+
+void keepDraft(const DraftSubject& subject, const DraftAnswers& answers);
+[[nodiscard]] DraftAnswers keptDraft(const DraftSubject& subject);  ///< empty: there is none
+void dropDraft(const DraftSubject& subject);
 
 }  // namespace calot::gui

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "analytics/assessment/moments.h"
-#include "gui/attempt/attempt_track.h"
-#include "gui/attempt/link.h"
+#include "gui/attempt/attempt_recording.h"
+#include "gui/attempt/background.h"
 
 namespace calot::gui {
 

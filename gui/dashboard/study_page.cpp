@@ -29,11 +29,11 @@
 #include <QUrl>
 
 #include "analytics/report/study_tables.h"
-#include "gui/attempt/words.h"
-#include "gui/attempt/work_strip.h"
-#include "gui/dashboard/comparison_chart.h"
-#include "gui/dashboard/page_begin.h"
-#include "gui/dashboard/roc_chart.h"
+#include "gui/attempt/figure_text.h"
+#include "gui/attempt/long_work.h"
+#include "gui/attempt/widget_parts.h"
+#include "gui/dashboard/page_parts.h"
+#include "gui/dashboard/plot_view.h"
 #include "gui/report/drawing_painter.h"
 
 namespace calot::gui {
@@ -54,7 +54,7 @@ QString effectText(const analytics::StudyRow& row) {
 }
 
 /// What a text shows under forestAddress; null where the study has none. Any thread.
-QImage forestPicture(const analytics::Study& study, double ratio) {
+QImage forestPicture(const analytics::Study& study, const QFont& font, double ratio) {
   const std::optional<analytics::Drawing> forest = analytics::forestOf(study);
   if (!forest) return {};
   QImage image(static_cast<int>(std::ceil(forest->width * ratio)), static_cast<int>(std::ceil(forest->height * ratio)),
@@ -63,7 +63,7 @@ QImage forestPicture(const analytics::Study& study, double ratio) {
   image.fill(Qt::white);
   QPainter painter(&image);
   painter.setRenderHint(QPainter::Antialiasing);
-  paintDrawing(painter, *forest, QRectF(0.0, 0.0, forest->width, forest->height));
+  paintDrawing(painter, *forest, QRectF(0.0, 0.0, forest->width, forest->height), {font});
   return image;
 }
 
@@ -87,7 +87,7 @@ WindowsText textOf(const analytics::Study& study, const TextLook& look) {
   auto text = std::make_unique<QTextDocument>();
   text->setDefaultFont(look.font);
   text->setDefaultTextOption(look.option);
-  const QImage forest = forestPicture(study, look.ratio);
+  const QImage forest = forestPicture(study, look.font, look.ratio);
   if (!forest.isNull()) text->addResource(QTextDocument::ImageResource, QUrl(forestAddress), forest);
   text->setHtml(QString::fromStdString(studyText(study)));
   text->setTextWidth(look.width);
@@ -110,35 +110,27 @@ struct StudyPage::Computed {
 StudyPage::StudyPage(QWidget* parent) : QWidget(parent) {
   auto* layout = new QVBoxLayout(this);
   buildChoices(*layout);
-  state_ = new QLabel;
-  state_->setObjectName("study-state");
-  state_->setTextFormat(Qt::PlainText);
-  state_->setWordWrap(true);
+  state_ = parts::plainLabel("study-state");
   layout->addWidget(state_);
   strip_ = new WorkStrip(work_);
   layout->addWidget(strip_);
 
-  text_ = new QTextBrowser;
-  text_->setObjectName("study-text");
+  text_ = parts::named("study-text", new QTextBrowser);
   text_->setAccessibleName("Tables of the study");
   text_->setOpenLinks(false);
   text_->setWordWrapMode(QTextOption::WordWrap);
-  row_ = new QComboBox;
-  row_->setObjectName("study-row");
+  row_ = parts::named("study-row", new QComboBox);
   auto* rowLabel = new QLabel("&Checkpoint");
   rowLabel->setBuddy(row_);
   auto* rowLayout = new QHBoxLayout;
   rowLayout->addWidget(rowLabel);
   rowLayout->addWidget(row_, 1);
-  effect_ = new QLabel;
-  effect_->setObjectName("study-effect");
+  effect_ = parts::named("study-effect", new QLabel);
   effect_->setWordWrap(true);
-  boxes_ = new ComparisonChart;
-  boxes_->setObjectName("study-boxes");
-  roc_ = new RocChart;
+  boxes_ = new PlotView("study-boxes", "Values by group");
+  roc_ = new PlotView("roc-chart", "Receiver operating characteristic");
   auto* charts = new QWidget;
-  auto* chartLayout = new QVBoxLayout(charts);
-  chartLayout->setContentsMargins(0, 0, 0, 0);
+  auto* chartLayout = parts::bare<QVBoxLayout>(charts);
   chartLayout->addLayout(rowLayout);
   chartLayout->addWidget(effect_);
   chartLayout->addWidget(boxes_, 1);
@@ -157,14 +149,8 @@ StudyPage::StudyPage(QWidget* parent) : QWidget(parent) {
 
 void StudyPage::buildChoices(QBoxLayout& layout) {
   const auto add = [](QHBoxLayout& row, const char* name, const char* text, int stretch) {
-    auto* box = new QComboBox;
-    box->setObjectName(name);
-    box->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
-    box->setMinimumContentsLength(6);
-    auto* label = new QLabel(text);
-    label->setBuddy(box);
-    row.addWidget(label);
-    row.addWidget(box, stretch);
+    auto* box = parts::choice(name, 6);
+    parts::labelled(row, text, box, stretch);
     return box;
   };
   auto* upper = new QHBoxLayout;
@@ -190,10 +176,8 @@ void StudyPage::buildChoices(QBoxLayout& layout) {
   protocol_->setMinimumContentsLength(8);
   protocol_->setToolTip("A protocol that is registered in this cohort makes the choices (calot protocol register)");
   key_ = add(*lower, "study-key", "Comparable &within", 1);
-  synthetic_ = new QCheckBox("S&ynthetic attempts");
-  synthetic_->setObjectName("study-synthetic");
-  practice_ = new QCheckBox("&Practice attempts");
-  practice_->setObjectName("study-practice");
+  synthetic_ = parts::named("study-synthetic", new QCheckBox("S&ynthetic attempts"));
+  practice_ = parts::named("study-practice", new QCheckBox("&Practice attempts"));
   lower->addWidget(synthetic_);
   lower->addWidget(practice_);
   layout.addLayout(lower);
@@ -383,21 +367,27 @@ void StudyPage::showRow() {
   const int at = row_->currentIndex();
   if (!study_ || at < 0) {
     effect_->clear();
-    boxes_->showComparison({}, "Box plot");
+    boxes_->clear("Box plot");
     roc_->clear("ROC");
     return;
   }
   const analytics::StudyRow& row = study_->rows[static_cast<std::size_t>(at)];
   effect_->setText(effectText(row));
-  boxes_->showComparison(comparisonOf(row, *study_), row_->currentText());
+  boxes_->show(
+      row_->currentText(),
+      [study = study_, &row](const analytics::PlotFrame& frame) { return analytics::boxPlotOf(*study, row, frame); },
+      study_->synthetic);
   if (row.values[0].empty() || row.values[1].empty()) {
     roc_->clear("No ROC: a group has no values");
     return;
   }
   const RocCurve curve = rocOf(row);
-  roc_->showCurve(curve, QString("ROC: %1 values speak for %2; area %3")
-                             .arg(curve.lowerIsPositive ? "small" : "large", QString::fromStdString(study_->groups[0]),
-                                  numberText(curve.area)));
+  const QString title = QString("ROC: %1 values speak for %2; area %3")
+                            .arg(curve.lowerIsPositive ? "small" : "large", QString::fromStdString(study_->groups[0]),
+                                 numberText(curve.area));
+  roc_->show(title, [curve, name = title.toStdString()](const analytics::PlotFrame& frame) {
+    return drawRoc(curve, name, frame);
+  });
 }
 
 void StudyPage::exportCsv(const QString& folder) { write(folder, false); }

@@ -17,8 +17,7 @@ class QTextBrowser;
 
 namespace calot::gui {
 
-class ComparisonChart;
-class RocChart;
+class PlotView;
 class WorkStrip;
 
 /// Two groups side by side, one value per participant: tables, box plots with points, ROC, effect sizes, export. A
@@ -77,8 +76,8 @@ class StudyPage : public QWidget {
   QTextBrowser* text_ = nullptr;
   QComboBox* row_ = nullptr;
   QLabel* effect_ = nullptr;
-  ComparisonChart* boxes_ = nullptr;
-  RocChart* roc_ = nullptr;
+  PlotView* boxes_ = nullptr;
+  PlotView* roc_ = nullptr;
   QPushButton* csv_ = nullptr;
   QPushButton* html_ = nullptr;
 };

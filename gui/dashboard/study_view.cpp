@@ -7,13 +7,13 @@
 
 #include "analytics/cohort/check.h"
 #include "analytics/cohort/withdraw.h"
+#include "analytics/design/design_report.h"
 #include "analytics/report/masked_study.h"
 #include "analytics/report/page_html.h"
 #include "analytics/report/report_text.h"
 #include "analytics/report/study_coverage.h"
 #include "analytics/report/study_output.h"
 #include "analytics/report/study_tables.h"
-#include "analytics/statistics/descriptive.h"
 #include "gui/words/problem_words.h"
 #include "recorder/base/errors.h"
 #include "recorder/base/text_output.h"
@@ -151,32 +151,6 @@ std::string studyText(const analytics::Study& study) {
   return html;
 }
 
-Comparison comparisonOf(const analytics::StudyRow& row, const analytics::Study& study) {
-  Comparison comparison;
-  comparison.unit = row.unit == "1" ? std::string() : row.unit;
-  comparison.synthetic = study.synthetic;
-  for (std::size_t g = 0; g < study.groups.size(); ++g) {
-    if (row.values[g].empty()) continue;
-    ComparisonGroup group;
-    group.name = study.groups[g];
-    for (std::size_t i = 0; i < row.values[g].size(); ++i)
-      group.point.push_back({row.participants[g][i], row.values[g][i], study.synthetic});
-    std::sort(group.point.begin(), group.point.end(), [](const ComparisonPoint& a, const ComparisonPoint& b) {
-      return a.value != b.value ? a.value < b.value : a.attempt < b.attempt;
-    });
-    std::vector<double> sorted = row.values[g];
-    std::sort(sorted.begin(), sorted.end());
-    group.smallest = sorted.front();
-    group.largest = sorted.back();
-    group.lowerQuartile = analytics::quantileOfSorted(sorted, 0.25);
-    group.median = analytics::quantileOfSorted(sorted, 0.5);
-    group.upperQuartile = analytics::quantileOfSorted(sorted, 0.75);
-    comparison.shown += static_cast<int>(sorted.size());
-    comparison.group.push_back(std::move(group));
-  }
-  return comparison;
-}
-
 RocCurve rocOf(const std::vector<double>& first, const std::vector<double>& second, bool lowerIsPositive) {
   struct Value {
     double score;
@@ -208,6 +182,20 @@ RocCurve rocOf(const std::vector<double>& first, const std::vector<double>& seco
 
 RocCurve rocOf(const analytics::StudyRow& row) {
   return rocOf(row.values[0], row.values[1], row.hypothesis == analytics::Hypothesis::firstSmaller);
+}
+
+std::optional<analytics::Drawing> drawRoc(const RocCurve& curve, const std::string& title,
+                                          const analytics::PlotFrame& frame) {
+  analytics::PlotSeries chance, found;
+  chance.ink = 2;
+  chance.points = {{0.0, 0.0}, {1.0, 1.0}};
+  for (const RocPoint& p : curve.points) found.points.emplace_back(p.falsePositive, p.truePositive);
+  return analytics::drawLines({.title = title,
+                               .axis = "share of the first group found",
+                               .below = "share of the second group taken for the first",
+                               .series = {chance, found},
+                               .marks = {},
+                               .frame = frame});
 }
 
 std::string exportStudyCsv(const analytics::Study& study, const std::string& database, const std::string& folder,

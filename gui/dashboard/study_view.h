@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A study made ready for a page: choices to options, tables to text, rows to charts, export. Knows no window.
+// A study made ready for a page: choices to options, tables to text, rows to plots, export. Knows no window.
 #pragma once
 
 #include <optional>
@@ -47,9 +47,6 @@ std::string registrationText(const analytics::Study& study);
 /// notes, flow, methods and all other tables, as HTML for a text widget; every text is escaped.
 std::string studyText(const analytics::Study& study);
 
-/// One row's values as a box plot with points.
-Comparison comparisonOf(const analytics::StudyRow& row, const analytics::Study& study);
-
 /// A point of a receiver operating characteristic: taking `threshold` and beyond as the first group's.
 struct RocPoint {
   double falsePositive = 0.0;  ///< share of the second group taken for the first
@@ -65,6 +62,9 @@ struct RocCurve {
 RocCurve rocOf(const std::vector<double>& first, const std::vector<double>& second, bool lowerIsPositive);
 /// In the direction of the row's hypothesis; without one, larger values speak for the first group. @pre as rocOf()
 RocCurve rocOf(const analytics::StudyRow& row);
+/// The curve and its diagonal of no skill.
+std::optional<analytics::Drawing> drawRoc(const RocCurve& curve, const std::string& title,
+                                          const analytics::PlotFrame& frame);
 
 /// Writes as `calot study --csv` and `--html` do, and notes in the database whose attempts went out.
 /// @return a warning where that could not be noted, or empty

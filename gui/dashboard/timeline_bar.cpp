@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "gui/attempt/theme.h"
-#include "gui/dashboard/palette.h"
 #include "gui/words/event_words.h"
 
 namespace calot::gui {

@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Colours of charts and timelines: Okabe and Ito's set, told apart by people with any of the common colour-vision
+// deficiencies. Sign, shape or word carries every meaning beside them.
 #pragma once
 
 #include <optional>
+#include <QColor>
 #include <QWidget>
 #include <utility>
 #include <vector>
 
-#include "gui/attempt/attempt_track.h"
+#include "gui/attempt/attempt_recording.h"
 #include "gui/dashboard/time_scale.h"
+#include "sim/judgement/judgement.h"
 
 namespace calot::gui {
 
@@ -48,3 +52,30 @@ class TimelineBar : public QWidget {
 };
 
 }  // namespace calot::gui
+
+namespace calot::gui::palette {
+
+inline const QColor blue(0x00, 0x72, 0xb2);
+inline const QColor skyBlue(0x56, 0xb4, 0xe9);
+inline const QColor orange(0xe6, 0x9f, 0x00);
+inline const QColor grey(0xb8, 0xb8, 0xb8);
+inline const QColor darkText(0x22, 0x22, 0x22);
+
+inline QColor ofPhase(Phase phase) {
+  switch (phase) {
+    case Phase::identification:
+      return skyBlue;
+    case Phase::clipping:
+      return orange;
+    case Phase::cutting:
+      return QColor(0xf0, 0xe4, 0x42);
+    case Phase::dissection:
+      return QColor(0x7f, 0xd0, 0xb8);
+    case Phase::none:
+    case Phase::done:
+      return QColor(0xd8, 0xd8, 0xd8);
+  }
+  return grey;
+}
+
+}  // namespace calot::gui::palette

@@ -7,6 +7,8 @@
 #include <tuple>
 
 #include "analytics/checkpoints/registry.h"
+#include "analytics/report/plots.h"
+#include "gui/attempt/figure_text.h"
 
 namespace calot::gui {
 namespace {
@@ -106,6 +108,30 @@ TraineeHistory historyOf(const std::vector<analytics::AttemptRow>& attempts,
     }
   }
   return history;
+}
+
+std::optional<analytics::Drawing> drawTraineeHistory(const TraineeHistory& history, const std::string& title,
+                                                     const analytics::PlotFrame& frame) {
+  analytics::HistoryPlot plot;
+  plot.title = title;
+  plot.axis = history.unit;
+  plot.mark = history.cut;
+  plot.frame = frame;
+  plot.frame.legend = true;
+  plot.attempts = static_cast<double>(history.attempts.size());
+  if (history.curve) plot.curve = &*history.curve;
+  for (std::size_t i = 0; i < history.attempts.size(); ++i) {
+    const HistoryAttempt& entry = history.attempts[i];
+    plot.synthetic = plot.synthetic || entry.attempt->synthetic;
+    if (!entry.value) continue;
+    const QString text =
+        QString("Attempt %1, %2: %3 %4")
+            .arg(i + 1)
+            .arg(startText(entry.attempt->startUtc), numberText(*entry.value), QString::fromStdString(history.unit));
+    plot.values.push_back(
+        {static_cast<double>(i + 1), *entry.value, !entry.why.empty(), entry.attempt->uuid, text.toStdString()});
+  }
+  return analytics::drawHistory(plot);
 }
 
 }  // namespace calot::gui

@@ -8,6 +8,7 @@
 
 #include "analytics/cohort/assessment_database.h"
 #include "analytics/cohort/cohort_database.h"
+#include "analytics/report/plots.h"
 #include "analytics/statistics/expected.h"
 #include "analytics/statistics/learning_curve.h"
 #include "gui/dashboard/comparison.h"
@@ -47,5 +48,9 @@ std::vector<std::string> keysOf(const std::vector<analytics::AttemptRow>& attemp
 TraineeHistory historyOf(const std::vector<analytics::AttemptRow>& attempts,
                          const std::vector<analytics::AttemptValue>& values, const std::vector<analytics::Norm>& norms,
                          const Trainee& trainee, const Figure& figure, const std::string& key);
+
+/// Values over the number of the attempt, with curve, band and cut. None where there is nothing to show.
+std::optional<analytics::Drawing> drawTraineeHistory(const TraineeHistory& history, const std::string& title,
+                                                     const analytics::PlotFrame& frame);
 
 }  // namespace calot::gui

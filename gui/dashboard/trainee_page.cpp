@@ -13,10 +13,11 @@
 
 #include "analytics/assessment/grade.h"
 #include "gui/attempt/figure_standing.h"
+#include "gui/attempt/figure_text.h"
 #include "gui/attempt/theme.h"
-#include "gui/attempt/words.h"
-#include "gui/dashboard/history_chart.h"
-#include "gui/dashboard/page_begin.h"
+#include "gui/attempt/widget_parts.h"
+#include "gui/dashboard/page_parts.h"
+#include "gui/dashboard/plot_view.h"
 #include "gui/words/problem_words.h"
 #include "recorder/base/errors.h"
 
@@ -48,16 +49,10 @@ TraineePage::TraineePage(QWidget* parent) : FiguresPage("trainee-caption", paren
   key_ = addChoice(lower, "trainee-key", "Comparable &within", 3);
   layout->addLayout(upper);
   layout->addLayout(lower);
-  goal_ = new QLabel;
-  goal_->setObjectName("trainee-goal");
-  goal_->setTextFormat(Qt::PlainText);
-  goal_->setWordWrap(true);
-  QFont bold = goal_->font();
-  bold.setBold(true);
-  goal_->setFont(bold);
+  goal_ = parts::plainLabel("trainee-goal");
+  parts::embolden(goal_);
   layout->addWidget(goal_);
-  tasks_ = new QTableWidget(0, 5);
-  tasks_->setObjectName("trainee-tasks");
+  tasks_ = parts::named("trainee-tasks", new QTableWidget(0, 5));
   tasks_->setAccessibleName("Tasks of the trainee");
   tasks_->setHorizontalHeaderLabels({"Task", "Attempts", "First", "Last", "Last started"});
   tasks_->setEditTriggers(QAbstractItemView::NoEditTriggers);
@@ -68,9 +63,8 @@ TraineePage::TraineePage(QWidget* parent) : FiguresPage("trainee-caption", paren
   tasks_->verticalHeader()->setDefaultSectionSize(tasks_->fontMetrics().height() + 9);
   tasks_->horizontalHeader()->setStretchLastSection(true);
   tasks_->setColumnWidth(0, theme::inType(560));
-  chart_ = new HistoryChart;
-  table_ = new QTableWidget(0, 6);
-  table_->setObjectName("trainee-attempts");
+  chart_ = new PlotView("history-chart", "A figure over the attempts");
+  table_ = parts::named("trainee-attempts", new QTableWidget(0, 6));
   table_->setAccessibleName("Attempts of the trainee");
   table_->setHorizontalHeaderLabels({"No.", "Started", "Value", "Outcome", "Verification", "Remark"});
   table_->setEditTriggers(QAbstractItemView::NoEditTriggers);
@@ -107,7 +101,7 @@ void TraineePage::connectParts() {
   connect(tasks_, &QTableWidget::itemActivated, this, [this](const QTableWidgetItem* item) {
     key_->setCurrentIndex(key_->findText(tasks_->item(item->row(), 0)->data(Qt::UserRole).toString()));
   });
-  connect(chart_, &DotChart::attemptChosen, this, &TraineePage::attemptActivated);
+  connect(chart_, &PlotView::attemptChosen, this, &TraineePage::attemptActivated);
   connect(table_, &QTableWidget::itemActivated, this, [this](const QTableWidgetItem* item) {
     emit attemptActivated(table_->item(item->row(), 0)->data(Qt::UserRole).toString());
   });
@@ -141,7 +135,7 @@ void TraineePage::redraw() {
   if (!ready()) return;
   const int trainee = trainee_->currentIndex(), figure = figure_->currentIndex();
   if (trainee < 0 || figure < 0 || key_->currentIndex() < 0) {
-    chart_->showHistory({}, "No attempts");
+    chart_->clear("No attempts: nothing to show");
     caption()->setText("No attempt has a participant or a profile yet.");
     table_->setRowCount(0);
     tasks_->setRowCount(0);
@@ -160,7 +154,15 @@ void TraineePage::redraw() {
   const TraineeHistory history =
       historyOf(document().attempts(), values()->of(index), *norms, trainees_[static_cast<std::size_t>(trainee)], shown,
                 key_->currentText().toStdString());
-  chart_->showHistory(history, trainee_->currentText() + ": " + figureTitle(shown.name, shown.subject));
+  const QString title = trainee_->currentText() + ": " + figureTitle(shown.name, shown.subject);
+  const auto& all = history.attempts;
+  const bool empty = std::none_of(all.begin(), all.end(), [](const HistoryAttempt& a) { return a.value.has_value(); });
+  chart_->show(
+      empty && !history.cut ? title + ": nothing to show" : title,
+      [history, name = title.toStdString()](const analytics::PlotFrame& frame) {
+        return drawTraineeHistory(history, name, frame);
+      },
+      std::any_of(all.begin(), all.end(), [](const HistoryAttempt& a) { return a.attempt->synthetic; }));
   caption()->setText(curveText(history));
   fillTable(history);
   fillTasks(trainees_[static_cast<std::size_t>(trainee)], index, *norms);

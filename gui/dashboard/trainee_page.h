@@ -10,7 +10,7 @@ class QTableWidget;
 
 namespace calot::gui {
 
-class HistoryChart;
+class PlotView;
 
 /// One person's attempts over time: a figure's learning curve, and every attempt with its badge.
 class TraineePage : public FiguresPage {
@@ -34,7 +34,7 @@ class TraineePage : public FiguresPage {
   QComboBox* trainee_ = nullptr;
   QComboBox* figure_ = nullptr;
   QComboBox* key_ = nullptr;
-  HistoryChart* chart_ = nullptr;
+  PlotView* chart_ = nullptr;
   QLabel* goal_ = nullptr;
   QTableWidget* tasks_ = nullptr;
   QTableWidget* table_ = nullptr;

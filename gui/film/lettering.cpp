@@ -2,13 +2,11 @@
 #include "gui/film/lettering.h"
 
 #include <ft2build.h>
-
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <vector>
 
-#include "gui/film/blend.h"
 #include "recorder/base/errors.h"
 #include FT_FREETYPE_H
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <string_view>
 
-#include "gui/film/blend.h"
+#include "gui/film/lettering.h"
 #include "recorder/base/errors.h"
 
 namespace calot::gui {

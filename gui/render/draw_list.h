@@ -11,11 +11,30 @@
 #include "gui/render/sheet_list.h"
 #include "gui/render/sight.h"
 #include "gui/render/smoke.h"
-#include "gui/render/surface_form.h"
 #include "gui/render/surroundings.h"
 #include "sim/scene/scene_view.h"
 
 namespace calot::gui {
+
+/// Does every side of every triangle have an opposite side in another triangle? Then the surface bounds a body whose
+/// inner side is never visible from outside.
+/// @param triangle @pre no negative index
+[[nodiscard]] bool isClosed(const std::vector<Index3>& triangle);
+
+/// Data of a surface reused between pictures while its reference shape and triangles stay unchanged.
+class SurfaceForm {
+ public:
+  /// Computes the members below unless they are up to date for this surface.
+  void update(const std::vector<Vec3>& rest, const std::vector<Index3>& triangle);
+
+  [[nodiscard]] const std::vector<Vec3>& restNormal() const { return restNormal_; }
+  [[nodiscard]] bool closed() const { return closed_; }
+
+ private:
+  std::vector<Vec3> rest_, restNormal_;
+  std::vector<Index3> triangle_;
+  bool closed_ = false;
+};
 
 /// Appearances known to the shader. Their numbers are in shader_material.cpp.
 enum class Appearance : int {

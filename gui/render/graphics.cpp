@@ -1,12 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// A context on one of the machine's graphics devices, found by enumeration: it needs no window and no display server.
+
 #include "gui/render/graphics.h"
 
+#include <EGL/egl.h>
+#include <EGL/eglext.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-
+#include <GL/osmesa.h>
 #include <algorithm>
+#include <array>
 #include <cstddef>
+#include <string>
+#include <vector>
 
+#include "gui/render/graphics_context.h"
 #include "recorder/base/errors.h"
 
 namespace calot::gui {
@@ -34,5 +42,152 @@ std::unique_ptr<GraphicsContext> createContext(Graphics graphics) {
       return createSoftwareContext();
   }
 }
+
+namespace {
+
+template <class Function>
+Function extension(const char* name) {
+  return reinterpret_cast<Function>(eglGetProcAddress(name));
+}
+
+/// Whether a list of words, one space between two, has this one.
+bool names(const char* list, const std::string& word) {
+  return list != nullptr && fmt::format(" {} ", list).find(fmt::format(" {} ", word)) != std::string::npos;
+}
+
+struct Device {
+  EGLDeviceEXT id = nullptr;
+  bool software = false;  ///< it has no card behind it
+};
+
+/// All devices of this machine; none where EGL cannot list them.
+std::vector<Device> devices() {
+  if (!names(eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS), "EGL_EXT_device_base") &&
+      !names(eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS), "EGL_EXT_device_enumeration"))
+    return {};
+  const auto list = extension<PFNEGLQUERYDEVICESEXTPROC>("eglQueryDevicesEXT");
+  const auto text = extension<PFNEGLQUERYDEVICESTRINGEXTPROC>("eglQueryDeviceStringEXT");
+  EGLint count = 0;
+  if (list == nullptr || list(0, nullptr, &count) != EGL_TRUE || count <= 0) return {};
+  std::vector<EGLDeviceEXT> ids(static_cast<std::size_t>(count));
+  if (list(count, ids.data(), &count) != EGL_TRUE) return {};
+  ids.resize(static_cast<std::size_t>(count));
+  std::vector<Device> found;
+  found.reserve(ids.size());
+  for (EGLDeviceEXT id : ids)
+    found.push_back({id, text != nullptr && names(text(id, EGL_EXTENSIONS), "EGL_MESA_device_software")});
+  return found;
+}
+
+class EglContext final : public GraphicsContext {
+ public:
+  explicit EglContext(EGLDeviceEXT device) {
+    const auto open = extension<PFNEGLGETPLATFORMDISPLAYEXTPROC>("eglGetPlatformDisplayEXT");
+    if (open != nullptr) display_ = open(EGL_PLATFORM_DEVICE_EXT, device, nullptr);
+    if (display_ == EGL_NO_DISPLAY || eglInitialize(display_, nullptr, nullptr) != EGL_TRUE) {
+      fault_ = "it cannot be opened";
+      return;
+    }
+    // Nothing is drawn on a surface: framebuffer objects take the pictures.
+    if (!names(eglQueryString(display_, EGL_EXTENSIONS), "EGL_KHR_surfaceless_context")) {
+      fault_ = "it wants a window";
+      return;
+    }
+    static constexpr std::array<EGLint, 3> wanted{EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_NONE};
+    EGLConfig config = nullptr;
+    EGLint configs = 0;
+    eglBindAPI(EGL_OPENGL_API);
+    if (eglChooseConfig(display_, wanted.data(), &config, 1, &configs) != EGL_TRUE || configs == 0) config = nullptr;
+    static constexpr std::array<EGLint, 7> attributes{
+        EGL_CONTEXT_MAJOR_VERSION,           4,       EGL_CONTEXT_MINOR_VERSION, 5, EGL_CONTEXT_OPENGL_PROFILE_MASK,
+        EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
+    context_ = eglCreateContext(display_, config, EGL_NO_CONTEXT, attributes.data());
+    if (context_ == EGL_NO_CONTEXT) fault_ = "it has no OpenGL 4.5";
+  }
+  /// The display stays open: other contexts of the process may be on it.
+  ~EglContext() override {
+    if (context_ == EGL_NO_CONTEXT) return;
+    if (eglGetCurrentContext() == context_) eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+    eglDestroyContext(display_, context_);
+    eglReleaseThread();
+  }
+  EglContext(const EglContext&) = delete;
+  EglContext& operator=(const EglContext&) = delete;
+
+  void makeCurrent() override {
+    eglBindAPI(EGL_OPENGL_API);  // of the thread
+    if (eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_) != EGL_TRUE)
+      throw Error(ErrorKind::failure, "rendering: the graphics card's OpenGL context cannot be made current");
+  }
+  Function function(const char* name) const override { return eglGetProcAddress(name); }
+  const char* way() const override { return "EGL"; }
+
+  /// Why there is no context; empty where there is one.
+  [[nodiscard]] const std::string& fault() const { return fault_; }
+
+ private:
+  EGLDisplay display_ = EGL_NO_DISPLAY;
+  EGLContext context_ = EGL_NO_CONTEXT;
+  std::string fault_;
+};
+
+}  // namespace
+
+std::unique_ptr<GraphicsContext> createDeviceContext(DeviceKind kind) {
+  std::string why = "EGL lists none";
+  for (const Device& device : devices()) {
+    if (device.software != (kind == DeviceKind::software)) continue;
+    auto context = std::make_unique<EglContext>(device.id);
+    if (context->fault().empty()) return context;
+    why = context->fault();
+  }
+  throw Error(ErrorKind::failure,
+              fmt::format("rendering: no graphics card that draws ({}); software draws without one", why));
+}
+
+namespace {
+
+class OsmesaContext final : public GraphicsContext {
+ public:
+  OsmesaContext() {
+    static constexpr std::array<int, 13> attributes{OSMESA_FORMAT,
+                                                    OSMESA_RGBA,
+                                                    OSMESA_DEPTH_BITS,
+                                                    0,
+                                                    OSMESA_PROFILE,
+                                                    OSMESA_CORE_PROFILE,
+                                                    OSMESA_CONTEXT_MAJOR_VERSION,
+                                                    4,
+                                                    OSMESA_CONTEXT_MINOR_VERSION,
+                                                    5,
+                                                    0,
+                                                    0,
+                                                    0};
+    context_ = OSMesaCreateContextAttribs(attributes.data(), nullptr);
+    if (context_ == nullptr)
+      throw Error(ErrorKind::failure,
+                  "rendering: no off-screen OpenGL 4.5; install a Mesa with libosmesa6 22 or newer");
+  }
+  ~OsmesaContext() override { OSMesaDestroyContext(context_); }
+  OsmesaContext(const OsmesaContext&) = delete;
+  OsmesaContext& operator=(const OsmesaContext&) = delete;
+
+  void makeCurrent() override {
+    // Pictures are drawn into framebuffer objects; this buffer only has to exist.
+    if (OSMesaMakeCurrent(context_, buffer_.data(), GL_UNSIGNED_BYTE, side, side) != GL_TRUE)
+      throw Error(ErrorKind::failure, "rendering: the off-screen OpenGL context cannot be made current");
+  }
+  Function function(const char* name) const override { return OSMesaGetProcAddress(name); }
+  const char* way() const override { return "OSMesa"; }
+
+ private:
+  static constexpr int side = 16;
+  std::array<unsigned char, 4 * side * side> buffer_{};
+  OSMesaContext context_ = nullptr;
+};
+
+}  // namespace
+
+std::unique_ptr<GraphicsContext> createSoftwareContext() { return std::make_unique<OsmesaContext>(); }
 
 }  // namespace calot::gui

@@ -25,4 +25,22 @@ struct Mesh {
 /// @param closed the last vertex of a row is joined to its first
 [[nodiscard]] std::vector<Index3> gridTriangles(int rows, int columns, bool closed);
 
+/// A closed curve around a path: point k of n, counter-clockwise seen from the path's end.
+using Ring = std::vector<Vec3>;
+
+/// Skin over rings of equal size along a path, with smooth normals, and flat caps at both ends.
+/// @pre at least two rings of at least three points
+[[nodiscard]] Mesh loft(const std::vector<Ring>& rings);
+
+/// n points of |x / a|^e + |y / b|^e = 1 around (centre.x, centre.y) in the plane z = centre.z; e = 2 is an ellipse,
+/// larger values near a rectangle.
+[[nodiscard]] Ring superellipse(const Vec3& centre, double a, double b, double e, int n);
+
+/// A tube of circular section along a path of points (m). Sections stand across the path; ends are rounded.
+/// @pre at least two points, none equal to its neighbour
+[[nodiscard]] Mesh tube(const std::vector<Vec3>& path, double radius, int n);
+
+/// Rigid motion of a mesh.
+[[nodiscard]] Mesh moved(Mesh mesh, const Quat& rotation, const Vec3& translation);
+
 }  // namespace calot::gui

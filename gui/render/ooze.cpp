@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "gui/render/loft.h"
+#include "gui/render/mesh.h"
 
 namespace calot::gui {
 namespace {

@@ -4,13 +4,14 @@
 #include <fmt/format.h>
 #include <png.h>
 #include <unistd.h>
-
 #include <cerrno>
+#include <charconv>
 #include <cstdio>
 #include <cstring>
 #include <string>
 #include <system_error>
 
+#include "gui/render/view_check.h"
 #include "recorder/base/errors.h"
 
 namespace calot::gui {
@@ -43,6 +44,19 @@ void writePng(const Image& image, const std::filesystem::path& file) {
   std::error_code error;
   std::filesystem::rename(temporary, file, error);
   if (error) fail(error.message());
+}
+
+PictureSize parsePictureSize(const std::string& text) {
+  PictureSize size;
+  const char* const end = text.data() + text.size();
+  const auto [afterWidth, widthError] = std::from_chars(text.data(), end, size.width);
+  const bool cross = widthError == std::errc() && afterWidth != end && *afterWidth == 'x';
+  const auto [afterHeight, heightError] = cross ? std::from_chars(afterWidth + 1, end, size.height)
+                                                : std::from_chars_result{end, std::errc::invalid_argument};
+  if (!cross || heightError != std::errc() || afterHeight != end)
+    throw Error(ErrorKind::invalid, "picture size '" + text + "': write WIDTHxHEIGHT, as in 1280x720");
+  checkPictureSize(size.width, size.height);
+  return size;
 }
 
 }  // namespace calot::gui

@@ -12,8 +12,8 @@
 #include <thread>
 
 #include "gui/render/graphics.h"
-#include "gui/render/looks.h"
 #include "gui/render/scene_painter.h"
+#include "gui/render/scene_resources.h"
 #include "gui/render/view_check.h"
 #include "recorder/base/errors.h"
 

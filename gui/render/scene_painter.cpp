@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "gui/render/looks.h"
+#include "gui/render/scene_resources.h"
 #include "recorder/base/errors.h"
 
 namespace calot::gui {

@@ -7,11 +7,9 @@
 
 #include "gui/render/draw_list.h"
 #include "gui/render/gl_functions.h"
-#include "gui/render/picture_targets.h"
+#include "gui/render/gl_objects.h"
 #include "gui/render/renderer.h"
-#include "gui/render/scene_programs.h"
-#include "gui/render/scene_textures.h"
-#include "gui/render/triangle_buffer.h"
+#include "gui/render/scene_resources.h"
 
 namespace calot::gui {
 

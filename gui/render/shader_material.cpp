@@ -92,71 +92,55 @@ float veins(vec3 p, vec3 normal) {
   return seen / (side.x + side.y + side.z);
 }
 
+Material wet(vec3 albedo, vec3 scatter, vec3 slope, float mirror, float roughness, float film) {
+  return Material(albedo, scatter, slope, vec3(mirror), roughness, film);
+}
+
 Material liver(vec3 mm, Broad broad) {
   vec4 wide = broad.a, middle = broad.b;
   vec4 lobules = noise(mm / 1.9);
   vec4 grain = fineNoise(mm / 0.83 + 5.0);
-  Material m;
   float tone = 0.5 + 0.55 * wide.w + 0.35 * middle.w;
-  m.albedo = mix(vec3(0.082, 0.023, 0.017), vec3(0.165, 0.056, 0.038), clamp(tone, 0.0, 1.0));
-  m.albedo *= 1.0 + 0.20 * lobules.w + 0.10 * grain.w;
-  m.albedo = mix(m.albedo, vec3(0.245, 0.100, 0.066), 0.30 * smoothstep(0.20, 0.6, middle.w + 0.2 * lobules.w));
-  m.scatter = vec3(0.26, 0.08, 0.06);
-  m.slope = 1.10 / 13.0 * middle.xyz + 0.060 / 1.9 * lobules.xyz + 0.014 / 0.83 * grain.xyz;
-  m.mirror = vec3(0.028);
-  m.roughness = 0.40;
-  m.film = 0.95;
-  return m;
+  vec3 albedo = mix(vec3(0.082, 0.023, 0.017), vec3(0.165, 0.056, 0.038), clamp(tone, 0.0, 1.0));
+  albedo *= 1.0 + 0.20 * lobules.w + 0.10 * grain.w;
+  albedo = mix(albedo, vec3(0.245, 0.100, 0.066), 0.30 * smoothstep(0.20, 0.6, middle.w + 0.2 * lobules.w));
+  return wet(albedo, vec3(0.26, 0.08, 0.06), 1.10 / 13.0 * middle.xyz + 0.060 / 1.9 * lobules.xyz + 0.014 / 0.83 * grain.xyz,
+             0.028, 0.40, 0.95);
 }
 
 Material gallbladder(vec3 mm, vec3 normal, Broad broad) {
   vec4 middle = broad.a;
   vec4 fine = fineNoise(mm / 1.3);
-  Material m;
   float tone = clamp(0.5 + 0.7 * broad.b.x + 0.35 * middle.w, 0.0, 1.0);
-  m.albedo = mix(vec3(0.026, 0.055, 0.047), vec3(0.086, 0.108, 0.066), tone);
+  vec3 albedo = mix(vec3(0.026, 0.055, 0.047), vec3(0.086, 0.108, 0.066), tone);
   // Serosa: pale where the wall is thicker, with a little fat under it.
   float pale = smoothstep(0.10, 0.60, broad.b.y + 0.25 * middle.w);
-  m.albedo = mix(m.albedo, vec3(0.200, 0.160, 0.080), 0.45 * pale);
-  m.albedo = mix(m.albedo, vec3(0.085, 0.014, 0.017), 0.48 * veins(mm / 60.0, normal));
-  m.albedo *= 1.0 + 0.10 * fine.w;
-  m.scatter = vec3(0.26, 0.24, 0.18);
-  m.slope = 0.55 / 7.0 * middle.xyz + 0.030 / 1.3 * fine.xyz;
-  m.mirror = vec3(0.030);
-  m.roughness = 0.36;
-  m.film = 1.0;
-  return m;
+  albedo = mix(albedo, vec3(0.200, 0.160, 0.080), 0.45 * pale);
+  albedo = mix(albedo, vec3(0.085, 0.014, 0.017), 0.48 * veins(mm / 60.0, normal));
+  albedo *= 1.0 + 0.10 * fine.w;
+  return wet(albedo, vec3(0.26, 0.24, 0.18), 0.55 / 7.0 * middle.xyz + 0.030 / 1.3 * fine.xyz,
+             0.030, 0.36, 1.0);
 }
 
 // Wall of a bile duct: pale, yellow-green, bile shining through, a net of fine vessels on it.
 Material duct(vec3 mm, Broad broad) {
   vec4 middle = broad.a;
   vec4 fine = fineNoise(mm / 0.7);
-  Material m;
-  m.albedo = mix(vec3(0.255, 0.235, 0.095), vec3(0.420, 0.370, 0.185), clamp(0.5 + 0.5 * broad.c.x + 0.5 * middle.w, 0.0, 1.0));
+  vec3 albedo = mix(vec3(0.255, 0.235, 0.095), vec3(0.420, 0.370, 0.185), clamp(0.5 + 0.5 * broad.c.x + 0.5 * middle.w, 0.0, 1.0));
   float net = vessels(ductNet(mm), broad.b, 0.040);
-  m.albedo = mix(m.albedo, vec3(0.300, 0.060, 0.045), 0.45 * net);
-  m.albedo *= 1.0 + 0.08 * fine.w;
-  m.scatter = vec3(0.30, 0.28, 0.18);
-  m.slope = 0.20 / 3.4 * middle.xyz + 0.020 / 0.7 * fine.xyz;
-  m.mirror = vec3(0.032);
-  m.roughness = 0.34;
-  m.film = 1.0;
-  return m;
+  albedo = mix(albedo, vec3(0.300, 0.060, 0.045), 0.45 * net);
+  albedo *= 1.0 + 0.08 * fine.w;
+  return wet(albedo, vec3(0.30, 0.28, 0.18), 0.20 / 3.4 * middle.xyz + 0.020 / 0.7 * fine.xyz,
+             0.032, 0.34, 1.0);
 }
 
 // Wall of an artery: red, with a paler sheath in streaks, smooth and wet.
 Material artery(vec3 mm, Broad broad) {
   vec4 fine = noise(mm / 1.1);
-  Material m;
-  m.albedo = mix(vec3(0.300, 0.030, 0.026), vec3(0.420, 0.075, 0.058), clamp(0.5 + 0.7 * broad.a.w, 0.0, 1.0));
-  m.albedo = mix(m.albedo, vec3(0.520, 0.240, 0.180), 0.35 * smoothstep(0.25, 0.65, fine.w));
-  m.scatter = vec3(0.30, 0.08, 0.06);
-  m.slope = 0.08 / 1.1 * fine.xyz;
-  m.mirror = vec3(0.034);
-  m.roughness = 0.30;
-  m.film = 1.0;
-  return m;
+  vec3 albedo = mix(vec3(0.300, 0.030, 0.026), vec3(0.420, 0.075, 0.058), clamp(0.5 + 0.7 * broad.a.w, 0.0, 1.0));
+  albedo = mix(albedo, vec3(0.520, 0.240, 0.180), 0.35 * smoothstep(0.25, 0.65, fine.w));
+  return wet(albedo, vec3(0.30, 0.08, 0.06), 0.08 / 1.1 * fine.xyz,
+             0.034, 0.30, 1.0);
 }
 
 // Lobules: a noise folded at its zero lines, bulging between furrows, in two sizes.
@@ -167,21 +151,16 @@ Material fat(vec3 mm, Broad broad) {
   vec4 fine = fineNoise(mm / 0.6);
   float largeUp = min(abs(large.w) * 1.6, 1.0), smallUp = min(abs(small.w) * 1.6, 1.0);
   float up = clamp(0.62 * sqrt(largeUp) + 0.38 * sqrt(smallUp), 0.0, 1.0);
-  Material m;
-  m.albedo = mix(vec3(0.400, 0.170, 0.040), vec3(0.640, 0.395, 0.105), smoothstep(0.12, 0.62, up));
-  m.albedo = mix(m.albedo, vec3(0.700, 0.490, 0.200), 0.45 * smoothstep(0.0, 0.6, broad.c.x));
+  vec3 albedo = mix(vec3(0.400, 0.170, 0.040), vec3(0.640, 0.395, 0.105), smoothstep(0.12, 0.62, up));
+  albedo = mix(albedo, vec3(0.700, 0.490, 0.200), 0.45 * smoothstep(0.0, 0.6, broad.c.x));
   float net = vessels(fatNet(mm), broad.b, 0.026);
-  m.albedo = mix(m.albedo, vec3(0.330, 0.045, 0.030), 0.50 * net);
-  m.albedo *= 1.0 + 0.07 * fine.w;
-  m.scatter = vec3(0.42, 0.28, 0.10);
+  albedo = mix(albedo, vec3(0.330, 0.045, 0.030), 0.50 * net);
+  albedo *= 1.0 + 0.07 * fine.w;
   // The folded noise has a crease at its furrow and is round on top.
   vec3 largeSlope = sign(large.w) * (1.0 - largeUp) * large.xyz;
   vec3 smallSlope = sign(small.w) * (1.0 - smallUp) * small.xyz;
-  m.slope = 2.1 / 4.4 * largeSlope + 0.42 / 1.7 * smallSlope + 0.020 / 0.6 * fine.xyz;
-  m.mirror = vec3(0.032);
-  m.roughness = 0.38;
-  m.film = 0.9;
-  return m;
+  return wet(albedo, vec3(0.42, 0.28, 0.10), 2.1 / 4.4 * largeSlope + 0.42 / 1.7 * smallSlope + 0.020 / 0.6 * fine.xyz,
+             0.032, 0.38, 0.9);
 }
 
 // What the hook did: first pale, cooked tissue, then brown, then a black, matt crust. Noise moves the limits, so that
@@ -222,18 +201,13 @@ Material cavityWall(vec3 mm, Broad broad) {
   vec4 middle = broad.a;
   vec4 lobes = noise(mm / 8.0 + 0.3 * middle.xyz);
   vec4 small = fineNoise(mm / 3.1);
-  Material m;
-  m.albedo = mix(vec3(0.200, 0.058, 0.046), vec3(0.330, 0.125, 0.095), clamp(0.5 + 0.7 * broad.c.x, 0.0, 1.0));
+  vec3 albedo = mix(vec3(0.200, 0.058, 0.046), vec3(0.330, 0.125, 0.095), clamp(0.5 + 0.7 * broad.c.x, 0.0, 1.0));
   float fat = smoothstep(-0.15, 0.55, middle.w + 0.30 * lobes.w + 0.10 * small.w);
-  m.albedo = mix(m.albedo, vec3(0.400, 0.235, 0.105), 0.55 * fat);
-  m.albedo *= 1.0 + 0.20 * lobes.w + 0.10 * small.w;
-  m.albedo = mix(m.albedo, vec3(0.150, 0.022, 0.024), 0.40 * vessels(wallNet(mm), broad.b, 0.035));
-  m.scatter = vec3(0.35, 0.15, 0.10);
-  m.slope = 2.2 / 27.0 * middle.xyz + (0.5 + 0.6 * fat) / 8.0 * lobes.xyz + 0.12 / 3.1 * small.xyz;
-  m.mirror = vec3(0.026);
-  m.roughness = 0.50;
-  m.film = 0.45;
-  return m;
+  albedo = mix(albedo, vec3(0.400, 0.235, 0.105), 0.55 * fat);
+  albedo *= 1.0 + 0.20 * lobes.w + 0.10 * small.w;
+  albedo = mix(albedo, vec3(0.150, 0.022, 0.024), 0.40 * vessels(wallNet(mm), broad.b, 0.035));
+  return wet(albedo, vec3(0.35, 0.15, 0.10), 2.2 / 27.0 * middle.xyz + (0.5 + 0.6 * fat) / 8.0 * lobes.xyz + 0.12 / 3.1 * small.xyz,
+             0.026, 0.50, 0.45);
 }
 
 // Lobes as of fat, in a thin membrane that is pink where it is thin, with long vessels.
@@ -242,46 +216,31 @@ Material omentum(vec3 mm, vec3 normal, Broad broad) {
   vec4 lobes = noise(mm / 7.2 + 0.25 * bend.xyz);
   vec4 fine = fineNoise(mm / 1.9);
   float folded = min(abs(lobes.w) * 1.6, 1.0);
-  Material m;
-  m.albedo = mix(vec3(0.400, 0.185, 0.065), vec3(0.540, 0.320, 0.115), smoothstep(0.05, 0.75, sqrt(folded)));
-  m.albedo = mix(m.albedo, vec3(0.420, 0.170, 0.105), 0.75 * smoothstep(-0.05, 0.55, broad.b.x + 0.4 * broad.b.y));
-  m.albedo = mix(m.albedo, vec3(0.240, 0.030, 0.028), 0.55 * veins(mm / 83.0, normal));
-  m.albedo *= 1.0 + 0.10 * fine.w;
-  m.scatter = vec3(0.40, 0.24, 0.10);
-  m.slope = 1.7 / 7.2 * sign(lobes.w) * (1.0 - folded) * lobes.xyz + 0.05 / 1.9 * fine.xyz;
-  m.mirror = vec3(0.030);
-  m.roughness = 0.42;
-  m.film = 0.8;
-  return m;
+  vec3 albedo = mix(vec3(0.400, 0.185, 0.065), vec3(0.540, 0.320, 0.115), smoothstep(0.05, 0.75, sqrt(folded)));
+  albedo = mix(albedo, vec3(0.420, 0.170, 0.105), 0.75 * smoothstep(-0.05, 0.55, broad.b.x + 0.4 * broad.b.y));
+  albedo = mix(albedo, vec3(0.240, 0.030, 0.028), 0.55 * veins(mm / 83.0, normal));
+  albedo *= 1.0 + 0.10 * fine.w;
+  return wet(albedo, vec3(0.40, 0.24, 0.10), 1.7 / 7.2 * sign(lobes.w) * (1.0 - folded) * lobes.xyz + 0.05 / 1.9 * fine.xyz,
+             0.030, 0.42, 0.8);
 }
 
 // Serosa of the bowel: pale pink, smooth, wet, with a fine net.
 Material bowel(vec3 mm, vec3 normal, Broad broad) {
   vec4 middle = broad.a;
   vec4 fine = fineNoise(mm / 1.5);
-  Material m;
-  m.albedo = mix(vec3(0.330, 0.110, 0.085), vec3(0.500, 0.235, 0.170), clamp(0.5 + 0.6 * broad.b.x + 0.35 * middle.w, 0.0, 1.0));
-  m.albedo = mix(m.albedo, vec3(0.260, 0.040, 0.038), 0.50 * veins(mm.yzx / 37.0, normal.yzx));
-  m.albedo *= 1.0 + 0.06 * fine.w;
-  m.scatter = vec3(0.38, 0.18, 0.13);
-  m.slope = 0.45 / 12.0 * middle.xyz + 0.02 / 1.5 * fine.xyz;
-  m.mirror = vec3(0.032);
-  m.roughness = 0.36;
-  m.film = 1.0;
-  return m;
+  vec3 albedo = mix(vec3(0.330, 0.110, 0.085), vec3(0.500, 0.235, 0.170), clamp(0.5 + 0.6 * broad.b.x + 0.35 * middle.w, 0.0, 1.0));
+  albedo = mix(albedo, vec3(0.260, 0.040, 0.038), 0.50 * veins(mm.yzx / 37.0, normal.yzx));
+  albedo *= 1.0 + 0.06 * fine.w;
+  return wet(albedo, vec3(0.38, 0.18, 0.13), 0.45 / 12.0 * middle.xyz + 0.02 / 1.5 * fine.xyz,
+             0.032, 0.36, 1.0);
 }
 
 Material tissue(vec3 mm, Broad broad) {
   vec4 middle = broad.a;
   vec4 fine = noise(mm / 1.7);
-  Material m;
-  m.albedo = mix(vec3(0.34, 0.12, 0.09), vec3(0.45, 0.20, 0.15), clamp(0.5 + 0.8 * middle.w, 0.0, 1.0)) * (1.0 + 0.1 * fine.w);
-  m.scatter = vec3(0.35, 0.15, 0.10);
-  m.slope = 0.25 / 9.0 * middle.xyz + 0.03 / 1.7 * fine.xyz;
-  m.mirror = vec3(0.028);
-  m.roughness = 0.42;
-  m.film = 0.7;
-  return m;
+  vec3 albedo = mix(vec3(0.34, 0.12, 0.09), vec3(0.45, 0.20, 0.15), clamp(0.5 + 0.8 * middle.w, 0.0, 1.0)) * (1.0 + 0.1 * fine.w);
+  return wet(albedo, vec3(0.35, 0.15, 0.10), 0.25 / 9.0 * middle.xyz + 0.03 / 1.7 * fine.xyz,
+             0.028, 0.42, 0.7);
 }
 
 Material solid(vec3 albedo, vec3 mirror, float roughness) {

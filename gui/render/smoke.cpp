@@ -11,11 +11,11 @@
 namespace calot::gui {
 namespace {
 
-constexpr double fullEnergy = 4.0;                  // J, of the densest puff
-constexpr double riseTime = 0.8;                    // s, over which a puff slows down
-constexpr double rise = 0.030, aside = 0.012;       // m, in the end
-constexpr double smallest = 0.0022, grown = 0.016;  // radius (m), at first and added in the end
-constexpr double densest = 0.45;                    // opacity
+constexpr double fullEnergy = 4.0;                    // J, of the densest puff
+constexpr double riseTime = 0.8;                      // s, over which a puff slows down
+constexpr double rise = 0.030, aside = 0.012;         // m, in the end
+constexpr double puffRadius = 0.0022, grown = 0.016;  // radius (m), at first and added in the end
+constexpr double densest = 0.45;                      // opacity
 
 }  // namespace
 
@@ -55,7 +55,7 @@ SmokeList makeSmokeList(const CameraSample& camera, const Vec3& down, std::span<
     const Vec3 p_W = puff.p_W + gone * (up * Vec3(aside * x, aside * y, rise));
     const double left = 1.0 - puff.age / smokeSeconds;
     const double opacity = densest * puff.strength * left * left * std::min(1.0, puff.age / 0.06);
-    seen.push_back({toCamera * (p_W - camera.position), smallest + grown * gone, opacity, offset});
+    seen.push_back({toCamera * (p_W - camera.position), puffRadius + grown * gone, opacity, offset});
   }
   std::stable_sort(seen.begin(), seen.end(), [](const Seen& a, const Seen& b) { return a.p_C.z() > b.p_C.z(); });
   SmokeList list;

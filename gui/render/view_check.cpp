@@ -14,9 +14,9 @@ namespace {
 [[noreturn]] void refuse(const std::string& what) { throw Error(ErrorKind::damaged, "scene view: " + what); }
 
 // A kilometre is far outside every scene; beyond it single precision on the graphics side has no millimetres left.
-constexpr double farthest = 1e3;
+constexpr double farthestPoint = 1e3;
 
-bool drawable(const Vec3& p) { return p.allFinite() && p.cwiseAbs().maxCoeff() <= farthest; }
+bool drawable(const Vec3& p) { return p.allFinite() && p.cwiseAbs().maxCoeff() <= farthestPoint; }
 bool drawable(const Quat& q) { return q.coeffs().allFinite() && q.norm() > 0.5 && q.norm() < 2.0; }
 
 void checkSurface(const SurfaceView& surface) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <QColor>
+#include <QFont>
 #include <QPainter>
 #include <QRectF>
 
@@ -8,7 +10,13 @@
 
 namespace calot::gui {
 
-/// Paints a figure into `target`, as large as fits in it. Letters are of the application's font.
-void paintDrawing(QPainter& painter, const analytics::Drawing& drawing, const QRectF& target);
+/// Letters and colours of a drawing. On paper colours are the drawing's own.
+struct DrawingLook {
+  QFont font;
+  QColor (*colour)(const QColor&) = nullptr;  ///< what is painted instead of a colour, or null
+};
+
+/// Paints a figure into `target`, as large as fits in it.
+void paintDrawing(QPainter& painter, const analytics::Drawing& drawing, const QRectF& target, const DrawingLook& look);
 
 }  // namespace calot::gui

@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "gui/report/pdf_report.h"
 
+#include <algorithm>
+#include <functional>
 #include <QAbstractTextDocumentLayout>
 #include <QBuffer>
 #include <QFont>
+#include <QImage>
 #include <QPainter>
+#include <QPainterPath>
 #include <QPdfWriter>
+#include <QTextBlock>
 
 #include "gui/report/offscreen_application.h"
 #include "gui/report/text_document.h"
@@ -42,22 +47,34 @@ void paintFoot(QPainter& painter, const QRectF& foot, QFont font, const QString&
   painter.restore();
 }
 
-}  // namespace
+QString titleOf(const analytics::ReportDocument& document) {
+  return QString(document.synthetic ? "SYNTHETIC: " : "") + QString::fromStdString(document.title);
+}
 
-std::string pdfReport(const analytics::ReportDocument& document, const std::string& maker) {
+/// Bytes of a PDF that `paint` fills: A4, of `dots` an inch, all margins alike (mm).
+std::string pdfOf(const QString& title, const std::string& maker, int dots, double margin,
+                  const std::function<void(QPdfWriter& writer, const QFont& font)>& paint) {
   const OffscreenApplication application;
   const QFont font = reportFont();
   QBuffer bytes;
   bytes.open(QIODevice::WriteOnly);
   {
-    const QString title = QString(document.synthetic ? "SYNTHETIC: " : "") + QString::fromStdString(document.title);
     QPdfWriter writer(&bytes);
-    writer.setResolution(dotsPerInch);
+    writer.setResolution(dots);
     writer.setPageSize(QPageSize(QPageSize::A4));
-    writer.setPageMargins(QMarginsF(marginMillimetres, marginMillimetres, marginMillimetres, marginMillimetres),
-                          QPageLayout::Millimeter);
+    writer.setPageMargins(QMarginsF(margin, margin, margin, margin), QPageLayout::Millimeter);
     writer.setTitle(title);
     writer.setCreator(QString::fromStdString(maker));
+    paint(writer, font);
+  }
+  return bytes.data().toStdString();
+}
+
+}  // namespace
+
+std::string pdfReport(const analytics::ReportDocument& document, const std::string& maker) {
+  const QString title = titleOf(document);
+  return pdfOf(title, maker, dotsPerInch, marginMillimetres, [&](QPdfWriter& writer, const QFont& font) {
     const double footHeight = footMillimetres * dotsPerInch / 25.4;
     const QSizeF whole(writer.width(), writer.height()), page(whole.width(), whole.height() - footHeight);
     ReportTextDocument text(document, &writer, page);
@@ -77,8 +94,132 @@ std::string pdfReport(const analytics::ReportDocument& document, const std::stri
       painter.restore();
       paintFoot(painter, QRectF(0.0, page.height(), whole.width(), footHeight), font, title, i + 1, pages);
     }
+  });
+}
+
+namespace {
+
+constexpr double betweenPictures = 4.0, captionHeight = 10.0, captionPoints = 7.5;  // mm; points
+constexpr int columns = 3;
+
+double dots(double millimetres) { return millimetres * dotsPerInch / 25.4; }
+
+/// @return height that the pictures take (dots)
+double paintPictures(QPainter& painter, const std::vector<CaptionedPicture>& pictures, const QSizeF& page, QFont font) {
+  if (pictures.empty()) return 0.0;
+  const double width = (page.width() - (columns - 1) * dots(betweenPictures)) / columns;
+  const double height = 0.75 * width, top = page.height() - height - dots(captionHeight);
+  font.setPointSizeF(captionPoints);
+  painter.setFont(font);
+  painter.setPen(Qt::black);
+  painter.setRenderHint(QPainter::SmoothPixmapTransform);
+  double left = 0.0;
+  for (const CaptionedPicture& picture : pictures) {
+    const Image& image = picture.image;
+    const QImage shown(image.rgba.data(), image.width, image.height, 4 * image.width, QImage::Format_RGBA8888);
+    const QSizeF fitted = QSizeF(shown.size()).scaled(QSizeF(width, height), Qt::KeepAspectRatio);
+    painter.drawImage(QRectF(QPointF(left + (width - fitted.width()) / 2.0, top), fitted),
+                      shown.convertToFormat(QImage::Format_RGB32));
+    painter.drawText(QRectF(left, top + height + dots(1.0), width, dots(captionHeight - 1.0)),
+                     Qt::AlignTop | Qt::AlignLeft | Qt::TextWordWrap, QString::fromStdString(picture.caption));
+    left += width + dots(betweenPictures);
   }
-  return bytes.data().toStdString();
+  return height + dots(captionHeight + betweenPictures);
+}
+
+}  // namespace
+
+std::string onePagePdf(const analytics::ReportDocument& document, const std::vector<CaptionedPicture>& pictures,
+                       const std::string& maker) {
+  return pdfOf(titleOf(document), maker, dotsPerInch, marginMillimetres, [&](QPdfWriter& writer, const QFont& font) {
+    const QSizeF page(writer.width(), writer.height());
+    QPainter painter(&writer);
+    const double room = page.height() - paintPictures(painter, pictures, page, font);
+    // Laid out on one long page, which is then made as small as it has to be.
+    constexpr double longPage = 20.0;
+    ReportTextDocument text(document, &writer, QSizeF(page.width(), longPage * page.height()));
+    const double height = text.documentLayout()->documentSize().height();
+    double used = 0.0;
+    for (QTextBlock block = text.begin(); block.isValid(); block = block.next())
+      used = std::max(used, text.documentLayout()->blockBoundingRect(block).bottom());
+    used = used > 0.0 ? std::min(used, height) : height;
+    const double scale = std::min(1.0, room / used);
+    painter.scale(scale, scale);
+    QAbstractTextDocumentLayout::PaintContext context;
+    context.palette.setColor(QPalette::Text, Qt::black);
+    context.clip = QRectF(0.0, 0.0, page.width(), used);
+    text.documentLayout()->draw(&painter, context);
+  });
+}
+
+namespace {
+
+constexpr int sheetDotsPerInch = 1200;
+constexpr double dotsPerMillimetre = sheetDotsPerInch / 25.4;
+
+/// The black part of a tag as one shape: shapes that touch show seams on screens.
+QPainterPath shapeOf(const recorder::SheetTag& tag, const std::array<bool, 100>& cells) {
+  const double cell = tag.side / 8.0;
+  QPainterPath out;
+  for (int row = 0; row < 10; ++row) {
+    for (int column = 0; column < 10; ++column) {
+      if (!cells[static_cast<std::size_t>(10 * row + column)]) continue;
+      out.addRect(QRectF(tag.left + (column - 1) * cell, tag.top + (row - 1) * cell, cell, cell));
+    }
+  }
+  return out.simplified();
+}
+
+QPen penOf(recorder::SheetLine::Kind kind) {
+  QPen pen(kind == recorder::SheetLine::Kind::ruler ? Qt::black : QColor("#57606a"));
+  pen.setWidthF(0.2);
+  pen.setCapStyle(Qt::FlatCap);
+  if (kind == recorder::SheetLine::Kind::fold) pen.setDashPattern({8.0, 6.0});
+  return pen;
+}
+
+void paintSheet(QPainter& painter, const recorder::MarkerSheet& sheet,
+                const std::function<std::array<bool, 100>(int id)>& cells, QFont font) {
+  for (const recorder::SheetTag& tag : sheet.tags) painter.fillPath(shapeOf(tag, cells(tag.id)), Qt::black);
+  for (const recorder::SheetLine& line : sheet.lines) {
+    painter.setPen(penOf(line.kind));
+    painter.drawLine(QPointF(line.x1, line.y1), QPointF(line.x2, line.y2));
+  }
+  painter.setPen(Qt::black);
+  for (const recorder::SheetText& text : sheet.texts) {
+    // Letters are drawn in dots: fonts of a few units would be rounded.
+    painter.save();
+    painter.translate(text.x, text.y);
+    painter.scale(1.0 / dotsPerMillimetre, 1.0 / dotsPerMillimetre);
+    font.setPixelSize(static_cast<int>(text.size * dotsPerMillimetre));
+    painter.setFont(font);
+    painter.drawText(QPointF(0.0, 0.0), QString::fromStdString(text.text));
+    painter.restore();
+  }
+}
+
+}  // namespace
+
+std::string sheetsPdf(const std::vector<recorder::MarkerSheet>& sheets, const std::string& maker,
+                      const std::function<std::array<bool, 100>(int id)>& cells) {
+  return pdfOf("Calot: handles and board", maker, sheetDotsPerInch, 0.0, [&](QPdfWriter& writer, const QFont& font) {
+    const auto layOut = [&](const recorder::MarkerSheet& sheet) {
+      const auto way = sheet.width > sheet.height ? QPageLayout::Landscape : QPageLayout::Portrait;
+      writer.setPageLayout(QPageLayout(QPageSize(QPageSize::A4), way, QMarginsF(), QPageLayout::Millimeter));
+    };
+    layOut(sheets.front());
+    QPainter painter(&writer);
+    for (std::size_t i = 0; i < sheets.size(); ++i) {
+      if (i > 0) {
+        layOut(sheets[i]);
+        writer.newPage();
+      }
+      painter.save();
+      painter.scale(dotsPerMillimetre, dotsPerMillimetre);
+      paintSheet(painter, sheets[i], cells, font);
+      painter.restore();
+    }
+  });
 }
 
 }  // namespace calot::gui

@@ -1,10 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A report on paper.
+// A short report with pictures on one page.
+// Sheets of markers on paper.
 #pragma once
 
+#include <array>
+#include <functional>
 #include <string>
+#include <vector>
 
 #include "analytics/report/report_document.h"
+#include "gui/render/image.h"
+#include "recorder/sources/devices/camera/marker_sheets.h"
 
 namespace calot::gui {
 
@@ -15,5 +22,23 @@ namespace calot::gui {
 /// May be called in any thread where Qt's application is there already.
 /// @throws Error (failure) where no font is installed
 std::string pdfReport(const analytics::ReportDocument& document, const std::string& maker);
+
+/// A picture and the line beneath it.
+struct CaptionedPicture {
+  Image image;
+  std::string caption;
+};
+
+/// As pdfReport(), on a single A4 page: pictures side by side at its foot, the report above them, made smaller where it
+/// would not fit. @param pictures up to three; none: the report alone
+/// @throws Error (failure) where no font is installed
+std::string onePagePdf(const analytics::ReportDocument& document, const std::vector<CaptionedPicture>& pictures,
+                       const std::string& maker);
+
+/// The sheets as a PDF file's bytes, a page each, A4, true to scale.
+/// @param cells of a tag with its margin, as recorder::tagCells gives them
+/// @throws Error (failure) where no font is installed
+std::string sheetsPdf(const std::vector<recorder::MarkerSheet>& sheets, const std::string& maker,
+                      const std::function<std::array<bool, 100>(int id)>& cells);
 
 }  // namespace calot::gui

@@ -224,7 +224,8 @@ QSizeF ReportTextDocument::intrinsicSize(QTextDocument*, int, const QTextFormat&
 
 void ReportTextDocument::drawObject(QPainter* painter, const QRectF& rect, QTextDocument*, int,
                                     const QTextFormat& format) {
-  paintDrawing(*painter, *drawings_.at(static_cast<std::size_t>(format.intProperty(figureNumber))), rect);
+  paintDrawing(*painter, *drawings_.at(static_cast<std::size_t>(format.intProperty(figureNumber))), rect,
+               {reportFont()});
 }
 
 }  // namespace calot::gui

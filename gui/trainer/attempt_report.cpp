@@ -10,7 +10,7 @@
 #include "analytics/checkpoints/collector.h"
 #include "analytics/checkpoints/registry.h"
 #include "gui/attempt/figure_standing.h"
-#include "gui/attempt/words.h"
+#include "gui/attempt/figure_text.h"
 #include "recorder/base/errors.h"
 #include "recorder/recording/reader.h"
 

@@ -9,11 +9,11 @@
 #include <utility>
 
 #include "analytics/assess.h"
+#include "gui/attempt/figure_text.h"
+#include "gui/attempt/long_work.h"
+#include "gui/attempt/replay_transport.h"
 #include "gui/attempt/theme.h"
-#include "gui/attempt/transport_bar.h"
-#include "gui/attempt/words.h"
-#include "gui/attempt/work_strip.h"
-#include "gui/trainer/panel_parts.h"
+#include "gui/attempt/widget_parts.h"
 #include "gui/trainer/trainer_texts.h"
 #include "gui/view/scene_picture_widget.h"
 #include "gui/words/problem_words.h"
@@ -69,7 +69,7 @@ EndPage::EndPage(Setup setup, QWidget* parent)
       figures_(words("endFigures")),
       momentsTitle_(words("momentsTitle")),
       storeText_(words("storeText")),
-      moments_(new QListWidget),
+      moments_(parts::named("moments", new QListWidget)),
       store_(button("&Put into the cohort", "store")),
       back_(button("Go &back to 2 s before it", "endBack")),
       again_(button("Sta&rt again", "again")),
@@ -83,8 +83,7 @@ EndPage::EndPage(Setup setup, QWidget* parent)
   auto* const row = new QHBoxLayout;
   row->addWidget(replaySide_, 3);
   row->addWidget(buildWords(), 2);
-  auto* const layout = new QVBoxLayout(this);
-  layout->setContentsMargins(0, 0, 0, 0);
+  auto* const layout = parts::bare<QVBoxLayout>(this);
   layout->addLayout(row, 1);
   layout->addWidget(strip_);
   layout->addWidget(buildButtons());
@@ -124,13 +123,11 @@ EndPage::EndPage(Setup setup, QWidget* parent)
 EndPage::~EndPage() { replay_.reset(); }  // its threads use the picture
 
 QWidget* EndPage::buildReplay() {
-  moments_->setObjectName("moments");
   moments_->setAccessibleName("Moments to see again");
   moments_->setWordWrap(true);
   moments_->setToolTip("A click replays the moment, from two seconds before it");
   auto* const made = new QWidget;
-  auto* const layout = new QVBoxLayout(made);
-  layout->setContentsMargins(0, 0, 0, 0);
+  auto* const layout = parts::bare<QVBoxLayout>(made);
   layout->addWidget(picture_, 3);
   layout->addWidget(new TransportBar(*replay_));
   layout->addWidget(momentsTitle_);
@@ -142,10 +139,8 @@ QWidget* EndPage::buildWords() {
   QFont large = font();
   large.setPointSizeF(1.5 * large.pointSizeF());
   title_->setFont(large);
-  QFont bold = font();
-  bold.setBold(true);
-  verdict_->setFont(bold);
-  syntheticMark_->setFont(bold);
+  parts::embolden(verdict_);
+  parts::embolden(syntheticMark_);
   syntheticMark_->setText("SYNTHETIC: made by a performer, no person's attempt");
   theme::setGround(*syntheticMark_, QColor(0xf0, 0xe4, 0x42), Qt::black);
   figures_->setAccessibleName("Figures that count");
@@ -166,8 +161,7 @@ QWidget* EndPage::buildButtons() {
   store_->setToolTip("Simulates the attempt again, which verifies it, and stores its figures");
   back_->setToolTip("Simulates the attempt again up to two seconds before the mistake, and goes on from there");
   auto* const made = new QWidget;
-  auto* const row = new QHBoxLayout(made);
-  row->setContentsMargins(0, 0, 0, 0);
+  auto* const row = parts::bare<QHBoxLayout>(made);
   row->addWidget(store_);
   row->addStretch(1);
   for (QPushButton* const button : {back_, again_, next_, scenes_}) row->addWidget(button);

@@ -8,7 +8,7 @@
 
 #include "gui/attempt/background.h"
 #include "gui/attempt/long_work.h"
-#include "gui/attempt/replay.h"
+#include "gui/attempt/replay_transport.h"
 #include "gui/trainer/attempt_report.h"
 #include "gui/trainer/training_session.h"
 

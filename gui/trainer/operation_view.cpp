@@ -10,7 +10,21 @@
 #include <QWheelEvent>
 #include <utility>
 
+#include "gui/attempt/widget_parts.h"
+
 namespace calot::gui {
+namespace {
+
+double squared(QPointF p) { return QPointF::dotProduct(p, p); }
+
+}  // namespace
+
+QPointF PointerTrack::moved(QPointF now) {
+  const QPointF last = last_.value_or(now);
+  last_ = now;
+  if (put_ && squared(now - *put_) <= squared(now - last)) return now - *std::exchange(put_, std::nullopt);
+  return now - last;
+}
 
 using recorder::MouseControl;
 
@@ -25,13 +39,12 @@ OperationView::OperationView(std::shared_ptr<recorder::MouseInput> mouse, std::s
     : ScenePictureWidget(parent, drawersAtOnce, wantedRate),
       mouse_(std::move(mouse)),
       scope_(std::move(scope)),
-      over_(new QLabel(this)) {
+      over_(parts::named("over", new QLabel(this))) {
   setObjectName("operation");
   setAccessibleName("Picture of the operation");
   setAccessibleDescription("Mouse and keyboard drive an instrument here; Escape frees the mouse, Tab leaves.");
   setFocusPolicy(Qt::StrongFocus);
   setMouseTracking(true);
-  over_->setObjectName("over");
   over_->setTextFormat(Qt::PlainText);
   over_->setAlignment(Qt::AlignCenter);
   over_->setAttribute(Qt::WA_TransparentForMouseEvents);

@@ -15,7 +15,7 @@
 #include <QStackedWidget>
 
 #include "gui/attempt/theme.h"
-#include "gui/trainer/panel_parts.h"
+#include "gui/attempt/widget_parts.h"
 
 namespace calot::gui {
 
@@ -33,16 +33,13 @@ constexpr const char* assistantKeys = "assistantKeys";
 
 QWidget* keyPage(bool mouse, bool scope, bool pauses) {
   auto* const page = new QWidget;
-  auto* const grid = new QGridLayout(page);
-  grid->setContentsMargins(0, 0, 0, 0);
+  auto* const grid = parts::bare<QGridLayout>(page);
   grid->setVerticalSpacing(3);
   grid->setColumnStretch(1, 1);
   int row = 0;
   for (const KeyHelp& help : keyHelp(mouse, scope, pauses)) {
     auto* const keys = new QLabel(QString::fromStdString(help.keys));
-    QFont bold = keys->font();
-    bold.setBold(true);
-    keys->setFont(bold);
+    parts::embolden(keys);
     auto* const what = new QLabel(QString::fromStdString(help.what));
     what->setWordWrap(true);
     if (help.assistant) {
@@ -83,12 +80,12 @@ RunPanel::RunPanel(recorder::Mode mode, bool mouse, bool scope, QWidget* parent)
       result_(plainLabel("result")),
       hand_{plainLabel("left"), plainLabel("right")},
       assistant_(plainLabel("assistant")),
-      progress_(new QProgressBar),
+      progress_(parts::named("progress", new QProgressBar)),
       lower_(new QStackedWidget),
       keys_(scrolled(keyPage(mouse, scope, mode == recorder::Mode::practice))),
       mistakes_(new QWidget),
       mistakesTitle_(plainLabel("mistakesTitle")),
-      list_(new QListWidget),
+      list_(parts::named("mistakes", new QListWidget)),
       back_(button("Go &back to 2 s before it", "back")),
       pause_(button("&Pause", "pause")),
       finish_(button("&End the attempt", "finish")),
@@ -96,24 +93,19 @@ RunPanel::RunPanel(recorder::Mode mode, bool mouse, bool scope, QWidget* parent)
       scenes_(button("&Other scene", "otherScene")) {
   setMinimumWidth(theme::inType(270));
   setMaximumWidth(theme::inType(320));
-  QFont bold = font();
-  bold.setBold(true);
-  stage_->setFont(bold);
-  phase_->setFont(bold);
+  parts::embolden(stage_);
+  parts::embolden(phase_);
   QFont large = font();
   large.setPointSizeF(2.0 * large.pointSizeF());
   time_->setFont(large);
   hint_->setStyleSheet(hintStyle);
   result_->setTextInteractionFlags(Qt::TextSelectableByMouse | Qt::TextSelectableByKeyboard);
-  progress_->setObjectName("progress");
   progress_->setRange(0, 100);
-  list_->setObjectName("mistakes");
   list_->setAccessibleName("Mistakes");
   list_->setWordWrap(true);
   back_->setToolTip("Simulates the attempt again up to two seconds before the mistake, and goes on from there");
 
-  auto* const lower = new QVBoxLayout(mistakes_);
-  lower->setContentsMargins(0, 0, 0, 0);
+  auto* const lower = parts::bare<QVBoxLayout>(mistakes_);
   mistakesTitle_->setAlignment(Qt::AlignTop | Qt::AlignLeft);  // also where there is no list below it
   lower->addWidget(mistakesTitle_);
   lower->addWidget(list_, 1);

@@ -1,15 +1,69 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "gui/trainer/scenes_page.h"
 
+#include <algorithm>
 #include <QBoxLayout>
 #include <QIcon>
 #include <QLabel>
 #include <QListWidget>
 #include <QPixmap>
 #include <QPushButton>
+#include <system_error>
 #include <utility>
 
+#include "gui/attempt/figure_standing.h"
+#include "gui/attempt/figure_text.h"
+#include "gui/attempt/widget_parts.h"
+#include "gui/trainer/trainer_texts.h"
+
 namespace calot::gui {
+
+using Access = analytics::CohortDatabase::Access;
+
+std::vector<PastAttempt> historyIn(const std::filesystem::path& cohort, const std::string& participant) {
+  std::error_code ignored;
+  if (participant.empty() || cohort.empty() || !std::filesystem::exists(cohort, ignored)) return {};
+  const analytics::CohortDatabase database(cohort.string(), Access::read);
+  const std::vector<analytics::Norm> norms = analytics::AssessmentDatabase(cohort.string(), Access::read).norms();
+  std::vector<PastAttempt> history;
+  for (const analytics::AttemptRow& row : database.listAttempts()) {
+    if (row.participant != participant || row.synthetic) continue;
+    PastAttempt past{row.scene, row.startUtc, static_cast<double>(row.steps) * row.stepSeconds,
+                     row.mode,  row.outcome,  !row.parent.empty(),
+                     {},        false};
+    if (const auto fitting = normsFor(row, norms); !fitting.empty()) {
+      const AttemptStanding standing = standingOf(row, database.values(row.uuid), *fitting.front());
+      if (standing.judged) past.verdict = QString::fromStdString(standing.verdict);
+      past.passed = standing.judged && standing.grade && standing.grade->passed;
+    }
+    history.push_back(std::move(past));
+  }
+  std::reverse(history.begin(), history.end());
+  return history;
+}
+
+QString progressText(const std::vector<PastAttempt>& history, const std::string& scene) {
+  int attempts = 0, completed = 0;
+  bool passed = false;
+  for (const PastAttempt& past : history) {
+    if (past.scene != scene || past.branch) continue;
+    ++attempts;
+    completed += past.outcome == recorder::Outcome::completed ? 1 : 0;
+    passed = passed || past.passed;
+  }
+  if (attempts == 0) return "Not tried yet";
+  QString text = attempts == 1 ? QString("1 attempt") : QString("%1 attempts").arg(attempts);
+  text += passed ? QString(", passed by the norm") : QString(", %1 completed").arg(completed);
+  return (passed || completed > 0 ? QString::fromUtf8("✓ ") : QString()) + text;
+}
+
+QString pastText(const PastAttempt& attempt) {
+  QString text = QString("%1, %2%3: %4 after %5")
+                     .arg(startText(attempt.startUtc), modeText(attempt.mode), attempt.branch ? ", a branch" : "",
+                          outcomeText(attempt.outcome), clockText(attempt.seconds));
+  return attempt.verdict.isEmpty() ? text : text + ". " + attempt.verdict;
+}
+
 namespace {
 
 constexpr QSize pictureSize(160, 90);  // five of them on a screen of 768 lines, also in large letters
@@ -26,13 +80,13 @@ QString titleOf(const SceneChoice& scene, std::size_t number) {
 
 ScenesPage::ScenesPage(bool practice, bool demonstrates, QWidget* parent)
     : QWidget(parent),
-      list_(new QListWidget),
-      past_(new QListWidget),
+      list_(parts::named("scenes", new QListWidget)),
+      past_(parts::named("past", new QListWidget)),
       pastTitle_(new QLabel),
       pastSide_(new QWidget),
-      begin_(new QPushButton("&Begin")),
-      tutorial_(new QPushButton("&Learn the controls")),
-      demonstration_(new QPushButton("&Watch a demonstration")) {
+      begin_(parts::named("begin", new QPushButton("&Begin"))),
+      tutorial_(parts::named("tutorial", new QPushButton("&Learn the controls"))),
+      demonstration_(parts::named("demonstration", new QPushButton("&Watch a demonstration"))) {
   auto* const title = new QLabel("Welcome to the trainer");
   QFont large = font();
   large.setPointSizeF(1.6 * large.pointSizeF());
@@ -43,32 +97,26 @@ ScenesPage::ScenesPage(bool practice, bool demonstrates, QWidget* parent)
             "and go back to before a mistake and try again."
           : "Choose a task. Every attempt is recorded and can be assessed; there is no pause and no going back.");
   text->setWordWrap(true);
-  list_->setObjectName("scenes");
   list_->setAccessibleName("Scenes");
   list_->setWordWrap(true);
   list_->setIconSize(pictureSize);
   list_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);  // texts are wrapped
   list_->setStyleSheet("QListWidget::item { padding: 6px; }");
-  past_->setObjectName("past");
   past_->setAccessibleName("Your attempts at this task");
   past_->setWordWrap(true);
   pastTitle_->setTextFormat(Qt::PlainText);
   pastTitle_->setWordWrap(true);
   pastTitle_->setAlignment(Qt::AlignTop | Qt::AlignLeft);  // also where there is no list below it
-  tutorial_->setObjectName("tutorial");
   tutorial_->setToolTip("Asks for one control after the other, on the first task's scene");
-  demonstration_->setObjectName("demonstration");
   demonstration_->setToolTip("A skilled performer does it: a program, no person; its recording is marked synthetic");
   demonstration_->setVisible(demonstrates);
   tutorial_->setVisible(practice);
-  begin_->setObjectName("begin");
   for (QPushButton* const button : {begin_, tutorial_, demonstration_}) {
     button->setEnabled(false);
     button->setAutoDefault(true);  // Enter presses it
   }
 
-  auto* const side = new QVBoxLayout(pastSide_);
-  side->setContentsMargins(0, 0, 0, 0);
+  auto* const side = parts::bare<QVBoxLayout>(pastSide_);
   side->addWidget(pastTitle_);
   side->addWidget(past_, 1);
   pastSide_->hide();

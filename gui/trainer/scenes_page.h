@@ -1,12 +1,43 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// What a trainee has done so far, from the cohort. No window.
 #pragma once
 
+#include <filesystem>
 #include <optional>
+#include <QString>
 #include <QWidget>
+#include <string>
 #include <vector>
 
-#include "gui/trainer/scene_choice.h"
-#include "gui/trainer/training_history.h"
+#include "analytics/cohort/assessment_database.h"
+#include "analytics/cohort/cohort_database.h"
+#include "gui/trainer/course.h"
+
+namespace calot::gui {
+
+/// One attempt of the past.
+struct PastAttempt {
+  std::string scene;
+  std::string startUtc;
+  double seconds = 0.0;
+  recorder::Mode mode = recorder::Mode::practice;
+  recorder::Outcome outcome = recorder::Outcome::running;
+  bool branch = false;
+  QString verdict;      ///< of the norm, one sentence; empty: there is none, or it is not judged
+  bool passed = false;  ///< by the norm
+};
+
+/// A participant's attempts, the newest first; without those that performers made.
+/// @param cohort may not exist yet; empty: none @throws Error as CohortDatabase
+std::vector<PastAttempt> historyIn(const std::filesystem::path& cohort, const std::string& participant);
+
+/// "Not tried yet", "3 attempts, 1 completed", "3 attempts, passed by the norm": how far a task is.
+QString progressText(const std::vector<PastAttempt>& history, const std::string& scene);
+
+/// "2026-02-03 14:05 UTC, practice: completed after 1:02.5": one attempt in a line, with what the norm finds.
+QString pastText(const PastAttempt& attempt);
+
+}  // namespace calot::gui
 
 class QLabel;
 class QListWidget;

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The trainer's menus and their keys.
+
 #include "gui/trainer/trainer_window.h"
 
 #include <algorithm>
@@ -8,9 +10,11 @@
 #include <QCoreApplication>
 #include <QEvent>
 #include <QLabel>
+#include <QMenuBar>
 #include <QStackedWidget>
 #include <utility>
 
+#include "gui/attempt/widget_parts.h"
 #include "gui/trainer/end_page.h"
 #include "gui/trainer/operation_view.h"
 #include "gui/trainer/run_panel.h"
@@ -28,7 +32,7 @@ constexpr int faultShown = 10000;  // ms, of what stops no attempt
 TrainerWindow::TrainerWindow(TrainerSetup setup, QWidget* parent)
     : QMainWindow(parent),
       setup_(std::move(setup)),
-      problem_(new QLabel),
+      problem_(parts::plainLabel("problem")),
       stack_(new QStackedWidget),
       scenes_(
           new ScenesPage(setup_.settings.attempt.mode == recorder::Mode::practice,
@@ -38,15 +42,11 @@ TrainerWindow::TrainerWindow(TrainerSetup setup, QWidget* parent)
       panel_(new RunPanel(setup_.settings.attempt.mode, setup_.mouse != nullptr, setup_.scope != nullptr)),
       end_(new EndPage({setup_.settings.attempt.mode, setup_.cohort, setup_.settings.threads})) {
   setWindowTitle("Calot trainer");
-  problem_->setObjectName("problem");
-  problem_->setTextFormat(Qt::PlainText);
-  problem_->setWordWrap(true);
   problem_->setTextInteractionFlags(Qt::TextSelectableByMouse | Qt::TextSelectableByKeyboard);
   problem_->setStyleSheet(
       "QLabel { background: #fbe3d6; color: #5a1e00; border-left: 6px solid #d55e00; padding: 8px; }");
   problem_->hide();
-  auto* const row = new QHBoxLayout(operation_);
-  row->setContentsMargins(0, 0, 0, 0);
+  auto* const row = parts::bare<QHBoxLayout>(operation_);
   row->addWidget(view_, 1);
   row->addWidget(panel_);
   for (QWidget* const page : {static_cast<QWidget*>(scenes_), operation_, static_cast<QWidget*>(end_)})
@@ -315,6 +315,33 @@ void TrainerWindow::savePicture(const QString& file) {
   QCoreApplication::processEvents();
   if (!grab().save(file, "PNG"))
     throw Error(ErrorKind::failure, Where{file.toStdString()}, "cannot write the picture; does the folder exist?");
+}
+
+void TrainerWindow::buildMenus() {
+  QMenu* const attempt = menuBar()->addMenu("&Attempt");
+  pauseAction_ =
+      attempt->addAction("&Pause or go on", QKeySequence(Qt::CTRL | Qt::Key_P), this, [this] { togglePause(); });
+  pauseAction_->setVisible(setup_.settings.attempt.mode == recorder::Mode::practice);
+  finishAction_ = attempt->addAction("&End", QKeySequence(Qt::CTRL | Qt::Key_E), this, [this] {
+    if (session_) session_->finish();
+    refresh();
+  });
+  restartAction_ = attempt->addAction("Start a&gain", QKeySequence(Qt::CTRL | Qt::Key_R), this, [this] { restart(); });
+  skipAction_ = attempt->addAction("&Skip this control", QKeySequence(Qt::CTRL | Qt::Key_K), this, [this] {
+    if (tutorial_) tutorial_->skip();
+    refresh();
+  });
+  attempt->addAction("&Other scene", QKeySequence(QKeySequence::Open), this, [this] { chooseScene(); });
+  attempt->addAction("&Quit", QKeySequence(Qt::CTRL | Qt::Key_Q), this, [this] { close(); });
+  QMenu* const look = menuBar()->addMenu("&View");
+  look->addAction("&Full screen", QKeySequence(Qt::Key_F11), this,
+                  [this] { setWindowState(windowState() ^ Qt::WindowFullScreen); });
+  aloudAction_ = look->addAction("Read &aloud");
+  aloudAction_->setShortcut(QKeySequence(Qt::CTRL | Qt::Key_L));
+  aloudAction_->setToolTip("What the panel asks for and says is spoken, too");
+  aloudAction_->setCheckable(true);
+  connect(aloudAction_, &QAction::triggered, this, &TrainerWindow::setAloud);
+  look->addAction("&Operation", QKeySequence(Qt::Key_F6), this, [this] { view_->setFocus(); });
 }
 
 }  // namespace calot::gui

@@ -11,8 +11,8 @@
 
 #include "gui/attempt/background.h"
 #include "gui/trainer/controls_tutorial.h"
-#include "gui/trainer/picture_rate.h"
-#include "gui/trainer/scene_choice.h"
+#include "gui/trainer/course.h"
+#include "gui/trainer/picture_timing.h"
 #include "gui/trainer/trainer_texts.h"
 #include "gui/trainer/training_session.h"
 #include "recorder/sources/devices/mouse_input.h"

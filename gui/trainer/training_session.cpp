@@ -2,13 +2,12 @@
 #include "gui/trainer/training_session.h"
 
 #include <fmt/format.h>
-
 #include <algorithm>
 #include <chrono>
+#include <iterator>
 #include <utility>
 
-#include "gui/trainer/fresh_file.h"
-#include "gui/trainer/hints.h"
+#include "gui/trainer/trainer_texts.h"
 #include "gui/words/problem_words.h"
 #include "recorder/base/errors.h"
 #include "recorder/blended_source.h"
@@ -348,6 +347,16 @@ void TrainingSession::keepResult(const recorder::RunReport& report, const record
       report.missedDeadlines, report.ticks,
       100.0 * static_cast<double>(report.missedDeadlines) / static_cast<double>(report.ticks), 1e3 * report.maxLateness,
       report.stretched, report.realTime ? "real-time thread" : "ordinary thread (no permission for real time)"));
+}
+
+std::filesystem::path freshFile(const std::filesystem::path& folder, const std::string& scene,
+                                const std::string& startUtc) {
+  std::string when;
+  std::copy_if(startUtc.begin(), startUtc.end(), std::back_inserter(when), [](char c) { return c != '-' && c != ':'; });
+  const std::string stem = fmt::format("{}-{}", scene, when);
+  std::filesystem::path file = folder / (stem + ".h5");
+  for (int n = 2; std::filesystem::exists(file); ++n) file = folder / fmt::format("{}-{}.h5", stem, n);
+  return file;
 }
 
 }  // namespace calot::gui

@@ -16,8 +16,7 @@
 
 #include "gui/trainer/attempt_input.h"
 #include "gui/trainer/attempt_monitor.h"
-#include "gui/trainer/motion_clock.h"
-#include "gui/trainer/view_tap.h"
+#include "gui/trainer/picture_timing.h"
 #include "recorder/formats/scene_file.h"
 #include "recorder/live/controlled_source.h"
 #include "recorder/prepared_scene.h"
@@ -143,5 +142,11 @@ class TrainingSession {
   AttemptMonitor* monitor_ = nullptr;                 ///< likewise
   std::thread thread_;                                // last: it uses what is above
 };
+
+/// A name that no file of the folder has, for the recording of an attempt: "cholecystectomy-20260203T140500Z.h5", with
+/// "-2" and so on behind the time where that is taken.
+/// @param startUtc as headers have it: "2026-02-03T14:05:00Z"
+[[nodiscard]] std::filesystem::path freshFile(const std::filesystem::path& folder, const std::string& scene,
+                                              const std::string& startUtc);
 
 }  // namespace calot::gui

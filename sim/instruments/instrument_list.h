@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The one list of instruments. Each has a definition of this name in namespace instrument (sim/instruments) and a
-// drawing of this name (gui/render/instruments): a missing one does not link. docs/extending/index.md says how to add
+// drawing of this name (gui/render): a missing one does not link. docs/extending/index.md says how to add
 // one.
 #pragma once
 

@@ -4,7 +4,7 @@
 //   |p - (nearest point of the capsule's segment)| - radius.
 //
 // Sizes are typical of 5 mm laparoscopic instruments and scale with the shaft's radius (a 10 mm clip applier is twice
-// as large); each instrument's stand in its definition. They are those of the pictures (gui/render/instruments): what
+// as large); each instrument's stand in its definition. They are those of the pictures (gui/render): what
 // is drawn stands out of this shape by at most 0.9 mm, at the corners of the fork that holds the hinge
 // (tests/gui/render/instrument_agreement_test.cpp).
 #pragma once

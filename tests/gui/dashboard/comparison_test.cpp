@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "analytics/checkpoints/registry.h"
-#include "gui/dashboard/figure_values.h"
+#include "gui/dashboard/cohort_document.h"
 
 namespace calot::gui {
 namespace {
@@ -44,11 +44,19 @@ TEST(Comparison, QuartilesOfKnownNumbers) {
   }
   const Comparison result = compare(attempts, values, request);
   ASSERT_EQ(result.group.size(), 1U);
-  EXPECT_EQ(result.group[0].smallest, 1.0);
-  EXPECT_EQ(result.group[0].lowerQuartile, 3.0);
-  EXPECT_EQ(result.group[0].median, 5.0);
-  EXPECT_EQ(result.group[0].upperQuartile, 7.0);
-  EXPECT_EQ(result.group[0].largest, 9.0);
+  // The axis is linear: from both extremes the box follows (quartiles 3 and 7), drawn before the points.
+  const auto plot = drawComparison(result, "t", {});
+  ASSERT_TRUE(plot);
+  ASSERT_EQ(plot->marks.size(), 9U);
+  const double one = plot->marks.front().y, perUnit = (plot->marks.back().y - one) / 8.0;
+  EXPECT_LT(perUnit, 0.0) << "ascending";
+  const analytics::DrawnBox* box = nullptr;
+  for (const analytics::Shape& shape : plot->shapes) {
+    if (shape.ink == analytics::Ink::firstBox) box = &std::get<analytics::DrawnBox>(shape.form);
+  }
+  ASSERT_NE(box, nullptr);
+  EXPECT_NEAR(box->y, one + 6.0 * perUnit, 1e-9);
+  EXPECT_NEAR(box->height, -4.0 * perUnit, 1e-9);
   EXPECT_EQ(result.unit, "s");
   EXPECT_FALSE(result.synthetic);
 }
@@ -95,7 +103,7 @@ TEST(Comparison, ShowsValuesInTheUnitThatTheDefinitionDisplays) {
   path.figure = {"path-length", "left"};
   const Comparison result = compare({attempt("a", "g")}, {value}, path);
   ASSERT_EQ(result.group.size(), 1U);
-  EXPECT_DOUBLE_EQ(result.group[0].median, 0.25 * definition.displayFactor);
+  EXPECT_DOUBLE_EQ(result.group[0].point[0].value, 0.25 * definition.displayFactor);
   EXPECT_EQ(result.unit, definition.displayUnit);
 }
 

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Letters that no palette colours: in the study's tables and beside the charts' axes.
+// Letters that no palette colours: in the study's tables and in plots.
 #include <gtest/gtest.h>
 
 #include <QApplication>
-#include <QtCharts/QAbstractAxis>
 #include <QTextCursor>
 #include <QTextDocument>
 #include <QTextTable>
 
 #include "gui/attempt/theme.h"
-#include "gui/dashboard/roc_chart.h"
+#include "gui/dashboard/plot_view.h"
 #include "gui/dashboard/study_view.h"
 #include "tests/gui/dashboard/support/recorded.h"
 
@@ -70,21 +69,31 @@ TEST_P(Contrast, OfTheStudysTables) {
   EXPECT_GT(veiled, 10);
 }
 
-TEST_P(Contrast, OfTheRocsAxesAlsoWhenColoursChange) {
-  RocChart chart;
-  chart.showCurve(rocOf({1.0, 2.0, 4.0}, {3.0, 5.0, 6.0}, true), "ROC");
-  const auto readable = [&] {
-    ASSERT_EQ(chart.chart()->axes().size(), 2);
-    for (QAbstractAxis* axis : chart.chart()->axes()) {
-      EXPECT_GE(theme::contrast(axis->labelsColor(), theme::surface()), theme::leastContrast);
-      EXPECT_GE(theme::contrast(axis->titleBrush().color(), theme::surface()), theme::leastContrast);
-      EXPECT_LT(theme::contrast(axis->gridLineColor(), theme::surface()), 2.0) << "a grid that outshines the curve";
-    }
+TEST_P(Contrast, OfPlotsLettersAndGrid) {
+  const auto shown = [](analytics::Ink ink, bool stroke) {
+    const analytics::InkStyle& style = analytics::styleOf(ink);
+    return theme::contrast(onScreen(QColor(stroke ? style.stroke : style.fill)), theme::surface());
   };
-  readable();
+  using analytics::Ink;
+  for (const Ink ink : {Ink::heading, Ink::tick, Ink::axis, Ink::group, Ink::label, Ink::count})
+    EXPECT_GE(shown(ink, false), theme::leastContrast) << analytics::styleOf(ink).name;
+  for (const Ink ink : {Ink::median, Ink::cut, Ink::firstLine, Ink::secondLine, Ink::hollowPoint})
+    EXPECT_GE(shown(ink, true), 3.0) << analytics::styleOf(ink).name;
+  for (const Ink ink : {Ink::firstPoint, Ink::secondPoint}) EXPECT_GE(shown(ink, false), 3.0);
+  EXPECT_LT(shown(Ink::grid, true), 2.0) << "a grid that outshines the curve";
+}
+
+TEST_P(Contrast, OfAPlotFollowsTheColours) {
+  PlotView plot("plot", "Plot");
+  plot.resize(400, 300);
+  plot.show("ROC", [](const analytics::PlotFrame& frame) {
+    return drawRoc(rocOf({1.0, 2.0, 4.0}, {3.0, 5.0, 6.0}, true), "ROC", frame);
+  });
+  const auto ground = [&] { return plot.grab().toImage().pixelColor(2, 2); };
+  EXPECT_EQ(ground(), theme::surface());
   theme::apply(GetParam() == theme::Choice::dark ? theme::Choice::light : theme::Choice::dark, theme::usualType);
   QApplication::processEvents();
-  readable();
+  EXPECT_EQ(ground(), theme::surface());
 }
 
 INSTANTIATE_TEST_SUITE_P(Colours, Contrast, testing::Values(theme::Choice::light, theme::Choice::dark),

@@ -18,7 +18,6 @@
 #include <QTableView>
 #include <QTableWidget>
 #include <QTabWidget>
-#include <QtCharts/QValueAxis>
 #include <QTest>
 #include <QThread>
 #include <QTreeView>
@@ -32,18 +31,16 @@
 #include "gui/attempt/theme.h"
 #include "gui/dashboard/attempt_page.h"
 #include "gui/dashboard/attempts_page.h"
-#include "gui/dashboard/comparison_chart.h"
 #include "gui/dashboard/dashboard_window.h"
-#include "gui/dashboard/event_tree_model.h"
-#include "gui/dashboard/family_tree_model.h"
 #include "gui/dashboard/figure_panel.h"
-#include "gui/dashboard/history_chart.h"
 #include "gui/dashboard/pair_page.h"
-#include "gui/dashboard/rating_page.h"
+#include "gui/dashboard/plot_view.h"
+#include "gui/dashboard/ratings_page.h"
 #include "gui/dashboard/settings.h"
 #include "gui/dashboard/timeline_bar.h"
 #include "gui/dashboard/trace_chart.h"
-#include "gui/report/one_page_pdf.h"
+#include "gui/dashboard/tree_models.h"
+#include "gui/report/pdf_report.h"
 #include "recorder/base/errors.h"
 #include "tests/gui/dashboard/support/assessed.h"
 #include "tests/gui/dashboard/support/cohort.h"
@@ -241,53 +238,52 @@ TEST_F(Instructor, OpensAnAttemptByItsDotOnAxesThatStartWhereDataDo) {
   fillWithMany();
   const auto window = opened();
   showPage(*window, 3);
-  auto& chart = *window->findChild<ComparisonChart*>("comparison-chart");
-  ASSERT_TRUE(QTest::qWaitFor([&] { return !chart.dots().empty(); }, patience));
-  const auto* axis = qobject_cast<QValueAxis*>(chart.chart()->axes(Qt::Vertical).front());
-  double least = 1e300, most = -1e300;
-  for (const DotChart::Dot& dot : chart.dots()) {
-    least = std::min(least, dot.at.y());
-    most = std::max(most, dot.at.y());
+  auto& chart = *window->findChild<PlotView*>("comparison-chart");
+  ASSERT_TRUE(QTest::qWaitFor([&] { return !chart.marks().empty(); }, patience));
+  double top = 1e300, bottom = -1e300;
+  for (const analytics::DrawnMark& mark : chart.marks()) {
+    top = std::min(top, mark.y);
+    bottom = std::max(bottom, mark.y);
   }
-  EXPECT_GT(axis->min(), 0.0);
-  EXPECT_LT(least - axis->min(), 0.1 * (most - least));
-  EXPECT_LT(axis->max() - most, 0.1 * (most - least));
+  const analytics::Drawing& drawing = chart.drawing();
+  const analytics::PlotFrame frame{drawing.width, drawing.height, true};
+  EXPECT_LT(frame.bottom() - bottom, 0.1 * (bottom - top));
+  EXPECT_LT(top - frame.top(), 0.1 * (bottom - top));
   // By key, then by mouse.
-  QSignalSpy chosen(&chart, &DotChart::attemptChosen);
+  QSignalSpy chosen(&chart, &PlotView::attemptChosen);
   chart.setFocus();
   QTest::keyClick(&chart, Qt::Key_Right);
   QTest::keyClick(&chart, Qt::Key_Return);
   ASSERT_EQ(chosen.count(), 1);
-  EXPECT_EQ(chosen[0][0].toString(), chart.dots()[0].attempt);
+  EXPECT_EQ(chosen[0][0].toString(), QString::fromStdString(chart.marks()[0].key));
   EXPECT_EQ(window->findChild<QTabWidget*>()->currentIndex(), 1) << "the page Attempt";
   showPage(*window, 3);
   QTest::qWait(200);
-  const DotChart::Dot& dot = chart.dots()[4];
-  QTest::mouseClick(chart.viewport(), Qt::LeftButton, {}, chart.placeOf(dot).toPoint());
+  const analytics::DrawnMark dot = chart.marks()[4];
+  QTest::mouseClick(&chart, Qt::LeftButton, {}, chart.placeOf(dot).toPoint());
   ASSERT_EQ(chosen.count(), 2);
-  EXPECT_EQ(chosen[1][0].toString(), dot.attempt);
-  EXPECT_EQ(axisSpan(0.0, 10.0).from, 0.0) << "nothing lies below zero";
-  EXPECT_GT(axisSpan(5.0, 5.0).to, 5.0);
+  EXPECT_EQ(chosen[1][0].toString(), QString::fromStdString(dot.key));
+  EXPECT_EQ(analytics::plotScale(std::vector{0.0, 10.0})->low, 0.0) << "nothing lies below zero";
+  EXPECT_GT(analytics::plotScale(std::vector{5.0, 5.0})->high, 5.0);
 }
 
 TEST_F(Instructor, FollowsATraineeOverTasksWithACurveItsBandAndAGoal) {
   fillWithMany();
   const auto window = opened();
   showPage(*window, 5);
-  auto& chart = *window->findChild<HistoryChart*>();
-  ASSERT_TRUE(QTest::qWaitFor([&] { return chart.dots().size() == 10; }, patience));
-  const auto names = [&] {
-    QStringList all;
-    for (const QAbstractSeries* series : chart.chart()->series()) all += series->name();
-    return all;
-  };
-  EXPECT_TRUE(names().contains("95 % band of the curve")) << names().join(", ").toStdString();
+  auto& chart = *window->findChild<PlotView*>("history-chart");
+  ASSERT_TRUE(QTest::qWaitFor([&] { return chart.marks().size() == 10; }, patience));
+  const auto& shapes = chart.drawing().shapes;
+  EXPECT_TRUE(std::any_of(shapes.begin(), shapes.end(), [](const analytics::Shape& shape) {
+    const auto* text = std::get_if<analytics::DrawnText>(&shape.form);
+    return text != nullptr && text->text == "95 % band of the curve";
+  }));
   QTableWidget& tasks = *child<QTableWidget>(*window, "trainee-tasks");
   ASSERT_EQ(tasks.rowCount(), 2);
   EXPECT_EQ(tasks.item(1, 1)->text(), "2");
   EXPECT_EQ(child<QLabel>(*window, "trainee-goal")->text(), "No goal: there is no norm for this task yet.");
   emit tasks.itemActivated(tasks.item(1, 0));
-  EXPECT_EQ(chart.dots().size(), 2U) << "the other task";
+  EXPECT_EQ(chart.marks().size(), 2U) << "the other task";
 }
 
 TEST_F(Instructor, SeesTwoAttemptsTracesOnOnePlot) {

@@ -34,7 +34,6 @@
 #include "gui/dashboard/attempts_page.h"
 #include "gui/dashboard/dashboard_window.h"
 #include "gui/dashboard/figure_panel.h"
-#include "gui/dashboard/moment_cycle.h"
 #include "gui/dashboard/pair_page.h"
 #include "gui/dashboard/settings.h"
 #include "gui/dashboard/study_page.h"

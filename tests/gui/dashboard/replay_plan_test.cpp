@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "gui/attempt/replay_plan.h"
+#include "gui/attempt/replay_player.h"
 
 #include <gtest/gtest.h>
 

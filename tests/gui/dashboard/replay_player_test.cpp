@@ -8,8 +8,7 @@
 #include <random>
 #include <vector>
 
-#include "gui/attempt/attempt_track.h"
-#include "gui/attempt/open_recording.h"
+#include "gui/attempt/attempt_recording.h"
 #include "recorder/base/errors.h"
 #include "recorder/replay.h"
 #include "tests/gui/dashboard/support/recorded.h"

@@ -3,9 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <iostream>
 #include <random>
 
+#include "analytics/report/study_tables.h"
 #include "analytics/statistics/two_groups.h"
 
 namespace calot::gui {
@@ -65,16 +67,17 @@ TEST(StudyView, ARowsValuesAreItsBoxes) {
   row.unit = "mm";
   row.participants = {std::vector<std::string>{"a", "b", "c", "d", "e"}, {}};
   row.values = {std::vector<double>{5, 1, 4, 2, 3}, {}};
-  const Comparison comparison = comparisonOf(row, study);
-  ASSERT_EQ(comparison.group.size(), 1U) << "a group without values has no box";
-  const ComparisonGroup& group = comparison.group[0];
-  EXPECT_EQ(group.name, "expert");
-  EXPECT_EQ(comparison.unit, "mm");
-  EXPECT_EQ(group.point.front().attempt, "b");
-  EXPECT_DOUBLE_EQ(group.lowerQuartile, 2.0);
-  EXPECT_DOUBLE_EQ(group.median, 3.0);
-  EXPECT_DOUBLE_EQ(group.upperQuartile, 4.0);
-  EXPECT_FALSE(comparison.synthetic);
+  const std::optional<analytics::Drawing> plot = analytics::boxPlotOf(study, row);
+  ASSERT_TRUE(plot);
+  ASSERT_EQ(plot->marks.size(), 5U) << "a group without values has no box";
+  EXPECT_EQ(plot->marks.front().key, "b") << "the smallest";
+  EXPECT_EQ(plot->marks.front().text, "expert: 1 mm\nb");
+  const auto count = [&](analytics::Ink ink) {
+    return std::count_if(plot->shapes.begin(), plot->shapes.end(), [&](const auto& shape) { return shape.ink == ink; });
+  };
+  EXPECT_EQ(count(analytics::Ink::firstBox), 1);
+  EXPECT_EQ(count(analytics::Ink::secondBox), 0);
+  EXPECT_EQ(count(analytics::Ink::watermark), 0);
 }
 
 TEST(StudyView, ARefusalIsOneLine) {

@@ -7,7 +7,7 @@
 #include <QImage>
 #include <QTest>
 
-#include "gui/dashboard/palette.h"
+#include "gui/dashboard/timeline_bar.h"
 #include "tests/gui/dashboard/support/recorded.h"
 
 namespace calot::gui {

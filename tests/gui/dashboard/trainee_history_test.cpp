@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "analytics/checkpoints/registry.h"
-#include "gui/dashboard/moment_cycle.h"
-#include "gui/dashboard/pair_alignment.h"
+#include "gui/dashboard/figure_panel.h"
+#include "gui/dashboard/pair_side.h"
 
 namespace calot::gui {
 namespace {

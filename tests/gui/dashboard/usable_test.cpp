@@ -33,7 +33,6 @@
 #include "gui/dashboard/keys_dialog.h"
 #include "gui/dashboard/norm_dialog.h"
 #include "gui/dashboard/settings.h"
-#include "gui/dashboard/settings_dialog.h"
 #include "tests/gui/dashboard/support/cohort.h"
 #include "tests/gui/dashboard/support/recorded.h"
 

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "gui/render/fibre_texture.h"
+#include "gui/render/procedural_textures.h"
 #include "gui/render/renderer.h"
 #include "gui/render/sheet_list.h"
 #include "recorder/base/errors.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The ligament behind the vessels hides none of them.
-#include "gui/render/ligament_mesh.h"
+#include "gui/render/surroundings.h"
 
 #include <gtest/gtest.h>
 

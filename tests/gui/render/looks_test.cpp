@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Looks that come for the first time: noted, made beforehand without a trace in the picture, and by two contexts at
 // once.
-#include "gui/render/looks.h"
+#include "gui/render/scene_resources.h"
 
 #include <gtest/gtest.h>
 

@@ -14,7 +14,6 @@
 #include <sstream>
 #include <string>
 
-#include "gui/render/picture.h"
 #include "gui/render/png_file.h"
 #include "recorder/base/errors.h"
 #include "sim/instruments/instruments.h"

@@ -7,7 +7,6 @@
 #include <array>
 #include <cmath>
 
-#include "gui/render/clip_mesh.h"
 #include "gui/render/instrument_mesh.h"
 #include "recorder/sources/scope/picture_geometry.h"
 #include "sim/instruments/instruments.h"

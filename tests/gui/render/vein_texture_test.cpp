@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Veins that branch, on a texture that repeats.
-#include "gui/render/vein_texture.h"
+#include "gui/render/procedural_textures.h"
 
 #include <gtest/gtest.h>
 

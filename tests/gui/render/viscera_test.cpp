@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Omentum and bowel hide nothing that is operated on.
-#include "gui/render/viscera_mesh.h"
+#include "gui/render/surroundings.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <vector>
 
-#include "gui/render/surroundings.h"
 #include "tests/gui/render/support/shapes.h"
 
 namespace calot::gui {

@@ -7,7 +7,7 @@
 #include <QLocale>
 
 #include "analytics/checkpoints/registry.h"
-#include "gui/trainer/training_history.h"
+#include "gui/trainer/scenes_page.h"
 #include "tests/recorder/support/small_scene.h"
 
 namespace calot::gui {

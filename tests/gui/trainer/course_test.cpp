@@ -5,7 +5,6 @@
 
 #include <fstream>
 
-#include "gui/trainer/scene_choice.h"
 #include "recorder/base/errors.h"
 #include "tests/analytics/assessment/support/schema_agreement.h"
 #include "tests/recorder/support/small_scene.h"

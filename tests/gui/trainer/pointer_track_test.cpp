@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "gui/trainer/pointer_track.h"
+#include "gui/trainer/operation_view.h"
 
 #include <gtest/gtest.h>
 

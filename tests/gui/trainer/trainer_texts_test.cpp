@@ -7,7 +7,6 @@
 #include <QLocale>
 #include <set>
 
-#include "gui/trainer/hints.h"
 #include "gui/trainer/key_bindings.h"
 #include "sim/instruments/instruments.h"
 

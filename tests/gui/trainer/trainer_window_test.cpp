@@ -14,8 +14,8 @@
 #include <QTest>
 
 #include "analytics/cohort/cohort_database.h"
+#include "gui/trainer/attempt_input.h"
 #include "gui/trainer/end_page.h"
-#include "gui/trainer/mouse_attempt_input.h"
 #include "gui/trainer/operation_view.h"
 #include "gui/trainer/run_panel.h"
 #include "recorder/base/errors.h"

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "apps/window/window_start.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <QStringList>
+
+#include "gui/attempt/theme.h"
+#include "gui/render/graphics.h"
+#include "gui/view/scene_picture_widget.h"
+#include "recorder/base/errors.h"
+#include "recorder/base/text_words.h"
+
+namespace calot::apps {
+
+void addLook(CLI::App& options, LookOptions& look, const std::string& usual) {
+  options.add_option("--colours", look.colours, "light, dark, or system; default: " + usual)
+      ->check(CLI::IsMember({"system", "light", "dark"}));
+  options.add_option("--type", look.type, "Size of letters in per cent of the system's; default: " + usual)
+      ->check(CLI::Range(gui::theme::usualType, gui::theme::largestType));
+  options.add_option("--size", look.size, "WIDTHxHEIGHT of the window in pixels; default: most of the screen");
+}
+
+QSize windowSize(const LookOptions& look) {
+  if (look.size.empty()) return {};
+  constexpr int least = 640, most = 8192;
+  const QStringList parts = QString::fromStdString(look.size).split('x');
+  bool known[2] = {false, false};
+  const QSize size(parts[0].toInt(&known[0]), parts.size() == 2 ? parts[1].toInt(&known[1]) : 0);
+  if (!known[0] || !known[1] || std::min(size.width(), size.height()) < least || size.width() > most ||
+      size.height() > most)
+    throw Error(ErrorKind::invalid,
+                "--size " + recorder::shown(look.size) + ": WIDTHxHEIGHT is wanted, of 640 to 8192 pixels");
+  return size;
+}
+
+namespace {
+
+std::string variable(const char* name) {
+  const char* const value = std::getenv(name);
+  return value != nullptr ? value : "";
+}
+
+}  // namespace
+
+void requireFolder(const std::string& folder, const std::string& what) {
+  std::error_code ignored;
+  if (!std::filesystem::is_directory(folder, ignored))
+    throw Error(ErrorKind::invalid, Where{folder}, fmt::format("is no folder; {} go into one that exists", what));
+  // Rights alone do not tell: a file system may take no files, or be for reading only.
+  std::string trial = folder + "/.calot-XXXXXX";
+  const int file = ::mkstemp(trial.data());
+  if (file < 0)
+    throw Error(ErrorKind::failure, Where{folder},
+                fmt::format("{} cannot be written there: {}", what, std::strerror(errno)));
+  ::close(file);
+  ::unlink(trial.c_str());
+}
+
+void requireScreen() {
+  const std::string platform = variable("QT_QPA_PLATFORM");
+  const bool onScreen = platform.empty() || platform.starts_with("xcb") || platform.starts_with("wayland");
+  if (onScreen && variable("DISPLAY").empty() && variable("WAYLAND_DISPLAY").empty())
+    throw Error(ErrorKind::failure,
+                "there is no screen to show a window on (DISPLAY is not set); xvfb-run gives a virtual one");
+}
+
+void addGraphics(CLI::App& app, std::string& word) {
+  app.add_option("--graphics", word,
+                 "what draws: auto (a graphics card where there is one), card, software, egl-software (to try a card's "
+                 "way without one)")
+      ->check(CLI::IsMember(gui::graphicsWords()))
+      ->default_str("auto");
+}
+
+void useGraphics(const std::string& word) {
+  const gui::Graphics graphics = gui::graphicsFrom(word);
+  if (graphics != gui::Graphics::automatic) static_cast<void>(gui::createContext(graphics));
+  gui::ScenePictureWidget::drawBy(graphics);
+}
+
+std::string positiveSeconds(const std::string& text) {
+  char* end = nullptr;
+  const double seconds = std::strtod(text.c_str(), &end);
+  const bool whole = end != text.c_str() && *end == '\0';
+  return whole && std::isfinite(seconds) && seconds > 0.0 ? std::string()
+                                                          : fmt::format("'{}' is no number of seconds above 0", text);
+}
+
+}  // namespace calot::apps

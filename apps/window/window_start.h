@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How a window looks: light or dark, how large its letters are, and how large it is.
+// What a program with a window checks before it has one, so that it can say so in one line.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <QSize>
+#include <string>
+
+namespace calot::apps {
+
+struct LookOptions {
+  std::string colours;  ///< "light", "dark", "system"; empty: not given
+  std::string size;     ///< "1366x768"; empty: not given
+  int type = 0;         ///< per cent; 0: not given
+};
+
+/// Adds --colours, --type and --size. @param usual what holds where one of the first two is not given
+void addLook(CLI::App& options, LookOptions& look, const std::string& usual);
+
+/// The size that was asked for; none: null. @throws calot::Error (invalid)
+QSize windowSize(const LookOptions& look);
+
+/// @param what is written there: "recordings"
+/// @throws Error (invalid) where there is no such folder, (failure) where nothing can be written in it
+void requireFolder(const std::string& folder, const std::string& what);
+
+/// Qt itself ends the program with several lines where it finds no screen.
+/// @throws Error (failure) where the environment names none
+void requireScreen();
+
+/// Adds --graphics: what draws the pictures of the scene.
+void addGraphics(CLI::App& app, std::string& word);
+/// The windows' pictures are drawn so. @throws Error (failure) where this machine has no such graphics
+void useGraphics(const std::string& word);
+
+/// For CLI::Option::check: a number of seconds above 0. The parser alone takes "nan" and "inf".
+/// @return empty, or the fault
+std::string positiveSeconds(const std::string& text);
+
+}  // namespace calot::apps

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <QObject>
+#include <QWidget>
+
+#include "gui/attempt/background.h"
+#include "gui/attempt/replay_player.h"
+
+namespace calot::gui {
+
+/// A ReplayPlayer for the interface's thread: what it says arrives there as signals, the newest only.
+class Replay : public QObject {
+  Q_OBJECT
+ public:
+  using Sink = std::function<void(std::shared_ptr<const SceneView>)>;
+
+  /// @param sink takes the pictures to be; called on the player's thread
+  explicit Replay(Sink sink, QObject* parent = nullptr);
+  ~Replay() override;
+
+  /// Ends what was open, without waiting for it, and opens another recording. opened() or failed() follows.
+  void open(const std::filesystem::path& file, const std::string& attempt);
+  void close();
+  [[nodiscard]] bool isOpen() const { return open_; }
+  /// @pre isOpen()
+  [[nodiscard]] const PlayerPosition& position() const { return position_; }
+
+  // Without a recording these do nothing.
+  void seek(double time);
+  void stepBy(int steps);
+  void togglePlaying();
+  void play();
+  void playFrom(double time);
+  void pause();
+  void setSpeed(double speed);
+
+ signals:
+  void opened();
+  void positionChanged();
+  void failed(const QString& reason);
+
+ private:
+  using Back = std::shared_ptr<Link<Replay>>;
+  void hear(const Back& back, std::shared_ptr<const SceneView> view, const PlayerPosition& position);
+  void take(const Back& back);
+
+  Sink sink_;
+  bool open_ = false;
+  double speed_ = 1.0;
+  PlayerPosition position_;
+  std::mutex mutex_;
+  std::optional<PlayerPosition> newest_;  ///< told and not yet taken
+  Back back_;                             ///< of the present player
+  std::unique_ptr<ReplayPlayer> player_;
+};
+
+}  // namespace calot::gui
+
+class QComboBox;
+class QLabel;
+class QSlider;
+class QToolButton;
+
+namespace calot::gui {
+
+/// Buttons of a replay: play and pause, single steps, scrub, speed, and where it stands.
+class TransportBar : public QWidget {
+  Q_OBJECT
+ public:
+  /// @param replay outlives the bar
+  explicit TransportBar(Replay& replay, QWidget* parent = nullptr);
+
+ private:
+  void show(const PlayerPosition& position);
+  void setReady(bool ready);
+
+  Replay& replay_;
+  QToolButton* play_;
+  QToolButton* back_;
+  QToolButton* forward_;
+  QSlider* scrub_;
+  QComboBox* speed_;
+  QLabel* time_;
+};
+
+}  // namespace calot::gui

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <initializer_list>
+#include <string>
+#include <vector>
+
+#include "gui/render/gl_functions.h"
+
+namespace calot::gui {
+
+/// A framebuffer with colour textures and an optional depth texture; all sampled with clamping to the edge.
+class RenderTarget {
+ public:
+  struct Layout {
+    std::vector<GLenum> colour;  ///< internal formats of the attachments, in order
+    bool depth = false;          ///< 32-bit float depth texture
+    bool linear = false;         ///< filter colours linearly
+    bool compared = false;       ///< a look into the depth compares (sampler2DShadow), over the four nearest texels
+    const RenderTarget* depthOf = nullptr;  ///< shares the depth of another of the same size, which outlives this
+  };
+  /// @throws calot::Error (failure) if there is no memory for it.
+  RenderTarget(const GlFunctions& gl, int width, int height, const Layout& layout);
+  ~RenderTarget();
+  RenderTarget(const RenderTarget&) = delete;
+  RenderTarget& operator=(const RenderTarget&) = delete;
+
+  [[nodiscard]] int width() const { return width_; }
+  [[nodiscard]] int height() const { return height_; }
+  /// Binds for drawing and sets the viewport.
+  void bind() const;
+  void sampleColour(int unit, std::size_t attachment = 0) const { sample(unit, textures_[attachment]); }
+  /// @pre the layout has depth
+  void sampleDepth(int unit) const { sample(unit, textures_.back()); }
+
+ private:
+  void sample(int unit, GLuint texture) const;
+  const GlFunctions& gl_;
+  int width_, height_;
+  GLuint framebuffer_ = 0;
+  std::vector<GLuint> textures_;  ///< colours, then the depth, if it is its own
+};
+
+/// Vertices of one kind and triangles of them, on the graphics side. Kept from picture to picture.
+class TriangleBuffer {
+ public:
+  /// A vertex shader's input: its location is its place in the list.
+  struct Attribute {
+    GLint floats;
+    std::size_t offset;  ///< in a vertex (bytes)
+  };
+  /// @param stride size of a vertex (bytes)
+  /// @pre the context of `gl` is current, here and in every call; `gl` outlives this
+  TriangleBuffer(const GlFunctions& gl, std::size_t stride, std::initializer_list<Attribute> attributes);
+  ~TriangleBuffer();
+  TriangleBuffer(const TriangleBuffer&) = delete;
+  TriangleBuffer& operator=(const TriangleBuffer&) = delete;
+
+  /// @param list has `vertex` and `index`
+  template <class List>
+  void upload(const List& list) const {
+    upload(list.vertex.data(), list.vertex.size() * sizeof(list.vertex[0]), list.index);
+  }
+  /// Triangles by their indices, with the program, target and settings of the moment.
+  void draw(std::size_t firstIndex, std::size_t indexCount) const;
+
+ private:
+  void upload(const void* vertices, std::size_t bytes, const std::vector<std::uint32_t>& index) const;
+
+  const GlFunctions& gl_;
+  GLuint vertexArray_ = 0, vertexBuffer_ = 0, indexBuffer_ = 0;
+};
+
+/// Column-major 4 x 4 matrix as OpenGL takes it.
+using Matrix4 = std::array<float, 16>;
+
+/// A linked pair of vertex and fragment shader.
+class ShaderProgram {
+ public:
+  /// Sources are concatenated in order behind "#version 450 core". @throws calot::Error (failure) with the first line
+  /// of the compiler's log.
+  ShaderProgram(const GlFunctions& gl, const char* name, std::initializer_list<const char*> vertex,
+                std::initializer_list<const char*> fragment);
+  ~ShaderProgram();
+  ShaderProgram(const ShaderProgram&) = delete;
+  ShaderProgram& operator=(const ShaderProgram&) = delete;
+
+  void use() const { gl_.UseProgram(program_); }
+  // Setters act on the program in use; a name that the compiler dropped is ignored, as OpenGL does.
+  void set(const char* name, int value) const { gl_.Uniform1i(location(name), value); }
+  void set(const char* name, float value) const { gl_.Uniform1f(location(name), value); }
+  void set(const char* name, float x, float y) const { gl_.Uniform2f(location(name), x, y); }
+  void set(const char* name, float x, float y, float z) const { gl_.Uniform3f(location(name), x, y, z); }
+  void set(const char* name, const Matrix4& m) const { gl_.UniformMatrix4fv(location(name), 1, GL_FALSE, m.data()); }
+
+ private:
+  [[nodiscard]] GLint location(const char* name) const { return gl_.GetUniformLocation(program_, name); }
+  const GlFunctions& gl_;
+  GLuint program_ = 0;
+};
+
+}  // namespace calot::gui

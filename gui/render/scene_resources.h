@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "gui/render/draw_list.h"
+#include "gui/render/gl_functions.h"
+#include "gui/render/gl_objects.h"
+#include "gui/render/renderer.h"
+
+namespace calot::gui {
+
+/// Looks that a painter has drawn. For the first picture of one a software OpenGL compiles programs, for up to a
+/// second.
+class LooksDrawn {
+ public:
+  /// Notes the looks of a picture. @return is one of them new?
+  bool note(const DrawList& list, const RenderSettings& settings);
+
+ private:
+  std::set<std::pair<Quality, int>> drawn_;
+};
+
+/// Parts in every look that an attempt which begins like this may come to: tissue that is charred or parted, clips,
+/// blood, every instrument. Each is one triangle of the list. @pre the list has a part
+[[nodiscard]] std::vector<DrawPart> looksToCome(const DrawList& list);
+
+/// Pixel spacing at which occlusion is computed in the prepass.
+inline constexpr int occlusionStride(Quality quality) { return quality == Quality::film ? 1 : 2; }
+
+/// All programs of one quality. Those that do not depend on a look are compiled here, the others when
+/// they are first drawn.
+class ScenePrograms {
+ public:
+  /// @pre the context of `gl` is current, here and in every call; `gl` outlives this
+  ScenePrograms(const GlFunctions& gl, Quality quality);
+
+  /// The lit surface in one look.
+  [[nodiscard]] const ShaderProgram& surface(const DrawPart& part);
+
+  const ShaderProgram shadow, prepass, surround, sheet, smoke, occlusion, backdrop, blur, compose;
+
+ private:
+  const GlFunctions& gl_;
+  const char* choices_;
+  std::map<std::pair<int, bool>, std::unique_ptr<ShaderProgram>> surface_;
+
+  ScenePrograms(const GlFunctions& gl, const char* choices);
+};
+
+/// What each texture unit is for.
+enum TextureUnit : int {
+  noiseUnit = 0,
+  occlusionUnit = 1,
+  shadowUnit = 2,
+  depthUnit = 3,
+  fibreUnit = 4,
+  normalUnit = 5,
+  backdropUnit = 6,
+  veinUnit = 7
+};
+
+/// The textures that do not change: the noise volume of both qualities, veins, and the fibres of connective tissue.
+/// Veins stay bound to their unit.
+class SceneTextures {
+ public:
+  /// @pre the context of `gl` is current, here and in every call; `gl` outlives this
+  explicit SceneTextures(const GlFunctions& gl);
+  ~SceneTextures();
+  SceneTextures(const SceneTextures&) = delete;
+  SceneTextures& operator=(const SceneTextures&) = delete;
+
+  void bindNoise(Quality quality) const;
+  /// Makes them at the first call.
+  void bindFibres();
+
+ private:
+  /// A repeating texture with smaller copies for the distance, bound to the active unit.
+  [[nodiscard]] GLuint makeFlat(GLint kept, GLenum format, int columns, int rows,
+                                const std::vector<std::uint8_t>& texels) const;
+
+  const GlFunctions& gl_;
+  GLuint filmNoise_ = 0;         ///< half floats, with smaller copies for the distance
+  GLuint interactiveNoise_ = 0;  ///< bytes
+  GLuint fibres_ = 0;
+  GLuint veins_ = 0;
+};
+
+/// What the passes of a picture of one size and quality draw on.
+struct PictureTargets {
+  /// @throws calot::Error (failure) if there is no memory for them.
+  PictureTargets(const GlFunctions& gl, int width, int height, Quality quality);
+
+  int width, height;
+  Quality quality;
+  RenderTarget shadow;
+  RenderTarget prepass;                    ///< depth and normals; interactive: at half the size
+  RenderTarget open, smoothed;             ///< occlusion: with normals; smoothed
+  RenderTarget radiance;                   ///< film: linear light; interactive: the picture itself, upside down
+  std::unique_ptr<RenderTarget> picture;   ///< film
+  std::unique_ptr<RenderTarget> backdrop;  ///< interactive: the cavity alone, at half the size
+};
+
+}  // namespace calot::gui

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "recorder/engine/session.h"
+#include "recorder/sources/source.h"
+#include "sim/scene/scene_viewer.h"
+
+namespace calot::gui {
+
+/// When the last motion of each of the latest steps was asked for: with it a window says how long after a motion of the
+/// hands the picture of it was there. What lies between device and source is not in it (a calibration measures that).
+class MotionClock {
+ public:
+  using Time = std::chrono::steady_clock::time_point;
+
+  /// One thread, the one that asks for ticks.
+  void asked(std::uint64_t step, Time now);
+  /// Any thread: none where the step is not among the latest.
+  [[nodiscard]] std::optional<Time> of(std::uint64_t step) const;
+
+ private:
+  struct Entry {
+    std::atomic<std::uint64_t> step{~std::uint64_t{0}};
+    std::atomic<Time::rep> ticks{0};
+  };
+  static constexpr std::size_t kept = 256;  ///< steps: 2.56 s
+  std::array<Entry, kept> entries_;
+};
+
+/// A source whose ticks are noted in a MotionClock; else what it wraps.
+class ClockedSource final : public recorder::SampleSource {
+ public:
+  /// @param source, clock outlive this. @param firstStep of the attempt, in which the source's tick 0 lies
+  ClockedSource(recorder::SampleSource& source, MotionClock& clock, std::uint64_t firstStep, std::uint32_t ticksPerStep)
+      : source_(source), clock_(clock), firstStep_(firstStep), ticksPerStep_(ticksPerStep) {}
+
+  [[nodiscard]] const recorder::Provenance& provenance() const override { return source_.provenance(); }
+  bool next(std::uint64_t tick, TickSamples& out) override;
+  recorder::SourceStatus status() override { return source_.status(); }
+  void rest() override { source_.rest(); }
+  [[nodiscard]] recorder::Observer* watcher() override { return source_.watcher(); }
+  [[nodiscard]] recorder::DeviceSource* device() override { return source_.device(); }
+  [[nodiscard]] recorder::ScopeSource* scope() override { return source_.scope(); }
+  [[nodiscard]] recorder::Outcome ending() const override { return source_.ending(); }
+  [[nodiscard]] std::string statusText() const override { return source_.statusText(); }
+
+ private:
+  recorder::SampleSource& source_;
+  MotionClock& clock_;
+  std::uint64_t firstStep_;
+  std::uint32_t ticksPerStep_;
+};
+
+/// How smoothly an operation was seen while it was running: pictures a second, the longest time that one stood, how
+/// large they were drawn, and how long after a motion of the hands it was on the screen. Pauses and what comes after
+/// the end do not count. One thread.
+class PictureRate {
+ public:
+  using Time = std::chrono::steady_clock::time_point;
+
+  /// Whether the operation moves from now on.
+  void setRunning(bool running);
+  /// A picture came on the screen. @param side its share of the size that it is shown in. @param delay since the last
+  /// motion that is in it (s); none where that is not known
+  void shown(Time now, double side = 1.0, std::optional<double> delay = {});
+
+  [[nodiscard]] std::uint64_t pictures() const { return pictures_; }  ///< that followed another one
+  [[nodiscard]] double seconds() const { return seconds_; }           ///< from the first one to the last
+  [[nodiscard]] double longest() const { return longest_; }           ///< between two (s)
+  /// Mean pictures a second; 0 before there were two.
+  [[nodiscard]] double mean() const { return seconds_ > 0.0 ? static_cast<double>(pictures_) / seconds_ : 0.0; }
+
+  /// Mean share of the size that they are shown in; 1 before there were two.
+  [[nodiscard]] double side() const { return pictures_ > 0 ? sides_ / static_cast<double>(pictures_) : 1.0; }
+  /// Of that share of the pictures the delay was at most this (s); none where it was never known.
+  [[nodiscard]] std::optional<double> delay(double share) const;
+
+  /// "25.3 pictures a second of 1280x720 in 25.0 s, ...": one line for a terminal.
+  [[nodiscard]] std::string report(int width, int height, const std::string& drawnBy) const;
+
+ private:
+  bool running_ = false;
+  std::optional<Time> last_;
+  std::uint64_t pictures_ = 0;
+  double seconds_ = 0.0, longest_ = 0.0, sides_ = 0.0;
+  std::vector<float> delays_;
+};
+
+/// Hands out views of a running attempt, as many as are looked at: at most one in 30 ms, and none while three are
+/// still to be shown, since each costs the simulation's thread the surfaces of the scene.
+class ViewTap final : public recorder::Observer {
+ public:
+  using Sink = std::function<void(std::shared_ptr<const SceneView>)>;
+
+  /// @param sink called on the simulation's thread; must not wait
+  explicit ViewTap(Sink sink) : sink_(std::move(sink)) {}
+
+  void onStep(const recorder::StepRecord& record) override;
+  void onEnd(recorder::Outcome /*outcome*/) override {}
+
+  /// Views are of this session from here on; hands out one at once. Then it is to be joined to it.
+  /// @param session outlives its last step
+  void follow(const recorder::Session& session);
+  /// Any thread: a view has been shown.
+  void shown() { underway_ = 0; }
+  /// Has the newest one that was handed out been shown, or one after it?
+  [[nodiscard]] bool isShown() const { return underway_ == 0; }
+  [[nodiscard]] std::uint64_t taken() const { return taken_; }  ///< views handed out
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  void give();
+
+  Sink sink_;
+  const recorder::Session* session_ = nullptr;
+  std::unique_ptr<SceneViewer> viewer_;
+  Clock::time_point next_{};  ///< when the next one is due
+  Clock::time_point last_{};
+  std::atomic<int> underway_{0};  ///< handed out since the last one was shown
+  std::atomic<std::uint64_t> taken_{0};
+};
+
+}  // namespace calot::gui
