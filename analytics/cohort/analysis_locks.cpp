@@ -7,6 +7,7 @@
 #include <chrono>
 
 #include "analytics/cohort/connection.h"
+#include "analytics/cohort/row_statements.h"
 #include "analytics/cohort/tables.h"
 
 namespace calot::analytics {
@@ -26,14 +27,8 @@ std::optional<bool> findMask(SQLite::Database& db, const std::string& protocol) 
 }
 
 std::optional<AnalysisLock> findLock(SQLite::Database& db, const std::string& protocol) {
-  SQLite::Statement find(db,
-                         "SELECT protocol_sha256, protocol, options, values_sha256, software, locked_utc, locked_by "
-                         "FROM analysis_lock WHERE protocol_sha256 = ?");
-  find.bind(1, protocol);
-  if (!find.executeStep()) return std::nullopt;
-  return AnalysisLock{text(find.getColumn(0)), text(find.getColumn(1)), text(find.getColumn(2)),
-                      text(find.getColumn(3)), text(find.getColumn(4)), text(find.getColumn(5)),
-                      text(find.getColumn(6))};
+  const auto locks = selectRows(db, analysisLockTable(), "WHERE protocol_sha256 = ?", protocol);
+  return locks.empty() ? std::nullopt : std::optional(locks.front());
 }
 
 }  // namespace
@@ -77,10 +72,7 @@ AnalysisLock storeAnalysisLock(const std::string& path, const AnalysisLock& lock
     if (const std::optional<AnalysisLock> known = findLock(*db, lock.protocolSha256)) return *known;
     AnalysisLock fresh = lock;
     fresh.lockedUtc = nowUtc();
-    SQLite::Statement put(*db, "INSERT INTO analysis_lock VALUES (?, ?, ?, ?, ?, ?, ?)");
-    SQLite::bind(put, fresh.protocolSha256, fresh.protocol, fresh.options, fresh.valuesSha256, fresh.software,
-                 fresh.lockedUtc, fresh.by);
-    put.exec();
+    InsertOf(*db, analysisLockTable())(fresh);
     audit(*db, "analysis-lock", fresh.protocol, fmt::format("values {} (by {})", fresh.valuesSha256, fresh.by));
     transaction.commit();
     added = true;

@@ -3,7 +3,10 @@
 #pragma once
 
 #include <SQLiteCpp/SQLiteCpp.h>
+#include <array>
+#include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <map>
 #include <string>
 #include <variant>
@@ -48,6 +51,13 @@ std::string shownCell(const Cell& cell);  ///< for a message: texts in quotation
 std::string textOf(const Cell& cell);     ///< of anything but a text: empty
 std::int64_t numberOf(const Cell& cell);  ///< of anything but a whole number: 0
 std::string hexOf(const Blob& bytes);
+/// Bytes as a cell.
+template <std::size_t N>
+Blob blobOf(const std::array<std::byte, N>& bytes) {
+  Blob blob(N);
+  std::memcpy(blob.data(), bytes.data(), N);
+  return blob;
+}
 std::string joined(const std::vector<std::string>& parts, const char* between);
 
 /// Every row of a table, in its primary key's order.

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "analytics/cohort/row_statements.h"
 #include "analytics/cohort/tables.h"
 #include "recorder/base/text_words.h"
 
@@ -25,21 +26,8 @@ std::int64_t formId(SQLite::Database& db, const std::string& path, const StoredD
     }
     return find.getColumn(0).getInt64();
   }
-  SQLite::Statement put(db, "INSERT INTO form (name, version, sha256, text) VALUES (?, ?, ?, ?)");
-  SQLite::bind(put, form.name, form.version, form.sha256, form.text);
-  put.exec();
+  InsertOf(db, formTable())(form);
   return db.getLastInsertRowid();
-}
-
-RegisteredProtocol protocolRow(SQLite::Statement& row) {
-  RegisteredProtocol p;
-  p.name = text(row.getColumn(0));
-  p.version = row.getColumn(1).getUInt();
-  p.sha256 = text(row.getColumn(2));
-  p.text = text(row.getColumn(3));
-  p.registeredUtc = text(row.getColumn(4));
-  p.by = text(row.getColumn(5));
-  return p;
 }
 
 }  // namespace
@@ -72,11 +60,7 @@ RegisteredProtocol AssessmentDatabase::registerProtocol(const StoredDocument& pr
       }
     }
     RegisteredProtocol fresh{protocol, nowUtc(), by};
-    SQLite::Statement put(db,
-                          "INSERT INTO protocol (name, version, sha256, text, registered_utc, registered_by) VALUES "
-                          "(?, ?, ?, ?, ?, ?)");
-    SQLite::bind(put, fresh.name, fresh.version, fresh.sha256, fresh.text, fresh.registeredUtc, fresh.by);
-    put.exec();
+    InsertOf(db, protocolTable())(fresh);
     audit(db, "protocol-register", fmt::format("{} {}", fresh.name, fresh.version),
           fmt::format("{} (by {})", fresh.sha256, by));
     transaction.commit();
@@ -87,13 +71,7 @@ RegisteredProtocol AssessmentDatabase::registerProtocol(const StoredDocument& pr
 
 std::vector<RegisteredProtocol> AssessmentDatabase::protocols(const std::string& name) const {
   return guarded(storage_->path, [&] {
-    SQLite::Statement select(*storage_->db,
-                             "SELECT name, version, sha256, text, registered_utc, registered_by FROM protocol WHERE "
-                             "name = ?1 OR ?1 = '' ORDER BY name, version");
-    select.bind(1, name);
-    std::vector<RegisteredProtocol> rows;
-    while (select.executeStep()) rows.push_back(protocolRow(select));
-    return rows;
+    return selectRows(*storage_->db, protocolTable(), "WHERE name = ?1 OR ?1 = '' ORDER BY name, version", name);
   });
 }
 
@@ -184,15 +162,7 @@ std::vector<Rating> AssessmentDatabase::ratings() const {
 }
 
 std::vector<StoredDocument> AssessmentDatabase::forms() const {
-  return guarded(storage_->path, [&] {
-    SQLite::Statement select(*storage_->db, "SELECT name, version, sha256, text FROM form ORDER BY name, version");
-    std::vector<StoredDocument> forms;
-    while (select.executeStep()) {
-      forms.push_back({text(select.getColumn(0)), select.getColumn(1).getUInt(), text(select.getColumn(2)),
-                       text(select.getColumn(3))});
-    }
-    return forms;
-  });
+  return guarded(storage_->path, [&] { return selectRows(*storage_->db, formTable(), "ORDER BY name, version"); });
 }
 
 }  // namespace calot::analytics

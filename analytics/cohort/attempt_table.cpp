@@ -9,80 +9,45 @@
 #include <map>
 #include <utility>
 
+#include "analytics/cohort/row_statements.h"
 #include "analytics/cohort/tables.h"
 
 namespace calot::analytics::tables {
 namespace {
 
-constexpr const char* attemptColumns =
-    "SELECT a.uuid, a.parent_uuid, coalesce(p.pseudonym, ''), a.scene, a.scene_major, a.scene_minor, a.operator_kind, "
-    "a.profile, a.profile_version, a.mode, a.purpose, a.outcome, a.start_utc, a.seed, a.device, a.calibration, "
-    "a.simulation_version, a.comparability_key, a.synthetic, r.file_name, r.complete, r.steps, r.step_seconds, "
-    "r.chain_head, "
-    "v.verdict, v.detail, v.software, v.verified_utc, coalesce(p.study_group, ''), coalesce(p.arm, ''), "
-    "coalesce(p.site, ''), "
-    "a.imported_utc, a.station, s.public_key, s.signature, w.participant, e.reason, e.excluded_by "
-    "FROM attempt a JOIN recording r ON r.attempt = a.id "
-    "LEFT JOIN verification v ON v.attempt = a.id LEFT JOIN participant p ON p.id = a.participant "
-    "LEFT JOIN exclusion e ON e.attempt = a.id LEFT JOIN recording_signature s ON s.attempt = a.id "
-    "LEFT JOIN research_withdrawal w ON w.participant = a.participant ";
-
-template <std::size_t N>
-void copyBlob(const SQLite::Column& column, std::array<std::byte, N>& to) {
-  std::memcpy(to.data(), column.getBlob(), std::min<std::size_t>(N, static_cast<std::size_t>(column.getBytes())));
+/// What a row of attempt as a has in the tables beside it.
+std::string selectAttempts(const std::string& clause) {
+  return fmt::format(
+      "SELECT {}, {}, coalesce(p.pseudonym, ''), coalesce(p.study_group, ''), coalesce(p.arm, ''), coalesce(p.site, "
+      "''), "
+      "a.imported_utc, v.verified_utc, w.participant, e.reason, e.excluded_by, v.attempt, s.attempt, {}, {} "
+      "FROM attempt a JOIN recording r ON r.attempt = a.id "
+      "LEFT JOIN verification v ON v.attempt = a.id LEFT JOIN participant p ON p.id = a.participant "
+      "LEFT JOIN exclusion e ON e.attempt = a.id LEFT JOIN recording_signature s ON s.attempt = a.id "
+      "LEFT JOIN research_withdrawal w ON w.participant = a.participant {}",
+      memberColumns(attemptTable(), "a"), memberColumns(recordingTable(), "r"), memberColumns(verificationTable(), "v"),
+      memberColumns(signatureTable(), "s"), clause);
 }
 
 AttemptRow attemptRow(SQLite::Statement& row) {
   AttemptRow a;
   int c = 0;
-  a.uuid = text(row.getColumn(c++));
-  a.parent = text(row.getColumn(c++));
-  a.participant = text(row.getColumn(c++));
-  a.scene = text(row.getColumn(c++));
-  a.sceneMajor = row.getColumn(c++).getUInt();
-  a.sceneMinor = row.getColumn(c++).getUInt();
-  a.operatorKind = enumeration<recorder::OperatorKind>(row.getColumn(c++));
-  a.profile = text(row.getColumn(c++));
-  a.profileVersion = text(row.getColumn(c++));
-  a.mode = enumeration<recorder::Mode>(row.getColumn(c++));
-  a.purpose = text(row.getColumn(c++));
-  a.outcome = enumeration<recorder::Outcome>(row.getColumn(c++));
-  a.startUtc = text(row.getColumn(c++));
-  a.seed = std::strtoull(text(row.getColumn(c++)).c_str(), nullptr, 10);
-  a.device = text(row.getColumn(c++));
-  a.calibration = text(row.getColumn(c++));
-  a.simulationVersion = row.getColumn(c++).getUInt();
-  a.comparabilityKey = text(row.getColumn(c++));
-  a.synthetic = row.getColumn(c++).getInt() != 0;
-  a.fileName = text(row.getColumn(c++));
-  a.complete = row.getColumn(c++).getInt() != 0;
-  a.steps = static_cast<std::uint64_t>(row.getColumn(c++).getInt64());
-  a.stepSeconds = row.getColumn(c++).getDouble();
-  copyBlob(row.getColumn(c++), a.chainHead);
-  const SQLite::Column verdict = row.getColumn(c++);
-  a.verification.verdict = verdict.isNull() ? Verdict::notChecked : enumeration<Verdict>(verdict);
-  a.verification.text = text(row.getColumn(c++));
-  a.verification.software = text(row.getColumn(c++));
-  a.verifiedUtc = text(row.getColumn(c++));
-  a.group = text(row.getColumn(c++));
-  a.arm = text(row.getColumn(c++));
-  a.site = text(row.getColumn(c++));
-  a.importedUtc = text(row.getColumn(c++));
-  a.station = text(row.getColumn(c++));
-  if (!row.getColumn(c).isNull()) {
-    a.signature.emplace();
-    copyBlob(row.getColumn(c), a.signature->publicKey);
-    copyBlob(row.getColumn(c + 1), a.signature->value);
-  }
-  c += 2;
+  readMembers<AttemptRecord>(attemptTable(), row, c, a);
+  readMembers<AttemptRecord>(recordingTable(), row, c, a);
+  for (std::string* joinedText : {&a.participant, &a.group, &a.arm, &a.site, &a.importedUtc, &a.verifiedUtc})
+    *joinedText = text(row.getColumn(c++));
   a.withdrawn = !row.getColumn(c++).isNull();
-  const SQLite::Column reason = row.getColumn(c++);
+  const SQLite::Column reason = row.getColumn(c++), by = row.getColumn(c++);
   a.excluded = a.withdrawn || !reason.isNull();
   if (a.withdrawn) {
     a.exclusionReason = "withdrawn from research";
   } else if (a.excluded) {
-    a.exclusionReason = fmt::format("{} ({})", text(reason), text(row.getColumn(c)));
+    a.exclusionReason = fmt::format("{} ({})", text(reason), text(by));
   }
+  const bool verified = !row.getColumn(c++).isNull(), isSigned = !row.getColumn(c++).isNull();
+  readMembers(verificationTable(), row, c, a.verification);
+  if (!verified) a.verification.verdict = Verdict::notChecked;
+  if (isSigned) readMembers(signatureTable(), row, c, a.signature.emplace());
   return a;
 }
 
@@ -95,7 +60,7 @@ std::int64_t attemptId(SQLite::Database& db, const std::string& uuid) {
 }
 
 std::optional<AttemptRow> findAttempt(SQLite::Database& db, const std::string& uuid) {
-  SQLite::Statement select(db, std::string(attemptColumns) + "WHERE a.uuid = ?");
+  SQLite::Statement select(db, selectAttempts("WHERE a.uuid = ?"));
   select.bind(1, uuid);
   if (!select.executeStep()) return std::nullopt;
   AttemptRow row = attemptRow(select);
@@ -106,7 +71,7 @@ std::optional<AttemptRow> findAttempt(SQLite::Database& db, const std::string& u
 }
 
 std::vector<AttemptRow> readAttempts(SQLite::Database& db) {
-  SQLite::Statement select(db, std::string(attemptColumns) + "ORDER BY a.start_utc, a.uuid");
+  SQLite::Statement select(db, selectAttempts("ORDER BY a.start_utc, a.uuid"));
   std::vector<AttemptRow> rows;
   while (select.executeStep()) rows.push_back(attemptRow(select));
   // Few have any: looking for them beside each attempt would cost more.

@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include "analytics/cohort/connection.h"
+#include "analytics/cohort/embedded.h"
+#include "analytics/cohort/row_statements.h"
 
 namespace calot::analytics {
 
@@ -19,6 +21,8 @@ CohortCheck checkCohort(const std::string& path) {
       if (line != "ok") result.faults.push_back(printable(line));
     }
     if (!result.faults.empty()) return result;  // what else would be said of it means nothing
+    if (static_cast<std::size_t>(result.schema) == cohortMigrations().size()) result.faults = tables::schemaFaults(db);
+
     SQLite::Statement foreign(db, "SELECT \"table\", \"parent\", count(*) FROM pragma_foreign_key_check GROUP BY 1, 2");
     while (foreign.executeStep()) {
       result.faults.push_back(fmt::format("{} rows of {} refer to no row of {}", foreign.getColumn(2).getInt64(),

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <utility>
 
+#include "analytics/cohort/row_statements.h"
 #include "analytics/cohort/tables.h"
 #include "recorder/words.h"
 
@@ -104,15 +105,12 @@ std::vector<Participant> CohortDatabase::participants() const {
     SQLite::Database& db = *storage_->db;
     std::vector<Participant> result;
     std::map<std::int64_t, std::size_t> index;
-    SQLite::Statement select(db, "SELECT id, pseudonym, study_group, arm, site FROM participant ORDER BY pseudonym");
+    SQLite::Statement select(
+        db, fmt::format("SELECT id, {} FROM participant ORDER BY pseudonym", memberColumns(participantTable())));
     while (select.executeStep()) {
       index[select.getColumn(0).getInt64()] = result.size();
-      result.push_back({text(select.getColumn(1)),
-                        text(select.getColumn(2)),
-                        text(select.getColumn(3)),
-                        text(select.getColumn(4)),
-                        {},
-                        {}});
+      int c = 1;
+      readMembers(participantTable(), select, c, result.emplace_back());
     }
     SQLite::Statement experience(db, "SELECT participant, criterion, value FROM participant_experience");
     while (experience.executeStep()) {

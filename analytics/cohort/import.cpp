@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "analytics/cohort/connection.h"
+#include "analytics/cohort/row_statements.h"
 #include "analytics/cohort/tables.h"
 
 namespace calot::analytics::tables {
@@ -51,41 +52,21 @@ std::string contradiction(const AttemptRecord& known, const AttemptRecord& incom
 }
 
 void writeRecording(SQLite::Database& db, std::int64_t id, const AttemptRecord& a) {
-  SQLite::Statement put(
-      db,
-      "INSERT INTO recording VALUES (?, ?, ?, ?, ?, ?) ON CONFLICT DO UPDATE SET file_name = excluded.file_name, "
-      "chain_head = excluded.chain_head, steps = excluded.steps, complete = excluded.complete");
-  put.bind(1, id);
-  put.bind(2, a.fileName);
-  put.bind(3, a.chainHead.data(), static_cast<int>(a.chainHead.size()));
-  put.bind(4, static_cast<std::int64_t>(a.steps));
-  put.bind(5, a.stepSeconds);
-  put.bind(6, a.complete ? 1 : 0);
-  put.exec();
+  InsertOf put(db, recordingTable(), {"attempt"}, orUpdateAllBut(recordingTable(), {"attempt", "step_seconds"}));
+  put(a, {id});
   SQLite::Statement outcome(db, "UPDATE attempt SET outcome = ? WHERE id = ?");
   SQLite::bind(outcome, number(a.outcome), id);
   outcome.exec();
 }
 
 void writeVerification(SQLite::Database& db, std::int64_t id, const Verification& v) {
-  SQLite::Statement put(
-      db,
-      "INSERT INTO verification VALUES (?, ?, ?, ?, ?) ON CONFLICT DO UPDATE SET verdict = excluded.verdict, "
-      "detail = excluded.detail, software = excluded.software, verified_utc = excluded.verified_utc");
-  SQLite::bind(put, id, number(v.verdict), v.text, v.software, nowUtc());
-  put.exec();
+  InsertOf put(db, verificationTable(), {"attempt", "verified_utc"}, orUpdateAllBut(verificationTable(), {"attempt"}));
+  put(v, {id, nowUtc()});
 }
 
 void writeSignature(SQLite::Database& db, std::int64_t id, const AttemptRecord& a) {
-  SQLite::Statement put(
-      db,
-      "INSERT INTO recording_signature VALUES (?, ?, ?, ?) ON CONFLICT DO UPDATE SET chain_head = excluded.chain_head, "
-      "public_key = excluded.public_key, signature = excluded.signature");
-  put.bind(1, id);
-  put.bind(2, a.chainHead.data(), static_cast<int>(a.chainHead.size()));
-  put.bind(3, a.signature->publicKey.data(), static_cast<int>(a.signature->publicKey.size()));
-  put.bind(4, a.signature->value.data(), static_cast<int>(a.signature->value.size()));
-  put.exec();
+  InsertOf put(db, signatureTable(), {"attempt", "chain_head"}, orUpdateAllBut(signatureTable(), {"attempt"}));
+  put(*a.signature, {id, blobOf(a.chainHead)});
 }
 
 void refuseWithdrawn(SQLite::Database& db, const std::string& path, const AttemptRecord& a) {
@@ -109,39 +90,8 @@ void insertAttempt(SQLite::Database& db, const AttemptRecord& a, const std::vect
       audit(db, "participant-add", a.participant, "named by attempt " + a.uuid);
     }
   }
-  SQLite::Statement put(
-      db,
-      "INSERT INTO attempt (uuid, parent_uuid, participant, scene, scene_major, scene_minor, operator_kind, profile, "
-      "profile_version, mode, purpose, outcome, start_utc, seed, device, calibration, simulation_version, "
-      "comparability_key, synthetic, imported_utc, station) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, "
-      "?, ?, ?, ?)");
-  int i = 1;
-  put.bind(i++, a.uuid);
-  put.bind(i++, a.parent);
-  if (participant >= 0) {
-    put.bind(i++, participant);
-  } else {
-    put.bind(i++);
-  }
-  put.bind(i++, a.scene);
-  put.bind(i++, a.sceneMajor);
-  put.bind(i++, a.sceneMinor);
-  put.bind(i++, number(a.operatorKind));
-  put.bind(i++, a.profile);
-  put.bind(i++, a.profileVersion);
-  put.bind(i++, number(a.mode));
-  put.bind(i++, a.purpose);
-  put.bind(i++, number(a.outcome));
-  put.bind(i++, a.startUtc);
-  put.bind(i++, fmt::format("{}", a.seed));
-  put.bind(i++, a.device);
-  put.bind(i++, a.calibration);
-  put.bind(i++, a.simulationVersion);
-  put.bind(i++, a.comparabilityKey);
-  put.bind(i++, a.synthetic ? 1 : 0);
-  put.bind(i++, nowUtc());
-  put.bind(i++, a.station);
-  put.exec();
+  InsertOf put(db, attemptTable(), {"participant", "imported_utc"});
+  put(a, {participant >= 0 ? Cell(participant) : Cell(), nowUtc()});
   const std::int64_t id = db.getLastInsertRowid();
   writeRecording(db, id, a);
   if (a.signature) writeSignature(db, id, a);

@@ -6,6 +6,7 @@
 #include <map>
 #include <utility>
 
+#include "analytics/cohort/row_statements.h"
 #include "analytics/cohort/tables.h"
 #include "recorder/base/text_words.h"
 
@@ -16,25 +17,9 @@ using namespace tables;
 namespace {
 
 void writeCheckpoints(SQLite::Database& db, std::int64_t id, const Norm& norm) {
-  SQLite::Statement put(db, "INSERT INTO norm_checkpoint VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
-  for (std::size_t i = 0; i < norm.checkpoints.size(); ++i) {
-    const NormCheckpoint& c = norm.checkpoints[i];
-    put.reset();
-    put.clearBindings();
-    put.bind(1, id);
-    put.bind(2, static_cast<std::int64_t>(i));
-    put.bind(3, c.checkpoint);
-    put.bind(4, c.subject);
-    put.bind(5, c.version);
-    put.bind(6, number(c.direction));
-    put.bind(7, c.logScale ? 1 : 0);
-    put.bind(8, c.inRule ? 1 : 0);
-    bindOptional(put, 9, c.cut);
-    bindOptional(put, 10, c.lower);
-    bindOptional(put, 11, c.upper);
-    put.bind(12, c.reason);
-    put.exec();
-  }
+  InsertOf put(db, normCheckpointTable(), {"norm", "position"});
+  for (std::size_t i = 0; i < norm.checkpoints.size(); ++i)
+    put(norm.checkpoints[i], {id, static_cast<std::int64_t>(i)});
 }
 
 void writeMembers(SQLite::Database& db, const std::string& path, std::int64_t id, const Norm& norm) {
@@ -56,23 +41,9 @@ void writeMembers(SQLite::Database& db, const std::string& path, std::int64_t id
 }
 
 void readCheckpoints(SQLite::Database& db, std::int64_t id, Norm& norm) {
-  SQLite::Statement select(db,
-                           "SELECT checkpoint, subject, version, direction, log_scale, in_rule, cut, lower, upper, "
-                           "reason FROM norm_checkpoint WHERE norm = ? ORDER BY position");
-  select.bind(1, id);
+  norm.checkpoints = selectRows(db, normCheckpointTable(), "WHERE norm = ? ORDER BY position", id);
   const std::vector<ExternalMetric> metrics = readExternalMetrics(db);
-  while (select.executeStep()) {
-    NormCheckpoint& c = norm.checkpoints.emplace_back();
-    c.checkpoint = text(select.getColumn(0));
-    c.subject = text(select.getColumn(1));
-    c.version = select.getColumn(2).getUInt();
-    c.direction = enumeration<Direction>(select.getColumn(3));
-    c.logScale = select.getColumn(4).getInt() != 0;
-    c.inRule = select.getColumn(5).getInt() != 0;
-    c.cut = optional(select.getColumn(6));
-    c.lower = optional(select.getColumn(7));
-    c.upper = optional(select.getColumn(8));
-    c.reason = text(select.getColumn(9));
+  for (NormCheckpoint& c : norm.checkpoints) {
     const auto metric = std::find_if(metrics.begin(), metrics.end(), [&](const ExternalMetric& m) {
       return m.definition.name == c.checkpoint && m.definition.version == c.version;
     });
@@ -102,17 +73,6 @@ void readMembers(SQLite::Database& db, std::int64_t id, Norm& norm) {
   }
 }
 
-void readEvidence(SQLite::Database& db, std::int64_t id, Norm& norm) {
-  SQLite::Statement select(db,
-                           "SELECT statement, file_name, sha256, attached_by, attached_utc FROM norm_evidence WHERE "
-                           "norm = ? ORDER BY id");
-  select.bind(1, id);
-  while (select.executeStep()) {
-    norm.evidence.push_back({text(select.getColumn(0)), text(select.getColumn(1)), text(select.getColumn(2)),
-                             text(select.getColumn(3)), text(select.getColumn(4))});
-  }
-}
-
 }  // namespace
 
 std::uint32_t AssessmentDatabase::storeNorm(const Norm& norm) {
@@ -126,13 +86,11 @@ std::uint32_t AssessmentDatabase::storeNorm(const Norm& norm) {
     newest.executeStep();
     const std::uint32_t version = newest.getColumn(0).getUInt() + 1;
     newest.reset();
-    SQLite::Statement put(db,
-                          "INSERT INTO norm (name, version, comparability_key, judged_by, least_passed, members, "
-                          "synthetic, seed, created_utc, created_by) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
-    SQLite::bind(put, norm.name, version, norm.comparabilityKey, norm.judgedBy, norm.leastPassed,
-                 static_cast<std::int64_t>(norm.members.size()), norm.synthetic ? 1 : 0, fmt::format("{}", norm.seed),
-                 nowUtc(), norm.by);
-    put.exec();
+    Norm made = norm;
+    made.version = version;
+    made.membersMade = norm.members.size();
+    made.createdUtc = nowUtc();
+    InsertOf(db, normTable())(made);
     const std::int64_t id = db.getLastInsertRowid();
     writeCheckpoints(db, id, norm);
     writeMembers(db, storage_->path, id, norm);
@@ -147,25 +105,16 @@ std::vector<Norm> AssessmentDatabase::norms() const {
   return guarded(storage_->path, [&] {
     SQLite::Database& db = *storage_->db;
     SQLite::Statement select(db,
-                             "SELECT id, name, version, comparability_key, judged_by, least_passed, members, "
-                             "synthetic, seed, created_utc, created_by FROM norm ORDER BY name, version");
+                             fmt::format("SELECT id, {} FROM norm ORDER BY name, version", memberColumns(normTable())));
     std::vector<Norm> norms;
     while (select.executeStep()) {
       const std::int64_t id = select.getColumn(0).getInt64();
       Norm norm;
-      norm.name = text(select.getColumn(1));
-      norm.version = select.getColumn(2).getUInt();
-      norm.comparabilityKey = text(select.getColumn(3));
-      norm.judgedBy = text(select.getColumn(4));
-      norm.leastPassed = select.getColumn(5).getUInt();
-      norm.membersMade = static_cast<std::uint64_t>(select.getColumn(6).getInt64());
-      norm.synthetic = select.getColumn(7).getInt() != 0;
-      norm.seed = std::strtoull(text(select.getColumn(8)).c_str(), nullptr, 10);
-      norm.createdUtc = text(select.getColumn(9));
-      norm.by = text(select.getColumn(10));
+      int c = 1;
+      readMembers(normTable(), select, c, norm);
       readCheckpoints(db, id, norm);
       readMembers(db, id, norm);
-      readEvidence(db, id, norm);
+      norm.evidence = selectRows(db, normEvidenceTable(), "WHERE norm = ? ORDER BY id", id);
       norms.push_back(std::move(norm));
     }
     return norms;
@@ -196,12 +145,9 @@ void AssessmentDatabase::attachEvidence(const Norm& norm, const NormEvidence& ev
     if (!find.executeStep())
       throw Error(ErrorKind::refused, Where{storage_->path},
                   fmt::format("no norm \"{}\" version {}", norm.name, norm.version));
-    SQLite::Statement put(db,
-                          "INSERT INTO norm_evidence (norm, statement, file_name, sha256, attached_by, attached_utc) "
-                          "VALUES (?, ?, ?, ?, ?, ?)");
-    SQLite::bind(put, find.getColumn(0).getInt64(), evidence.statement, evidence.fileName, evidence.sha256, evidence.by,
-                 nowUtc());
-    put.exec();
+    NormEvidence attached = evidence;
+    attached.attachedUtc = nowUtc();
+    InsertOf(db, normEvidenceTable(), {"norm"})(attached, {find.getColumn(0).getInt64()});
     audit(db, "norm-evidence", fmt::format("{} {}", norm.name, norm.version),
           fmt::format("{} {} (by {})", evidence.fileName, evidence.sha256, evidence.by));
     transaction.commit();

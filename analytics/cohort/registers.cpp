@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "analytics/cohort/connection.h"
+#include "analytics/cohort/row_statements.h"
 #include "analytics/cohort/tables.h"
 
 namespace calot::analytics {
@@ -131,16 +132,7 @@ Registers readRegisters(const std::string& path) {
     };
     named("SELECT name, note FROM site ORDER BY name", r.sites);
     named("SELECT name, note FROM arm ORDER BY name", r.arms);
-    SQLite::Statement stations(db, "SELECT name, site, note, public_key FROM station ORDER BY name");
-    while (stations.executeStep()) {
-      Station s{text(stations.getColumn(0)), text(stations.getColumn(1)), text(stations.getColumn(2)), {}};
-      if (const SQLite::Column key = stations.getColumn(3); !key.isNull()) {
-        s.publicKey.emplace();
-        std::memcpy(s.publicKey->data(), key.getBlob(),
-                    std::min<std::size_t>(s.publicKey->size(), static_cast<std::size_t>(key.getBytes())));
-      }
-      r.stations.push_back(std::move(s));
-    }
+    r.stations = selectRows(db, stationTable(), "ORDER BY name");
     SQLite::Statement cohorts(db, "SELECT name, note FROM cohort ORDER BY name");
     while (cohorts.executeStep()) r.cohorts.push_back({text(cohorts.getColumn(0)), text(cohorts.getColumn(1)), {}});
     SQLite::Statement members(db,

@@ -2,6 +2,7 @@
 // Rows of participants and of the audit trail.
 
 #include "analytics/cohort/tables.h"
+#include "analytics/cohort/row_statements.h"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -69,10 +70,7 @@ std::int64_t participantId(SQLite::Database& db, const std::string& pseudonym) {
 }
 
 std::int64_t insertParticipant(SQLite::Database& db, const Participant& p) {
-  SQLite::Statement insert(
-      db, "INSERT INTO participant (pseudonym, study_group, arm, site, created_utc) VALUES (?, ?, ?, ?, ?)");
-  SQLite::bind(insert, p.pseudonym, p.group, p.arm, p.site, nowUtc());
-  insert.exec();
+  InsertOf(db, participantTable(), {"created_utc"})(p, {nowUtc()});
   return db.getLastInsertRowid();
 }
 

@@ -33,15 +33,6 @@ Enum enumeration(const SQLite::Column& column) {
 
 inline std::string text(const SQLite::Column& column) { return column.getString(); }
 
-/// NULL where there is no number.
-inline void bindOptional(SQLite::Statement& statement, int index, const std::optional<double>& value) {
-  if (value) {
-    statement.bind(index, *value);
-  } else {
-    statement.bind(index);
-  }
-}
-
 inline std::optional<double> optional(const SQLite::Column& column) {
   return column.isNull() ? std::nullopt : std::optional(column.getDouble());
 }
@@ -78,11 +69,6 @@ bool isWithdrawn(SQLite::Database& db, const std::string& uuid);
 std::vector<CheckpointValue> readValues(SQLite::Database& db, std::int64_t attempt);
 void readAllValues(SQLite::Database& db, const std::vector<std::string>& without,
                    const std::function<void(const AttemptValue&)>& take);
-/// Columns of intervalRow(), of value_interval as i.
-inline constexpr const char* intervalColumns =
-    "i.name, i.subject, i.version, i.value, i.step_effect, i.mesh_effect, i.constants_spread, i.lower, i.upper, "
-    "i.reason, i.runs ";
-ValueInterval intervalRow(SQLite::Statement& row, int column);
 /// Whether the row of value_interval as i is of the value in the row of checkpoint_value as c, by the present method.
 std::string intervalIsOfValue();
 /// Intervals of present values, in the values' order.

@@ -9,44 +9,12 @@
 #include <utility>
 
 #include "analytics/cohort/connection.h"
+#include "analytics/cohort/row_statements.h"
 #include "analytics/cohort/tables.h"
 
 namespace calot::analytics::tables {
-namespace {
-
-constexpr const char* valueColumns =
-    "c.name, c.subject, c.version, c.availability, c.value, c.reason, c.note, c.unit, c.origin, c.filter, c.coverage ";
-constexpr int valueColumnCount = 11;
-
-/// Reuses the text's memory: a large cohort has millions of cells.
-void assignText(std::string& to, const SQLite::Column& column) {
-  const char* from = column.getText();
-  to.assign(from, static_cast<std::size_t>(column.getBytes()));
-}
-
-void readValueRow(SQLite::Statement& row, int c, CheckpointValue& v) {
-  assignText(v.name, row.getColumn(c++));
-  assignText(v.subject, row.getColumn(c++));
-  v.version = row.getColumn(c++).getUInt();
-  v.availability = enumeration<Availability>(row.getColumn(c++));
-  v.value = optional(row.getColumn(c++));
-  assignText(v.reason, row.getColumn(c++));
-  assignText(v.note, row.getColumn(c++));
-  assignText(v.unit, row.getColumn(c++));
-  v.origin = enumeration<Origin>(row.getColumn(c++));
-  assignText(v.filter, row.getColumn(c++));
-  v.coverage = optional(row.getColumn(c));
-}
-
-}  // namespace
-
 std::vector<CheckpointValue> readValues(SQLite::Database& db, std::int64_t id) {
-  SQLite::Statement select(
-      db, fmt::format("SELECT {} FROM checkpoint_value c WHERE c.attempt = ? ORDER BY c.position", valueColumns));
-  select.bind(1, id);
-  std::vector<CheckpointValue> values;
-  while (select.executeStep()) readValueRow(select, 0, values.emplace_back());
-  return values;
+  return selectRows(db, checkpointValueTable(), "WHERE attempt = ? ORDER BY position", id);
 }
 
 bool replaceValues(SQLite::Database& db, std::int64_t id, const std::vector<CheckpointValue>& values) {
@@ -71,26 +39,9 @@ bool replaceValues(SQLite::Database& db, std::int64_t id, const std::vector<Chec
     SQLite::bind(clear, id, static_cast<std::int64_t>(i));
     clear.exec();
   }
-  SQLite::Statement put(db, "INSERT INTO checkpoint_value VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+  InsertOf put(db, checkpointValueTable(), {"attempt", "position"});
   for (std::size_t i = 0; i < values.size(); ++i) {
-    if (same(i)) continue;
-    const CheckpointValue& v = values[i];
-    put.reset();
-    put.clearBindings();
-    put.bind(1, id);
-    put.bind(2, static_cast<std::int64_t>(i));
-    put.bind(3, v.name);
-    put.bind(4, v.subject);
-    put.bind(5, v.version);
-    put.bind(6, number(v.availability));
-    bindOptional(put, 7, v.value);
-    put.bind(8, v.reason);
-    put.bind(9, v.note);
-    put.bind(10, v.unit);
-    put.bind(11, number(v.origin));
-    put.bind(12, v.filter);
-    bindOptional(put, 13, v.coverage);
-    put.exec();
+    if (!same(i)) put(values[i], {id, static_cast<std::int64_t>(i)});
   }
   return true;
 }
@@ -104,25 +55,21 @@ void readAllValues(SQLite::Database& db, const std::vector<std::string>& without
   SQLite::Statement select(
       db, fmt::format("SELECT a.uuid, {}{} FROM checkpoint_value c JOIN attempt a ON a.id = c.attempt {} "
                       "WHERE c.name NOT IN ({}) ORDER BY a.uuid, c.position",
-                      valueColumns, intervals ? fmt::format(", i.attempt, {}", intervalColumns) : "",
+                      memberColumns(checkpointValueTable(), "c"),
+                      intervals ? ", i.attempt, " + memberColumns(valueIntervalTable(), "i") : "",
                       intervals ? "LEFT JOIN value_interval i ON " + intervalIsOfValue() : "", places));
   for (std::size_t i = 0; i < without.size(); ++i) select.bind(static_cast<int>(i) + 1, without[i]);
-  constexpr int first = 1 + valueColumnCount;
   AttemptValue value;
   while (select.executeStep()) {
-    assignText(value.attempt, select.getColumn(0));
-    readValueRow(select, 1, value.value);
+    int c = 0;
+    value.attempt = text(select.getColumn(c++));
+    readMembers(checkpointValueTable(), select, c, value.value);
     value.interval.reset();
-    if (intervals && !select.getColumn(first).isNull()) value.interval = intervalRow(select, first + 1);
+    if (intervals && !select.getColumn(c++).isNull())
+      readMembers(valueIntervalTable(), select, c, value.interval.emplace());
     take(value);
   }
 }
-
-}  // namespace calot::analytics::tables
-
-static_assert(std::endian::native == std::endian::little, "the file's doubles are little-endian");
-
-namespace calot::analytics::tables {
 
 std::string intervalIsOfValue() {
   return fmt::format(
@@ -131,31 +78,16 @@ std::string intervalIsOfValue() {
       intervalMethod);
 }
 
-ValueInterval intervalRow(SQLite::Statement& row, int c) {
-  ValueInterval i;
-  i.name = text(row.getColumn(c++));
-  i.subject = text(row.getColumn(c++));
-  i.version = row.getColumn(c++).getUInt();
-  i.value = row.getColumn(c++).getDouble();
-  i.stepEffect = row.getColumn(c++).getDouble();
-  i.meshEffect = row.getColumn(c++).getDouble();
-  i.constantsSpread = row.getColumn(c++).getDouble();
-  i.lower = optional(row.getColumn(c++));
-  i.upper = optional(row.getColumn(c++));
-  i.reason = text(row.getColumn(c++));
-  const SQLite::Column runs = row.getColumn(c);
-  i.runs.resize(static_cast<std::size_t>(runs.getBytes()) / sizeof(double));
-  if (!i.runs.empty()) std::memcpy(i.runs.data(), runs.getBlob(), i.runs.size() * sizeof(double));
-  return i;
-}
-
 std::vector<ValueInterval> readIntervals(SQLite::Database& db, std::int64_t id) {
   SQLite::Statement select(db, fmt::format("SELECT {} FROM value_interval i JOIN checkpoint_value c ON {} WHERE "
                                            "c.attempt = ? ORDER BY c.position",
-                                           intervalColumns, intervalIsOfValue()));
+                                           memberColumns(valueIntervalTable(), "i"), intervalIsOfValue()));
   select.bind(1, id);
   std::vector<ValueInterval> intervals;
-  while (select.executeStep()) intervals.push_back(intervalRow(select, 0));
+  while (select.executeStep()) {
+    int c = 0;
+    readMembers(valueIntervalTable(), select, c, intervals.emplace_back());
+  }
   return intervals;
 }
 
@@ -164,27 +96,8 @@ bool replaceIntervals(SQLite::Database& db, std::int64_t id, const std::vector<V
   SQLite::Statement clear(db, "DELETE FROM value_interval WHERE attempt = ?");
   clear.bind(1, id);
   clear.exec();
-  SQLite::Statement put(db, "INSERT INTO value_interval VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
-  for (const ValueInterval& i : intervals) {
-    put.reset();
-    put.clearBindings();
-    put.bind(1, id);
-    put.bind(2, i.name);
-    put.bind(3, i.subject);
-    put.bind(4, i.version);
-    put.bind(5, intervalMethod);
-    put.bind(6, i.value);
-    put.bind(7, i.stepEffect);
-    put.bind(8, i.meshEffect);
-    put.bind(9, i.constantsSpread);
-    bindOptional(put, 10, i.lower);
-    bindOptional(put, 11, i.upper);
-    put.bind(12, i.reason);
-    // A null pointer would be NULL, even with no bytes.
-    static const double none = 0.0;
-    put.bind(13, i.runs.empty() ? &none : i.runs.data(), static_cast<int>(i.runs.size() * sizeof(double)));
-    put.exec();
-  }
+  InsertOf put(db, valueIntervalTable(), {"attempt", "method"});
+  for (const ValueInterval& i : intervals) put(i, {id, std::int64_t{intervalMethod}});
   return true;
 }
 
@@ -194,21 +107,18 @@ using MetricById = std::map<std::int64_t, ExternalMetricRef>;
 
 /// Each is one object, which its values share.
 MetricById metricsById(SQLite::Database& db) {
-  SQLite::Statement select(db, "SELECT id, name, version, title, unit, direction, sha256 FROM external_metric");
+  SQLite::Statement select(db, fmt::format("SELECT id, {} FROM external_metric", memberColumns(externalMetricTable())));
   MetricById metrics;
   while (select.executeStep()) {
     ExternalMetric m;
+    int c = 1;
+    readMembers(externalMetricTable(), select, c, m);
     CheckpointDefinition& d = m.definition;
-    d.name = text(select.getColumn(1));
-    d.version = select.getColumn(2).getUInt();
-    d.title = text(select.getColumn(3));
-    d.unit = d.displayUnit = text(select.getColumn(4));
-    d.direction = enumeration<Direction>(select.getColumn(5));
+    d.displayUnit = d.unit;
     d.window = "whole attempt";
     d.filter = "none";
     d.origins = {Origin::external};
     d.finality = Finality::final;
-    m.sha256 = text(select.getColumn(6));
     d.definition = "script with SHA-256 " + m.sha256;
     metrics.emplace(select.getColumn(0).getInt64(), ExternalMetricRef(std::move(m)));
   }
@@ -220,15 +130,12 @@ constexpr const char* newest =
     "NOT EXISTS (SELECT 1 FROM external_value l JOIN external_metric n ON n.id = l.metric WHERE l.attempt = e.attempt "
     "AND n.name = m.name AND n.version > m.version)";
 
-constexpr const char* externalColumns = "e.metric, e.availability, e.value, e.reason, e.note";
+std::string externalColumns() { return "e.metric, " + memberColumns(externalValueTable(), "e"); }
 
 CheckpointValue externalRow(SQLite::Statement& row, int c, const MetricById& metrics) {
   CheckpointValue v;
   v.metric = metrics.at(row.getColumn(c++).getInt64());
-  v.availability = enumeration<Availability>(row.getColumn(c++));
-  v.value = optional(row.getColumn(c++));
-  v.reason = text(row.getColumn(c++));
-  v.note = text(row.getColumn(c));
+  readMembers(externalValueTable(), row, c, v);
   const CheckpointDefinition& d = v.metric->definition;
   v.name = d.name;
   v.version = d.version;
@@ -244,11 +151,7 @@ std::int64_t registered(SQLite::Database& db, const std::string& path, const Ext
   SQLite::Statement find(db, "SELECT id FROM external_metric WHERE name = ? AND version = ?");
   SQLite::bind(find, d.name, d.version);
   if (find.executeStep()) return find.getColumn(0).getInt64();
-  SQLite::Statement put(db,
-                        "INSERT INTO external_metric (name, version, title, unit, direction, sha256, registered_utc) "
-                        "VALUES (?, ?, ?, ?, ?, ?, ?)");
-  SQLite::bind(put, d.name, d.version, d.title, d.unit, number(d.direction), metric.sha256, nowUtc());
-  put.exec();
+  InsertOf(db, externalMetricTable(), {"registered_utc"})(metric, {nowUtc()});
   const std::int64_t id = db.getLastInsertRowid();
   audit(db, "metric-add", fmt::format("{} {}", d.name, d.version), "SHA-256 " + metric.sha256);
   return id;
@@ -289,7 +192,7 @@ std::vector<CheckpointValue> readExternalValues(SQLite::Database& db, std::int64
   if (metrics.empty()) return values;
   SQLite::Statement select(db, fmt::format("SELECT {} FROM external_value e JOIN external_metric m ON m.id = e.metric "
                                            "WHERE e.attempt = ? AND {} ORDER BY m.name",
-                                           externalColumns, newest));
+                                           externalColumns(), newest));
   select.bind(1, attempt);
   while (select.executeStep()) values.push_back(externalRow(select, 0, metrics));
   return values;
@@ -302,7 +205,7 @@ std::vector<AttemptValue> readAllExternalValues(SQLite::Database& db, const std:
   SQLite::Statement select(
       db, fmt::format("SELECT a.uuid, {} FROM external_value e JOIN external_metric m ON m.id = e.metric JOIN attempt "
                       "a ON a.id = e.attempt WHERE {} ORDER BY a.uuid, m.name",
-                      externalColumns, newest));
+                      externalColumns(), newest));
   while (select.executeStep()) {
     CheckpointValue v = externalRow(select, 1, metrics);
     if (std::find(without.begin(), without.end(), v.name) != without.end()) continue;
@@ -326,14 +229,7 @@ std::size_t writeExternalValues(SQLite::Database& db, const std::string& path, s
                               "value each time, or raise VERSION",
                               v.name, v.version, shownValue(known), shownValue(v.value)));
     }
-    SQLite::Statement put(db, "INSERT INTO external_value VALUES (?, ?, ?, ?, ?, ?)");
-    put.bind(1, attempt);
-    put.bind(2, metric);
-    put.bind(3, number(v.availability));
-    bindOptional(put, 4, v.value);
-    put.bind(5, v.reason);
-    put.bind(6, v.note);
-    put.exec();
+    InsertOf(db, externalValueTable(), {"attempt", "metric"})(v, {attempt, metric});
     ++added;
   }
   return added;

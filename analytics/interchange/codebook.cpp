@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 
 #include "analytics/checkpoints/registry.h"
-#include "analytics/interchange/column_notes.h"
 #include "recorder/attempt.h"
 #include "recorder/base/csv_writer.h"
 
@@ -14,9 +13,9 @@ namespace calot::analytics {
 namespace {
 
 std::string typeWord(const std::string& type) {
-  if (type == "INTEGER") return "whole number";
-  if (type == "REAL") return "number";
-  return type == "BLOB" ? "bytes in hexadecimal" : "text";
+  if (type.rfind("INTEGER", 0) == 0) return "whole number";
+  if (type.rfind("REAL", 0) == 0) return "number";
+  return type.rfind("BLOB", 0) == 0 ? "bytes in hexadecimal" : "text";
 }
 
 /// What is said alike of checkpoints and of external metrics.
@@ -32,6 +31,21 @@ CodebookEntry entryOf(const CheckpointDefinition& d) {
   e.window = d.window;
   e.filter = d.filter;
   e.version = d.version;
+  return e;
+}
+
+/// @param declared null: nobody explains the column
+CodebookEntry columnEntry(const std::string& table, const std::string& name, const std::string& type,
+                          const DeclaredColumn* declared) {
+  CodebookEntry e;
+  e.table = table;
+  e.name = name;
+  e.type = typeWord(type);
+  if (declared == nullptr) return e;
+  e.title = declared->meaning;
+  e.unit = declared->unit;
+  e.allowed = declared->allowed;
+  e.missing = declared->missing;
   return e;
 }
 
@@ -63,23 +77,16 @@ std::vector<CodebookEntry> checkpointEntries(const std::vector<ExternalMetric>& 
   return entries;
 }
 
-std::vector<CodebookEntry> columnEntries(const std::vector<TableColumns>& tables) {
+std::vector<CodebookEntry> columnEntries(const DeclaredTable& table) {
   std::vector<CodebookEntry> entries;
-  for (const TableColumns& table : tables) {
-    for (const auto& [name, type] : table.columns) {
-      CodebookEntry e;
-      e.table = table.table;
-      e.name = name;
-      e.type = typeWord(type);
-      if (const ColumnNote* note = noteOn(table.table, name)) {
-        e.title = note->title;
-        e.unit = note->unit;
-        e.allowed = note->allowed;
-        e.missing = note->missing;
-      }
-      entries.push_back(std::move(e));
-    }
-  }
+  for (const DeclaredColumn& c : table.columns) entries.push_back(columnEntry(table.name, c.name, c.type, &c));
+  return entries;
+}
+
+std::vector<CodebookEntry> columnEntries(const TableFacts& table) {
+  std::vector<CodebookEntry> entries;
+  for (const ColumnFacts& c : table.columns)
+    entries.push_back(columnEntry(table.name, c.name, c.type, findColumn(table.name, c.name)));
   return entries;
 }
 

@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "analytics/checkpoints/definition.h"
+#include "analytics/cohort/any_table.h"
+#include "analytics/cohort/declared_tables.h"
 
 namespace calot::analytics {
 
@@ -31,12 +33,10 @@ struct CodebookEntry {
 /// Every checkpoint of the registry, in its order, then external metrics, whose origin says so.
 std::vector<CodebookEntry> checkpointEntries(const std::vector<ExternalMetric>& external = {});
 
-/// Columns of a table in the file's order. Unknown columns have an empty title.
-struct TableColumns {
-  std::string table;
-  std::vector<std::pair<std::string, std::string>> columns;  ///< name and SQLite's type
-};
-std::vector<CodebookEntry> columnEntries(const std::vector<TableColumns>& tables);
+/// Columns of a declared table, in its order.
+std::vector<CodebookEntry> columnEntries(const DeclaredTable& table);
+/// Columns of a cohort database's table, in its order; unknown columns have an empty title.
+std::vector<CodebookEntry> columnEntries(const TableFacts& table);
 
 std::string codebookCsv(const std::vector<CodebookEntry>& entries);
 std::string codebookJson(const std::vector<CodebookEntry>& entries);

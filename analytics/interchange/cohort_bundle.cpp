@@ -4,10 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <map>
 #include <set>
 #include <tuple>
 
+#include "analytics/cohort/declared_tables.h"
 #include "analytics/cohort/withdraw.h"
 #include "analytics/interchange/bundle_manifest.h"
 #include "analytics/interchange/bundle_source.h"
@@ -23,6 +25,97 @@ namespace calot::analytics {
 namespace {
 
 constexpr std::uint64_t fewest = 3;  ///< minimum number of participants who share an item of experience
+
+/// Files of a bundle and their columns: name, type, meaning, unit, allowed values, what stands where there is none.
+const DeclaredTable& bundleFile(std::string_view name) {
+  constexpr const char *text = "TEXT", *integer = "INTEGER", *real = "REAL", *yesNo = "0 no, 1 yes",
+                       *utc = "ISO 8601 UTC with Z";
+  static const std::vector<DeclaredTable> files{
+      {"participants",
+       {{"participant", text, "new pseudonym, drawn for this bundle"},
+        {"group", text, "study group", {}, "", "", "empty"},
+        {"arm", text, "study arm", {}, "", "", "empty"},
+        {"site", text, "site, a number without meaning", {}, "", "", "empty"}}},
+      {"experience",
+       {{"participant", text, "pseudonym in participants"},
+        {"criterion", text, "what was asked"},
+        {"value",
+         text,
+         "the answer; a word that fewer than three participants share is withheld",
+         {},
+         "",
+         "",
+         "(withheld)"}}},
+      {"attempts",
+       {{"attempt", text, "new name, drawn for this bundle"},
+        {"participant", text, "pseudonym in participants", {}, "", "", "empty: a performer's attempt"},
+        {"parent", text, "attempt that it branches from", {}, "", "", "empty: none, or not in the bundle"},
+        {"start_shifted",
+         text,
+         "start, moved by one random length of time a participant: what lies between a participant's attempts is true, "
+         "days are not",
+         {},
+         "",
+         utc,
+         "empty"},
+        {"scene", text, "scene, or declared task of imported motion"},
+        {"scene_version", integer, "version of the scene that comparison asks for"},
+        {"operator", text, "who acted", {}, "", "human, kinematics, performer"},
+        {"profile", text, "profile of a performer", {}, "", "", "empty"},
+        {"mode", text, "mode", {}, "", "practice, assessment"},
+        {"outcome",
+         text,
+         "how it ended",
+         {},
+         "",
+         "running, completed, time limit, abandoned, stopped, technical failure"},
+        {"device", text, "class of device", {}, "", "", "empty"},
+        {"calibration", text, "calibration, a number without meaning", {}, "", "", "empty"},
+        {"simulation_version", integer, "version of the simulation; 0: motion without a scene"},
+        {"comparability_key", text, "attempts are compared within one key only; a number without meaning"},
+        {"steps", integer, "number of steps"},
+        {"step_seconds", real, "length of a step", {}, "s"},
+        {"verdict", text, "what the newest replay said", {}, "", "verified, not checkable here, not checked"},
+        {"synthetic", integer, "made by a performer", {}, "", yesNo}}},
+      {"values",
+       {{"attempt", text, "attempt in attempts"},
+        {"checkpoint", text, "checkpoint"},
+        {"subject", text, "hand, organ or phase", {}, "", "", "empty: the attempt as a whole"},
+        {"version", integer, "version of the checkpoint"},
+        {"availability",
+         integer,
+         "whether there is a value",
+         {},
+         "",
+         "0 value, 1 not applicable, 2 not available, 3 absent hand, 4 too little coverage"},
+        {"value", real, "the value, in unit", {}, "", "finite", "empty where availability is not 0"},
+        {"reason", text, "why there is no value", {}, "", "", "empty where availability is 0"},
+        {"unit", text, "SI unit of the value"},
+        {"origin", text, "what it was computed from", {}, "", "re-simulated, observables, samples, external"},
+        {"filter", text, "resampling and filter when the value was made"},
+        {"coverage",
+         real,
+         "share of the window that samples cover",
+         {},
+         "1",
+         "0 to 1",
+         "empty: not of samples, or not known"}}},
+      {"ratings",
+       {{"form", text, "form and its version"},
+        {"attempt", text, "attempt in attempts"},
+        {"rater", text, "new pseudonym of the rater, drawn for this bundle"},
+        {"item", text, "key of the item"},
+        {"score", integer, "score", {}, "", "whole numbers of the form's scale", "an item left blank has no row"}}},
+      {"questionnaires",
+       {{"form", text, "form and its version"},
+        {"participant", text, "pseudonym in participants"},
+        {"item", text, "key of the item"},
+        {"score", integer, "score", {}, "", "whole numbers of the form's scale", "an item left blank has no row"}}}};
+  const auto at =
+      std::find_if(files.begin(), files.end(), [&](const DeclaredTable& file) { return file.name == name; });
+  assert(at != files.end());
+  return *at;
+}
 
 /// An attempt that is handed out, under its new names.
 struct Handed {
@@ -58,10 +151,9 @@ class Writer {
     put(output, "values.csv", values(bundle));
     put(output, "ratings.csv", ratings());
     put(output, "questionnaires.csv", questionnaires());
-    std::vector<CodebookEntry> entries = columnEntries(columns_);
-    for (CodebookEntry& e : checkpointEntries(source_.metrics)) entries.push_back(std::move(e));
-    output.add("codebook.csv", codebookCsv(entries));
-    output.add("codebook.json", codebookJson(entries));
+    for (CodebookEntry& e : checkpointEntries(source_.metrics)) entries_.push_back(std::move(e));
+    output.add("codebook.csv", codebookCsv(entries_));
+    output.add("codebook.json", codebookJson(entries_));
     bundle.participants = people_.size();
     bundle.attempts = handed_.size();
     bundle.files = output.files();
@@ -71,13 +163,12 @@ class Writer {
   }
 
  private:
-  using Columns = std::vector<std::pair<std::string, std::string>>;
-
-  /// The head of a table, whose columns the codebook then explains.
-  std::string head(const char* table, Columns columns) {
+  /// The head of a file, whose columns the codebook then explains.
+  std::string head(const char* file) {
+    const DeclaredTable& table = bundleFile(file);
     std::vector<std::string> names;
-    for (const auto& column : columns) names.push_back(column.first);
-    columns_.push_back({table, std::move(columns)});
+    for (const DeclaredColumn& column : table.columns) names.emplace_back(column.name);
+    for (CodebookEntry& e : columnEntries(table)) entries_.push_back(std::move(e));
     return csvLine(names);
   }
 
@@ -92,8 +183,7 @@ class Writer {
   }
 
   std::string participants(Bundle& bundle) {
-    std::string text =
-        head("participants", {{"participant", "TEXT"}, {"group", "TEXT"}, {"arm", "TEXT"}, {"site", "TEXT"}});
+    std::string text = head("participants");
     std::map<std::tuple<std::string, std::string, std::string>, std::uint64_t> alike;
     for (const auto& [name, p] : people_) {
       text += csvLine({name, p->group, p->arm, names_.numbered("site ", p->site)});
@@ -105,7 +195,7 @@ class Writer {
   }
 
   std::string experience() {
-    std::string text = head("experience", {{"participant", "TEXT"}, {"criterion", "TEXT"}, {"value", "TEXT"}});
+    std::string text = head("experience");
     std::map<std::pair<std::string, std::string>, std::uint64_t> shared;
     for (const auto& [name, p] : people_) {
       for (const auto& item : p->experience) ++shared[item];
@@ -122,24 +212,7 @@ class Writer {
   }
 
   std::string attempts() {
-    std::string text = head("attempts", {{"attempt", "TEXT"},
-                                         {"participant", "TEXT"},
-                                         {"parent", "TEXT"},
-                                         {"start_shifted", "TEXT"},
-                                         {"scene", "TEXT"},
-                                         {"scene_version", "INTEGER"},
-                                         {"operator", "TEXT"},
-                                         {"profile", "TEXT"},
-                                         {"mode", "TEXT"},
-                                         {"outcome", "TEXT"},
-                                         {"device", "TEXT"},
-                                         {"calibration", "TEXT"},
-                                         {"simulation_version", "INTEGER"},
-                                         {"comparability_key", "TEXT"},
-                                         {"steps", "INTEGER"},
-                                         {"step_seconds", "REAL"},
-                                         {"verdict", "TEXT"},
-                                         {"synthetic", "INTEGER"}});
+    std::string text = head("attempts");
     for (const Handed& h : handed_) {
       const AttemptRow& a = *h.attempt;
       const auto parent = nameOfAttempt_.find(a.parent);
@@ -153,17 +226,7 @@ class Writer {
   }
 
   std::string values(Bundle& bundle) {
-    std::string text = head("values", {{"attempt", "TEXT"},
-                                       {"checkpoint", "TEXT"},
-                                       {"subject", "TEXT"},
-                                       {"version", "INTEGER"},
-                                       {"availability", "INTEGER"},
-                                       {"value", "REAL"},
-                                       {"reason", "TEXT"},
-                                       {"unit", "TEXT"},
-                                       {"origin", "TEXT"},
-                                       {"filter", "TEXT"},
-                                       {"coverage", "REAL"}});
+    std::string text = head("values");
     for (const Handed& h : handed_) {
       const auto list = source_.values.find(h.attempt->uuid);
       if (list == source_.values.end()) continue;
@@ -179,8 +242,7 @@ class Writer {
   }
 
   std::string ratings() {
-    std::string text = head(
-        "ratings", {{"form", "TEXT"}, {"attempt", "TEXT"}, {"rater", "TEXT"}, {"item", "TEXT"}, {"score", "INTEGER"}});
+    std::string text = head("ratings");
     std::vector<std::vector<std::string>> lines;
     for (const Rating& r : source_.ratings) {
       const auto at = nameOfAttempt_.find(r.attempt);
@@ -192,8 +254,7 @@ class Writer {
   }
 
   std::string questionnaires() {
-    std::string text =
-        head("questionnaires", {{"form", "TEXT"}, {"participant", "TEXT"}, {"item", "TEXT"}, {"score", "INTEGER"}});
+    std::string text = head("questionnaires");
     std::map<std::string, std::string> nameOfPerson;
     for (const auto& [name, p] : people_) nameOfPerson[p->pseudonym] = name;
     std::vector<std::vector<std::string>> lines;
@@ -223,7 +284,7 @@ class Writer {
   std::vector<Handed> handed_;                        ///< by new names
   std::map<std::string, std::string> nameOfAttempt_;  ///< by uuid
   std::map<std::string, const Participant*> people_;  ///< by new name
-  std::vector<TableColumns> columns_;
+  std::vector<CodebookEntry> entries_;
 };
 
 }  // namespace

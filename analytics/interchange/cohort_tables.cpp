@@ -70,19 +70,16 @@ std::vector<ExportedTable> exportCohort(const std::string& database, const std::
   guarded(database, [&] {
     const auto db = openCohort(database, CohortDatabase::Access::read, std::chrono::seconds(10));
     SQLite::Transaction reading(*db);
-    std::vector<TableColumns> columns;
+    std::vector<CodebookEntry> entries;
     for (const TableFacts& table : readTables(*db)) {
       const std::vector<Row> rows = readRows(*db, table);
       output.add(table.name + ".csv", csvOf(table, rows));
       output.add(table.name + ".json", jsonOf(table, rows));
-      TableColumns& c = columns.emplace_back();
-      c.table = table.name;
-      for (const ColumnFacts& column : table.columns) c.columns.emplace_back(column.name, column.type);
+      for (CodebookEntry& e : columnEntries(table)) entries.push_back(std::move(e));
       written.push_back({table.name, rows.size()});
       if (table.name != "attempt") continue;
       for (const Row& row : rows) attempts.push_back(textOf(row.at("uuid")));
     }
-    std::vector<CodebookEntry> entries = columnEntries(columns);
     for (CodebookEntry& e : checkpointEntries(tables::readExternalMetrics(*db))) entries.push_back(std::move(e));
     output.add("codebook.csv", codebookCsv(entries));
     output.add("codebook.json", codebookJson(entries));

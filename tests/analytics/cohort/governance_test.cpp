@@ -215,6 +215,23 @@ TEST(Signatures, areKeptAsSeenAtImport) {
   EXPECT_TRUE(checkCohort(folder.file("c.db")).faults.empty());
 }
 
+TEST(Check, namesColumnsThatAreNotAsDeclared) {
+  const Folder folder;
+  const std::string path = folder.file("c.db");
+  { const CohortDatabase made(path, CohortDatabase::Access::create); }
+  SQLite::Database raw(path, SQLite::OPEN_READWRITE);
+  raw.exec("ALTER TABLE attempt ADD COLUMN stray TEXT");
+  raw.exec("ALTER TABLE site RENAME COLUMN note TO remark");
+  const std::vector<std::string> expected{"table site has no column note",
+                                          "column remark of site is not of this schema",
+                                          "column stray of attempt is not of this schema"};
+  std::vector<std::string> faults = checkCohort(path).faults;
+  std::sort(faults.begin(), faults.end());
+  std::vector<std::string> sorted = expected;
+  std::sort(sorted.begin(), sorted.end());
+  EXPECT_EQ(faults, sorted);
+}
+
 TEST(Regrade, namesWhatChanged) {
   const auto before = valuesOf(1.0, 2.0);
   auto now = valuesOf(1.0, 3.0);

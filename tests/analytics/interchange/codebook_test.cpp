@@ -13,8 +13,8 @@
 #include <set>
 
 #include "analytics/cohort/any_table.h"
+#include "analytics/cohort/declared_tables.h"
 #include "analytics/interchange/cohort_tables.h"
-#include "analytics/interchange/column_notes.h"
 #include "recorder/base/csv.h"
 #include "tests/analytics/cohort/support/cohort_support.h"
 #include "tests/analytics/support/refusal.h"
@@ -64,12 +64,10 @@ TEST(Codebook, explainsEveryColumnOfTheSchemaAndNoOther) {
     tables.insert(table.name);
     for (const ColumnFacts& c : table.columns) schema.emplace(table.name, c.name);
   }
-  // A bundle's files are named in the plural; bundle_test.cpp holds them against theirs.
-  const std::set<std::string> bundle{"participants", "experience", "attempts", "values", "ratings", "questionnaires"};
-  for (const ColumnNote& note : columnNotes()) {
-    EXPECT_FALSE(note.title.empty()) << note.table << "." << note.column;
-    if (bundle.count(std::string(note.table)) == 0) {
-      EXPECT_TRUE(explained.emplace(note.table, note.column).second) << note.table << "." << note.column << " twice";
+  for (const DeclaredTable* table : cohortTables()) {
+    for (const DeclaredColumn& c : table->columns) {
+      EXPECT_STRNE(c.meaning, "") << table->name << "." << c.name;
+      EXPECT_TRUE(explained.emplace(table->name, c.name).second) << table->name << "." << c.name << " twice";
     }
   }
   EXPECT_EQ(schema, explained);
@@ -77,7 +75,8 @@ TEST(Codebook, explainsEveryColumnOfTheSchemaAndNoOther) {
 
 TEST(Codebook, everyFormSaysTheSame) {
   std::vector<CodebookEntry> entries = checkpointEntries();
-  for (CodebookEntry& e : columnEntries({{"attempt", {{"seed", "TEXT"}, {"steps", "INTEGER"}, {"unheard", "BLOB"}}}}))
+  for (CodebookEntry& e :
+       columnEntries(TableFacts{"attempt", {{"seed", "TEXT"}, {"steps", "INTEGER"}, {"unheard", "BLOB"}}, {}, "", {}}))
     entries.push_back(e);
   const CsvTable csv = parseCsvTable(codebookCsv(entries), "codebook.csv");
   const json variables = json::parse(codebookJson(entries)).at("variables");

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How a member of a struct is bound to a statement and read from a row, by its type (declared_tables.cpp alone).
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <concepts>
+#include <cstdlib>
+#include <cstring>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "analytics/cohort/declared_tables.h"
+
+namespace calot::analytics {
+
+static_assert(std::endian::native == std::endian::little, "the file's doubles are little-endian");
+
+inline void bindMember(SQLite::Statement& s, int i, const std::string& value) { s.bind(i, value); }
+inline void bindMember(SQLite::Statement& s, int i, double value) { s.bind(i, value); }
+template <class T>
+requires std::integral<T> || std::is_enum_v<T>
+void bindMember(SQLite::Statement& s, int i, T value) { s.bind(i, static_cast<std::int64_t>(value)); }
+/// An array's or a vector's bytes. A null pointer would be NULL, even with no bytes.
+template <class T>
+void bindBytes(SQLite::Statement& s, int i, const T& values) {
+  static const double none = 0.0;
+  const void* from = values.empty() ? static_cast<const void*>(&none) : values.data();
+  s.bind(i, from, static_cast<int>(values.size() * sizeof(values[0])));
+}
+template <std::size_t N>
+void bindMember(SQLite::Statement& s, int i, const std::array<std::byte, N>& bytes) {
+  bindBytes(s, i, bytes);
+}
+inline void bindMember(SQLite::Statement& s, int i, const std::vector<double>& values) { bindBytes(s, i, values); }
+template <class T>
+void bindMember(SQLite::Statement& s, int i, const std::optional<T>& value) {
+  if (value) {
+    bindMember(s, i, *value);
+  } else {
+    s.bind(i);
+  }
+}
+
+/// Reuses the text's memory: a large cohort has millions of cells.
+inline void readMember(const SQLite::Column& from, std::string& to) {
+  const char* begin = from.getText();
+  to.assign(begin, static_cast<std::size_t>(from.getBytes()));
+}
+inline void readMember(const SQLite::Column& from, double& to) { to = from.getDouble(); }
+template <class T>
+requires std::integral<T> || std::is_enum_v<T>
+void readMember(const SQLite::Column& from, T& to) { to = static_cast<T>(from.getInt64()); }
+template <std::size_t N>
+void readMember(const SQLite::Column& from, std::array<std::byte, N>& to) {
+  std::memcpy(to.data(), from.getBlob(), std::min<std::size_t>(N, static_cast<std::size_t>(from.getBytes())));
+}
+inline void readMember(const SQLite::Column& from, std::vector<double>& to) {
+  to.resize(static_cast<std::size_t>(from.getBytes()) / sizeof(double));
+  if (!to.empty()) std::memcpy(to.data(), from.getBlob(), to.size() * sizeof(double));
+}
+template <class T>
+void readMember(const SQLite::Column& from, std::optional<T>& to) {
+  to.reset();
+  if (!from.isNull()) readMember(from, to.emplace());
+}
+
+/// The member of `Row` that the path leads to: at<Row, &Row::part, &Part::member>.
+template <class Row, auto... Path>
+inline constexpr ColumnMember at{
+    [](SQLite::Statement& s, int i, const void* row) { bindMember(s, i, (*static_cast<const Row*>(row).*....*Path)); },
+    [](const SQLite::Column& from, void* row) { readMember(from, (*static_cast<Row*>(row).*....*Path)); }};
+
+/// An unsigned number of 64 bits as text in decimal: SQLite's integers are signed.
+template <class Row, auto Member>
+inline constexpr ColumnMember digits{[](SQLite::Statement& s, int i, const void* row) {
+                                       s.bind(i, std::to_string(static_cast<const Row*>(row)->*Member));
+                                     },
+                                     [](const SQLite::Column& from, void* row) {
+                                       static_cast<Row*>(row)->*Member = std::strtoull(from.getText(), nullptr, 10);
+                                     }};
+
+}  // namespace calot::analytics
