@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "analytics/checkpoints/phases.h"
-#include "sim/math/bounds.h"
+#include "sim/math/linear.h"
 #include "sim/scene/step_result.h"
 
 namespace calot::analytics {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "sim/math/bounds.h"
+#include "sim/math/linear.h"
 
 namespace calot::analytics {
 

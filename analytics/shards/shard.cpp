@@ -10,7 +10,7 @@
 
 #include "recorder/base/errors.h"
 #include "recorder/base/text_words.h"
-#include "sim/math/digest.h"
+#include "sim/math/fields.h"
 
 namespace calot::analytics {
 

@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "sim/scene/down.h"
+#include "sim/scene/scene_view.h"
 
 namespace calot::recorder {
 

@@ -9,7 +9,7 @@
 #include <numbers>
 
 #include "analytics/checkpoints/hand_motion.h"
-#include "sim/math/bounds.h"
+#include "sim/math/linear.h"
 
 namespace calot::analytics {
 namespace {
