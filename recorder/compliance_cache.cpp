@@ -14,7 +14,7 @@
 
 #include "recorder/base/errors.h"
 #include "recorder/base/file_bytes.h"
-#include "sim/math/digest.h"
+#include "sim/math/fields.h"
 #include "sim/scene/version.h"
 
 namespace calot::recorder {

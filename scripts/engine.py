@@ -99,7 +99,7 @@ def link_headers(include, names):
 
 
 # Comparisons with 0 in LLVM's form whose either zero clang 14 loses in WebAssembly, where its maximum and minimum order -0 below 0 and
-# keep what is no number: x < 0 ? 0 : x, and !(x >= 0) ? x : 0. Source that uses sim/math/bounds.h has none.
+# keep what is no number: x < 0 ? 0 : x, and !(x >= 0) ? x : 0. Source that uses sim/math/linear.h has none.
 ZERO = r"(?:0\.0+e\+00|zeroinitializer)"
 BELOW_ZERO = re.compile(rf"(%\S+) = fcmp ([uo])lt (?:<\d+ x )?(?:double|float)>? (%\S+), {ZERO}")
 SELECT = re.compile(r"= select (?:<\d+ x )?i1>? (%\S+), (?:<\d+ x )?(?:double|float)>? (\S+), (?:<\d+ x )?(?:double|float)>? (\S+)$")
@@ -128,7 +128,7 @@ def check_zeros(work, objects):
     lost = [f"{name}: {what}" for name in objects if name.startswith("sim/")
             for what in zeros_lost(run(["llvm-dis-14", "-o", "-", work / f"{name}.bc"]))]
     if lost:
-        fail("clang would lose which zero a number is (sim/math/bounds.h):\n" + "\n".join(lost[:20]))
+        fail("clang would lose which zero a number is (sim/math/linear.h):\n" + "\n".join(lost[:20]))
 
 
 def self_test():

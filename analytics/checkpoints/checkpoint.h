@@ -19,7 +19,7 @@
 #include "analytics/checkpoints/scene_facts.h"
 #include "recorder/base/identity.h"
 #include "recorder/engine/observer.h"
-#include "sim/judgement/judgement.h"
+#include "sim/judgement/judge.h"
 
 namespace calot::analytics {
 

@@ -11,7 +11,7 @@
 #include "analytics/checkpoints/movements.h"
 #include "analytics/checkpoints/zero_phase_filter.h"
 #include "recorder/sources/pointing.h"
-#include "sim/math/bounds.h"
+#include "sim/math/linear.h"
 #include "sim/math/no_fused_pairs.h"  // first
 
 namespace calot::analytics {

@@ -8,7 +8,7 @@
 
 #include "analytics/checkpoints/checkpoint.h"
 #include "analytics/checkpoints/motion.h"
-#include "sim/judgement/judgement.h"
+#include "sim/judgement/judge.h"
 
 namespace calot::analytics {
 

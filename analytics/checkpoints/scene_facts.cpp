@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/connective/connective_bed.h"
+#include "sim/connective/connective_tissue.h"
 
 namespace calot::analytics {
 namespace {

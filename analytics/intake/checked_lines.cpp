@@ -13,7 +13,7 @@
 
 #include "recorder/base/errors.h"
 #include "recorder/base/json_reader.h"
-#include "sim/math/digest.h"
+#include "sim/math/fields.h"
 
 namespace calot::analytics {
 namespace {

@@ -17,7 +17,6 @@
 #include "recorder/base/errors.h"
 #include "recorder/base/file_bytes.h"
 #include "recorder/formats/mesh_file.h"
-#include "sim/geometry/self_crossing.h"
 #include "sim/geometry/surface_report.h"
 
 namespace {

@@ -11,7 +11,7 @@
 
 #include "gui/attempt/attempt_recording.h"
 #include "gui/dashboard/time_scale.h"
-#include "sim/judgement/judgement.h"
+#include "sim/judgement/judge.h"
 
 namespace calot::gui {
 

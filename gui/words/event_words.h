@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/judgement/judgement.h"
+#include "sim/judgement/judge.h"
 
 namespace calot::gui {
 

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "sim/judgement/judgement.h"
+#include "sim/judgement/judge.h"
 
 namespace calot::recorder {
 

@@ -7,7 +7,6 @@
 
 #include "sim/geometry/hole_filling.h"
 #include "sim/geometry/mesh_to_count.h"
-#include "sim/geometry/self_crossing.h"
 #include "sim/geometry/surface_report.h"
 
 namespace calot::recorder {

@@ -21,7 +21,7 @@
 #include "recorder/formats/scene_vessels.h"
 #include "sim/instruments/instruments.h"
 #include "sim/math/floating_point.h"
-#include "sim/scene/down.h"
+#include "sim/scene/scene_view.h"
 
 namespace calot::recorder {
 namespace {

@@ -12,7 +12,6 @@
 #include "recorder/formats/scene_roles.h"
 #include "recorder/formats/scene_rules.h"
 #include "sim/geometry/brick_lattice.h"
-#include "sim/geometry/self_crossing.h"
 #include "sim/geometry/surface_report.h"
 
 namespace calot::recorder {

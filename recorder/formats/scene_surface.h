@@ -9,7 +9,7 @@
 #include "recorder/base/json_reader.h"
 #include "sim/geometry/triangle_mesh.h"
 #include "sim/scene/description.h"
-#include "sim/tissue/structure_limit.h"
+#include "sim/tissue/structure_role.h"
 
 namespace calot::recorder {
 

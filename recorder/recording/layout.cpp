@@ -7,7 +7,7 @@
 #include <cmath>
 #include <string_view>
 
-#include "sim/math/digest.h"
+#include "sim/math/fields.h"
 
 namespace calot::recorder {
 

@@ -8,8 +8,8 @@
 #include "recorder/base/errors.h"
 #include "recorder/sources/pointing.h"
 #include "recorder/sources/scene_surfaces.h"
-#include "sim/math/bounds.h"
 #include "sim/math/floating_point.h"
+#include "sim/math/linear.h"
 
 namespace calot::recorder {
 namespace {

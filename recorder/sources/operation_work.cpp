@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "recorder/sources/operation_mind.h"
-#include "sim/math/bounds.h"
+#include "sim/math/linear.h"
 
 namespace calot::recorder {
 namespace {

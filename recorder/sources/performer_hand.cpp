@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "recorder/sources/pointing.h"
-#include "sim/math/bounds.h"
 #include "sim/math/elementary.h"
+#include "sim/math/linear.h"
 
 namespace calot::recorder {
 namespace {

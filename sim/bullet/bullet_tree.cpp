@@ -6,16 +6,16 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "sim/contact/float_bounds.h"
+#include "sim/contact/broad_phase.h"
 
 namespace calot {
 
 namespace {
 
-constexpr double largestCoordinate = 1e9;  // m
+constexpr double maxCoordinate = 1e9;  // m
 
 bool fits(const Box& box) {
-  return (box.lower.array() >= -largestCoordinate).all() && (box.upper.array() <= largestCoordinate).all();
+  return (box.lower.array() >= -maxCoordinate).all() && (box.upper.array() <= maxCoordinate).all();
 }
 
 btDbvtVolume volumeOf(const Box& box) {

@@ -100,7 +100,7 @@ class CarvedSurface {
   std::vector<std::uint32_t> dirtyBrick_;
   std::vector<std::uint32_t> changedBlock_;
   std::vector<std::uint32_t> brick_;
-  // Of the current brick.
+  // Buffers of the current brick.
   Signs signs_{};                                            ///< [z][y], bit x
   std::array<std::array<std::uint32_t, rows>, 3> offset_{};  ///< index of a node: a sum over its coordinates
   std::vector<std::uint8_t> local_;                          ///< index of a lattice edge in the open patch, plus one

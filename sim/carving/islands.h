@@ -7,7 +7,6 @@
 #include <utility>
 #include <vector>
 
-#include "sim/carving/brick_bits.h"
 #include "sim/carving/carved_field.h"
 
 namespace calot {

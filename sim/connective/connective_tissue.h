@@ -20,13 +20,64 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
-#include "sim/connective/cohesive_law.h"
 #include "sim/geometry/dwell.h"
+#include "sim/geometry/isosurface_stuffing.h"
+#include "sim/geometry/surface_distance.h"
+#include "sim/geometry/triangle_mesh.h"
 #include "sim/solid/solid.h"
 
 namespace calot {
+
+// Traction and separation of connective tissue per unit area: linear up to the strength, then softening linearly until
+// the fracture energy is used up (bilinear cohesive law; Camanho, Davila and de Moura 2003, "Numerical simulation of
+// mixed-mode progressive delamination in composite materials", with one mode).
+//
+//   t(w) = (1 - d) K w  for w > 0,   t(w) = K w  for w <= 0,
+//   d(w_max) = w_f (w_max - w_0) / (w_max (w_f - w_0))  for w_0 < w_max < w_f,   0 below, 1 above,
+//   w_0 = sigma / K,   w_f = 2 G_c / sigma.
+//
+// w is the separation, w_max the largest so far: damage d never falls, unloading returns along the secant to the
+// origin, and compression is that of intact tissue. Up to w_f, opening takes the fracture energy G_c.
+
+struct CohesiveLaw {
+  double stiffness = 0.0;       ///< K (N/m^3)
+  double strength = 0.0;        ///< sigma (Pa)
+  double fractureEnergy = 0.0;  ///< G_c (J/m^2)
+
+  /// Energy stored where softening begins, the least fracture energy (J/m^2).
+  [[nodiscard]] double minFractureEnergy() const { return 0.5 * strength * strength / stiffness; }
+  /// w_0 (m)
+  [[nodiscard]] double peakSeparation() const { return strength / stiffness; }
+  /// w_f (m)
+  [[nodiscard]] double finalSeparation() const { return 2.0 * fractureEnergy / strength; }
+
+  /// d for the largest separation so far (m).
+  /// @pre fractureEnergy >= minFractureEnergy(); where both are equal, the law is brittle.
+  [[nodiscard]] double damageAt(double largest) const {
+    const double peak = peakSeparation();
+    const double last = finalSeparation();
+    if (!(largest < last)) return 1.0;
+    if (largest <= peak) return 0.0;
+    return last * (largest - peak) / (largest * (last - peak));
+  }
+
+  /// Secant stiffness at a separation (N/m^3).
+  [[nodiscard]] double secant(double separation, double damage) const {
+    return separation > 0.0 ? (1.0 - damage) * stiffness : stiffness;
+  }
+
+  /// Energy that reaching a damage has dissipated (J/m^2): the work of opening to w_max less what is stored there,
+  /// sigma d w_max / 2, from 0 to G_c.
+  [[nodiscard]] double dissipated(double damage) const {
+    const double peak = peakSeparation();
+    const double last = finalSeparation();
+    const double largest = last * peak / (last - damage * (last - peak));
+    return 0.5 * strength * damage * largest;
+  }
+};
 
 enum class StrandCondition : std::uint8_t { attached = 0, burned = 1, torn = 2 };
 
@@ -63,7 +114,7 @@ class ConnectiveTissue {
   [[nodiscard]] const std::vector<std::array<std::uint32_t, 2>>& sheets() const { return sheet_; }
   [[nodiscard]] const ConnectiveMaterial& material() const { return material_; }
   [[nodiscard]] double area() const { return area_; }  ///< of all strands (m^2)
-  /// Of an intact one, in any direction (N/m).
+  /// Stiffness of an intact strand, in any direction (N/m).
   [[nodiscard]] double stiffnessOf(const Strand& strand) const { return strand.area * material_.stiffness; }
   /// Loads the strands at rest as displacements of the organs' nodes (m) would if they were as stiff in all directions.
   void preload(std::span<const Vec3> displacementA, std::span<const Vec3> displacementB);
@@ -151,5 +202,30 @@ struct ConnectiveShares {
   double torn = 0.0;  ///< residue once no strand is attached
 };
 ConnectiveShares sharesOf(const ConnectiveTissue& tissue, const ConnectiveState& state);
+
+// Strands over the bed between two adjacent organs.
+
+/// An organ in its reference configuration.
+struct BedOrgan {
+  const TriangleMesh& surface;  ///< closed, outward
+  const TetrahedralMesh& mesh;  ///< of its solid
+};
+
+struct ConnectiveBed {
+  std::vector<Strand> strands;
+  std::vector<std::array<std::uint32_t, 2>> sheets;
+  std::string error;  ///< one sentence if there is no bed
+
+  [[nodiscard]] bool ok() const { return error.empty(); }
+};
+
+/// The bed: all triangles of the first organ's surface whose corners all lie within `reach` of the second organ.
+std::vector<Index3> bedTriangles(const TriangleMesh& first, const SurfaceDistance& second, double reach);
+
+/// Strands over the whole bed (bedTriangles()). Its triangles' edges are divided by the smallest n that gives at least
+/// `minStrands` strands, one from each vertex to the nearest point of the second organ. Each strand represents a third
+/// of the area of the subdivided triangles around it; sheets join neighbours along edges.
+/// @pre both organs have triangles and tetrahedra of positive volume; reach > 0; minStrands > 0
+ConnectiveBed makeBed(const BedOrgan& first, const BedOrgan& second, double reach, std::size_t minStrands);
 
 }  // namespace calot

@@ -7,7 +7,7 @@
 #include "sim/contact/surface_normal.h"
 #include "sim/contact/triangle_lanes.h"
 #include "sim/geometry/closest_point.h"
-#include "sim/math/bounds.h"
+#include "sim/math/linear.h"
 
 namespace calot {
 

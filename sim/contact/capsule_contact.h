@@ -36,11 +36,11 @@ struct SurfaceContact {
 
 /// Finds the contacts of the capsule around segment p0-p1 with the triangles of the given patches.
 ///
-/// Where the axis is outside, a contact is a local minimum of the distance over the surface: the foot point of a face
+/// Outside, a contact of the axis is a local minimum of the distance over the surface: the foot point of a face
 /// lies inside it, and at an edge or a vertex no neighbouring triangle is nearer. A flat region thus gives one contact
 /// rather than one per triangle, and no contact stops a capsule that merely passes by.
 ///
-/// Where the axis is inside (it crosses the surface, or its nearest feature's pseudonormal says so), contacts are the
+/// Inside (the axis crosses the surface, or its nearest feature's pseudonormal says so), contacts are the
 /// crossings, with their face's normal, and the ends and the middle of each part inside, each with the way out to its
 /// nearest surface point: gap = -depth - radius. The nearest surface point is never on the far side of a thin part. An
 /// end deeper than maxAxisDepth is measured from the plane of the face through which the axis entered, with its depth

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "sim/contact/near_triangles.h"
 
 #include <algorithm>
@@ -6,8 +7,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "sim/contact/float_bounds.h"
-#include "sim/contact/rigid_motion.h"
+#include "sim/contact/broad_phase.h"
 #include "sim/contact/triangle_lanes.h"
 #include "sim/math/vectors.h"
 

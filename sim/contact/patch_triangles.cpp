@@ -6,7 +6,7 @@
 #include <limits>
 #include <numeric>
 
-#include "sim/contact/float_bounds.h"
+#include "sim/contact/broad_phase.h"
 #include "sim/math/vectors.h"
 
 namespace calot {

@@ -21,7 +21,7 @@ Vec3 faceNormal(const ContactSurface& surface, std::span<const Vec3> position, s
 Vec3 pseudonormal(const ContactSurface& surface, std::span<const Vec3> position, std::size_t triangle,
                   TriangleFeature feature);
 
-/// Is a feature's nearest point a local minimum of the distance over the surface, so that no triangle
+/// True if a feature's nearest point is a local minimum of the distance over the surface, so that no triangle
 /// around it is nearer?
 /// @param away vector from that point to the query point (m)
 bool isLocalMinimum(const ContactSurface& surface, std::span<const Vec3> position, std::size_t triangle,

@@ -5,8 +5,8 @@
 #include <map>
 #include <utility>
 
-#include "sim/contact/float_bounds.h"
-#include "sim/math/lanes.h"
+#include "sim/contact/broad_phase.h"
+#include "sim/math/vectors.h"
 
 namespace calot {
 

@@ -67,7 +67,7 @@ class ContactSurface {
     name_[triangle] = name;
   }
 
-  /// Is this a changing surface?
+  /// True for a changing surface.
   [[nodiscard]] bool changes() const { return topology_ != nullptr; }
   /// Name of a triangle in contact keys; its index if the surface is fixed.
   [[nodiscard]] std::uint64_t name(std::size_t triangle) const {

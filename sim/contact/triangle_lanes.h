@@ -10,8 +10,8 @@
 #include <span>
 
 #include "sim/contact/surface_patches.h"
-#include "sim/math/lanes.h"
 #include "sim/math/linear.h"
+#include "sim/math/vectors.h"
 
 namespace calot {
 
@@ -39,7 +39,7 @@ void gatherTriangles(const ContactSurface& surface, std::span<const Vec3> positi
 /// The box of each triangle.
 void boxesOf(const TriangleLanes& triangles, BoundsLanes& out);
 
-/// Is the triangle of a lane so flat (sine of its angle below 1e-3) that rounding moves the foot of
+/// True if the triangle of a lane is so flat (sine of its angle below 1e-3) that rounding moves the foot of
 /// a perpendicular on it?
 bool isSliver(const TriangleLanes& triangles, std::size_t lane);
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "sim/carving/carved_surface.h"
-#include "sim/carving/surface_adjacency.h"
+#include "sim/carving/cube_table.h"
 #include "sim/contact/surface_patches.h"
 #include "sim/fat/fat_model.h"
 
@@ -53,7 +53,7 @@ class CarvedContact final : public SurfaceTopology {
   [[nodiscard]] const ContactSurface& surface() const { return surface_; }
   /// Upper bound of node indices.
   [[nodiscard]] std::size_t nodeCapacity() const { return cut_.size(); }
-  /// Does this vertex exist now?
+  /// True if this vertex exists now.
   [[nodiscard]] bool exists(int node) const {
     const auto n = static_cast<std::size_t>(node);
     return n < cut_.size() && (mask_[n / 64] >> (n % 64) & 1U) != 0;

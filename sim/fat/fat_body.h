@@ -8,17 +8,47 @@
 #include <vector>
 
 #include "sim/carving/carve.h"
+#include "sim/carving/carved_field.h"
 #include "sim/carving/carved_surface.h"
-#include "sim/carving/fill.h"
 #include "sim/carving/islands.h"
 #include "sim/fat/carved_contact.h"
 #include "sim/fat/cube_motion.h"
 #include "sim/fat/fat_model.h"
-#include "sim/fat/fat_volume.h"
 
 namespace calot {
 
-/// What a stroke did.
+// Remaining volume of fat in the reference configuration: in total and by regions.
+
+/// Each lattice node represents a cell's volume, of which the share clamp(1/2 - phi / cell, 0, 1) is inside: exact for
+/// surfaces parallel to the axes, second-order accurate elsewhere. Shares are multiples of 2^-20 of a cell, so that
+/// sums are exact and incremental updates equal a full pass. Derived from the field; never saved.
+class FatVolume {
+ public:
+  explicit FatVolume(const FatModel& model);
+
+  void rebuild(const CarvedField& field);
+  /// Updates what the last stroke changed. Allocates nothing.
+  void update(const CarvedField& field);
+
+  /// m^3
+  [[nodiscard]] double total() const { return unit_ * static_cast<double>(total_); }
+  [[nodiscard]] double inRegion(std::size_t region) const { return unit_ * static_cast<double>(region_[region]); }
+
+ private:
+  void mark(std::uint32_t brick);
+  void measure(const CarvedField& field, std::uint32_t brick);
+  [[nodiscard]] BrickBits countedNodes(const CarvedField& field, std::uint32_t brick) const;
+
+  const FatModel& model_;
+  double unit_;                      ///< m^3
+  std::vector<std::int64_t> brick_;  ///< (1 + regions) sums for each brick: all, then each region
+  std::vector<std::uint8_t> marked_;
+  std::vector<std::uint32_t> work_;
+  std::int64_t total_ = 0;
+  std::vector<std::int64_t> region_;
+};
+
+/// Outcome of a stroke.
 struct FatStroke {
   bool changed = false;       ///< the field changed: the `carved` part of State must be rehashed
   double removed = 0.0;       ///< volume, islands included (m^3)

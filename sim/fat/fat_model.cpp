@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sim/math/no_fused_pairs.h"
-//
+#include "sim/math/no_fused_pairs.h"  // first
+
 #include "sim/fat/fat_model.h"
 
 #include <algorithm>

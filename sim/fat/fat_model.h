@@ -10,16 +10,22 @@
 #include <string>
 #include <vector>
 
-#include "sim/carving/brick_bits.h"
 #include "sim/carving/carved_field.h"
-#include "sim/carving/fill.h"
-#include "sim/fat/fat_state.h"
 #include "sim/geometry/triangle_mesh.h"
 #include "sim/solid/solid.h"
 
 namespace calot {
 
-/// What fat is attached to: all fat within `reach` of it.
+// State of a body of fat.
+
+/// Two parts of State with separate fields: motion changes in every step in which the fat is awake, the field only when
+/// something is carved. Everything else is derived from them (FatBody::rebuild()).
+struct FatState {
+  SolidState solid;
+  CarvedBricks carved;
+};
+
+/// A body that fat is attached to: all fat within `reach` of it.
 struct FatPartner {
   std::string name;
   std::function<double(const Vec3&)> distance;  ///< of a point from its surface at rest, negative inside (m)
@@ -152,7 +158,7 @@ class FatModel {
 /// Uncarved, at rest, asleep.
 [[nodiscard]] FatState restState(const FatModel& model);
 
-/// Is this a valid state of the model (sizes, finite numbers, bricks that fit the field)? Checks external data.
+/// True if this is a valid state of the model (sizes, finite numbers, bricks that fit the field). For external data.
 [[nodiscard]] bool fits(const FatModel& model, const FatState& state);
 
 }  // namespace calot

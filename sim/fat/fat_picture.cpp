@@ -5,8 +5,8 @@
 
 #include <algorithm>
 
-#include "sim/math/bounds.h"
 #include "sim/math/floating_point.h"
+#include "sim/math/linear.h"
 
 namespace calot {
 

@@ -7,7 +7,6 @@
 
 #include "sim/carving/adaptive_surface.h"
 #include "sim/carving/carved_field.h"
-#include "sim/carving/fill.h"
 #include "sim/fat/fat_model.h"
 
 namespace calot {

@@ -7,7 +7,6 @@
 #include <cstdint>
 
 #include "sim/geometry/triangle_mesh.h"
-#include "sim/math/bounds.h"
 #include "sim/math/linear.h"
 
 namespace calot {

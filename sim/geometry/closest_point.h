@@ -8,12 +8,11 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "sim/math/bounds.h"
 #include "sim/math/linear.h"
 
 namespace calot {
 
-/// Where on a triangle a closest point lies. Edge k joins corner k and corner (k + 1) mod 3.
+/// Feature of a triangle on which a closest point lies. Edge k joins corner k and corner (k + 1) mod 3.
 enum class TriangleFeature : std::uint8_t { face, edge0, edge1, edge2, vertex0, vertex1, vertex2 };
 
 [[nodiscard]] constexpr TriangleFeature edgeFeature(int k) { return static_cast<TriangleFeature>(1 + k); }

@@ -9,9 +9,8 @@
 #include <limits>
 
 #include "sim/geometry/convex_scan.h"
-#include "sim/geometry/distance_signs.h"
 #include "sim/geometry/surface_features.h"
-#include "sim/math/bounds.h"
+#include "sim/math/linear.h"
 
 namespace calot {
 namespace {

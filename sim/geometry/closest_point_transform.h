@@ -10,7 +10,7 @@
 
 namespace calot {
 
-/// How inside and outside were distinguished.
+/// Method by which inside and outside were distinguished.
 enum class SignRule {
   pseudonormals,  ///< angle-weighted pseudonormals (Baerentzen and Aanaes 2005)
   regions,        ///< one winding number for each region that the surface does not cut

@@ -6,7 +6,6 @@
 #include <array>
 #include <cstddef>
 
-#include "sim/math/bounds.h"
 #include "sim/math/linear.h"
 
 namespace calot {

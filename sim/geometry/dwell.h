@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How long moving things are near each other: exact intervals within a step, for straight relative motion.
+// Time for which moving bodies are near each other: exact intervals within a step, for straight relative motion.
 //
 // Time runs from 0 to 1 over a step. A region is a convex set grown by a radius, at rest; a point that moves through it
 // in a straight line is inside for one interval, whose ends are roots of linear and quadratic equations. So shares of a
@@ -34,19 +34,20 @@ struct MovingPoint {
   Vec3 now = Vec3::Zero();     ///< and at its end
 };
 
-/// When a point that moves from `from` by `way` is within `radius` of segment a-b (a ball where a = b).
+/// Interval in which a point that moves from `from` by `way` is within `radius` of segment a-b (a ball where a = b).
 /// @pre radius >= 0
 [[nodiscard]] StepInterval insideCapsule(const Vec3& from, const Vec3& way, const Vec3& a, const Vec3& b,
                                          double radius);
 
-/// When segment s0-s1, moving by `way` relative to segment c0-c1, is within `radius` of it. Both as they are in the
-/// middle of the step. (The vectors that bring a point of one segment to a point of the other are a parallelogram: the
-/// origin moves through it, grown by `radius`.)
+/// Interval in which segment s0-s1, moving by `way` relative to segment c0-c1, is within `radius` of it. Both as they
+/// are in the middle of the step. (The vectors that bring a point of one segment to a point of the other are a
+/// parallelogram: the origin moves through it, grown by `radius`.)
 [[nodiscard]] StepInterval segmentsNear(const Vec3& s0, const Vec3& s1, const Vec3& c0, const Vec3& c1, const Vec3& way,
                                         double radius);
 
-/// When a point is within `reach` of a capsule's surface. The capsule keeps the shape of mid-step and moves like its
-/// part that is nearest to the point then: exact for translations, of second order in the angle that it turns.
+/// Interval in which a point is within `reach` of a capsule's surface. The capsule keeps the shape of mid-step and
+/// moves like its part that is nearest to the point then: exact for translations, of second order in the angle that it
+/// turns.
 [[nodiscard]] StepInterval near(const MovingCapsule& capsule, const MovingPoint& point, double reach);
 
 /// The same of a segment.

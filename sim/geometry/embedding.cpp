@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include "sim/geometry/surface_distance.h"
-#include "sim/math/bounds.h"
+#include "sim/math/linear.h"
 
 namespace calot {
 

@@ -33,7 +33,7 @@ struct HoleFilling {
 
 /// Fills holes without new vertices: of all triangulations of a loop the one whose sharpest edge, to its surroundings
 /// and within, is the flattest; of equally flat ones the one of least area (Liepa, "Filling Holes in Meshes", 2003).
-/// Where every one of them would need an edge that is there already, a vertex in the loop's centre is joined to all of
+/// If each of them would need an edge that exists already, a vertex in the loop's centre is joined to all of
 /// its edges. A filling is oriented like its surroundings; whether it crosses other parts of the surface is not
 /// looked at (self_crossing.h does).
 [[nodiscard]] HoleFilling fillHoles(const TriangleMesh& mesh);

@@ -8,8 +8,8 @@
 
 #include "sim/geometry/surface_distance.h"
 #include "sim/geometry/surface_report.h"
-#include "sim/math/bounds.h"
 #include "sim/math/elementary.h"
+#include "sim/math/linear.h"
 
 namespace calot {
 namespace {

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "sim/geometry/surface_report.h"
-#include "sim/math/bounds.h"
 #include "sim/math/elementary.h"
+#include "sim/math/linear.h"
 
 namespace calot {
 namespace {

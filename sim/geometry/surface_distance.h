@@ -10,7 +10,7 @@
 
 namespace calot {
 
-/// How inside and outside are distinguished.
+/// Method by which inside and outside are distinguished.
 enum class InsideRule {
   automatic,     ///< pseudonormals when the surface is closed, manifold and consistently oriented, else winding number
   pseudonormal,  ///< angle-weighted pseudonormals (Baerentzen and Aanaes 2005): exact on closed manifolds without

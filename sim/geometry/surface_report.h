@@ -2,6 +2,8 @@
 // Inspection of an imported surface, and repairs that invent nothing.
 #pragma once
 
+#include <cstddef>
+
 #include "sim/geometry/triangle_mesh.h"
 
 namespace calot {
@@ -33,7 +35,7 @@ struct SurfaceReport {
 
 [[nodiscard]] SurfaceReport inspectSurface(const TriangleMesh& mesh);
 
-/// What repairSurface did.
+/// Repairs that repairSurface() made.
 struct SurfaceRepair {
   TriangleMesh mesh;
   int weldedVertices = 0;     ///< merged with an earlier vertex at exactly the same position
@@ -52,5 +54,21 @@ struct SurfaceRepair {
 /// orients closed components outward (cavities inward). Holes and non-manifold edges remain; orientation does not
 /// spread across the latter. Triangles and vertices keep their order.
 [[nodiscard]] SurfaceRepair repairSurface(const TriangleMesh& mesh);
+
+// Self-intersections of a surface.
+
+struct SelfCrossing {
+  std::size_t pairs = 0;  ///< pairs of triangles that cross; at most the limit
+  int first = -1;         ///< the first such pair found, in the order of the sweep; -1: none
+  int second = -1;
+  Vec3 where = Vec3::Zero();  ///< of it, on both triangles (m)
+};
+
+/// Pairs of triangles of which an edge of one passes through the inside of the other, found by sweeping along the
+/// longest axis of the bounds. Triangles that only touch (in a point, along an edge, coplanar) or share an edge do not
+/// cross. Cost grows with the pairs whose bounds overlap along that axis.
+/// @param maxPairs stop after this many pairs
+/// @pre indices are in range, coordinates finite
+[[nodiscard]] SelfCrossing findSelfCrossing(const TriangleMesh& mesh, std::size_t maxPairs = 1000);
 
 }  // namespace calot

@@ -7,12 +7,38 @@
 #include <vector>
 
 #include "sim/contact/contact_solver.h"
-#include "sim/haptics/port_force.h"
 #include "sim/instruments/port.h"
 #include "sim/math/fields.h"
 #include "sim/math/linear.h"
 
 namespace calot {
+
+// Force of a real instrument's port on the hand: friction of the trocar's seal along the shaft, resistance of the
+// abdominal wall to tilting it. Shown to the hand; no part of contact, of forces on structures or of State.
+
+/// A port as the hand feels it. Zero: not at all.
+struct PortModel {
+  Vec3 port = Vec3::Zero();         ///< p_WP, pivot of the shaft (m)
+  Vec3 neutralAxis = Vec3::Zero();  ///< unit, along which the wall holds the trocar by itself
+  double trocarFriction = 0.0;      ///< largest friction along the shaft (N)
+  double wallStiffness = 0.0;       ///< k, of the wall to tilting (N m/rad)
+  /// Stiffness of a seal that sticks to the shaft (N/m): the hand's coupling stiffness, which the device renders
+  /// stably. Assumed; more takes less of a stroke until it slips.
+  double sealStiffness = 1000.0;
+
+  [[nodiscard]] bool felt() const { return trocarFriction > 0.0 || wallStiffness > 0.0; }
+};
+
+/// Force on the hand at the tip (f_W, N).
+/// Friction: Coulomb's, in Prandtl's form. The seal sticks to the shaft and is stretched by up to friction over
+/// stiffness, then slips; so the force goes through zero continuously when the motion reverses, does not depend on the
+/// noise of a speed, and never does work on the hand over a closed path.
+/// Wall: torque k sin(tilt) about the port towards the neutral axis n, from the potential k (1 - n . a) with a the axis
+/// of the shaft; as a force at the tip at distance L from the port, k (n - (n . a) a) / L. For small tilts k times
+/// tilt.
+/// @param seal distance of port and tip at which the seal is unstretched (m); moved where it slips; negative: here
+/// @pre the tip is at least minInsertion from the port
+Vec3 portForce(const PortModel& model, const Vec3& tip, double& seal);
 
 /// The contact problem of one hand after a step, reduced to the instrument (frame I: tip and roll). With q the stretch
 /// of the virtual coupling from the simulated instrument to the real one,
@@ -72,9 +98,9 @@ struct HapticState {
   }
 };
 
-/// Are the sizes of a set consistent and its numbers finite? Checks data read from a file.
+/// True if the sizes of a set are consistent and its numbers finite. For data read from a file.
 bool isConsistent(const ContactSet& set);
-/// Does this haptic state fit this contact set?
+/// True if this haptic state fits this contact set.
 bool isConsistent(const HapticState& state, const ContactSet& set);
 
 /// Parameters of a hand for the tick.

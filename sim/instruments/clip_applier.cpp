@@ -2,8 +2,8 @@
 // Jaws of 16 mm at a shaft of 5 mm, with a lift that leaves room for a clip; twice as large at 10 mm.
 #include "sim/math/no_fused_pairs.h"  // first
 
+#include "sim/instruments/instrument_shape.h"
 #include "sim/instruments/instruments.h"
-#include "sim/instruments/shape_builder.h"
 
 namespace calot {
 

@@ -2,8 +2,8 @@
 // Jaws of 17 mm, 3.9 to 2.6 mm wide.
 #include "sim/math/no_fused_pairs.h"  // first
 
+#include "sim/instruments/instrument_shape.h"
 #include "sim/instruments/instruments.h"
-#include "sim/instruments/shape_builder.h"
 
 namespace calot {
 

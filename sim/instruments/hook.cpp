@@ -4,8 +4,8 @@
 
 #include <cstddef>
 
+#include "sim/instruments/instrument_shape.h"
 #include "sim/instruments/instruments.h"
-#include "sim/instruments/shape_builder.h"
 
 namespace calot {
 

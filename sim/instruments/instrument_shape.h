@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What an instrument is for contact: a union of capsules, rigid in its frame I (origin at the tip, z along the shaft
+// An instrument's contact shape: a union of capsules, rigid in its frame I (origin at the tip, z along the shaft
 // towards the tip, x along the jaws' hinge). The implicit function at p is the least over all capsules of
 //   |p - (nearest point of the capsule's segment)| - radius.
 //
@@ -75,5 +75,44 @@ InstrumentShape placed(const InstrumentShape& shape, const Pose& pose);
 /// The line between the closed jaws along which an instrument of action `grasp` holds tissue, in I (m), from where the
 /// teeth begin to the tips. @param shaftRadius m
 std::pair<Vec3, Vec3> graspLine(const InstrumentDefinition& instrument, double shaftRadius);
+
+// Builder of the instruments' contact shapes. Internal to this folder.
+
+inline constexpr double mm = 1e-3;                 ///< m
+inline constexpr double nominalRadius = 2.5 * mm;  ///< of a shaft: sizes in definitions are those of 5 mm instruments
+
+/// Fills a shape. Points and radii are given in I, scaled: a definition multiplies its sizes with `scale()`.
+class ShapeBuilder {
+ public:
+  /// @param shape empty @param jaw rad, clamped to [0, InstrumentShape::widestJaw]; not a number counts as closed
+  /// @param shaftRadius m @param length from the port to the tip (m)
+  ShapeBuilder(InstrumentShape& shape, double jaw, double shaftRadius, double length);
+
+  [[nodiscard]] double scale() const { return scale_; }  ///< 1 for a shaft of 5 mm
+  [[nodiscard]] double millimetre() const { return mm * scale_; }
+
+  void add(const Vec3& p0, const Vec3& p1, double radius, Capsule::Part part);
+  /// Sets the position of the jaws' hinge on the z axis (m). Call before adding a jaw.
+  void setHinge(double z) { hinge_ = z; }
+  /// A part of both jaws, given for the upper one when closed, from the hinge's line: x along it, y across, z to the
+  /// tip.
+  void addJaws(const Vec3& p0, const Vec3& p1, double radius);
+  /// The fork that holds the hinge, from `sleeve` to a little past the hinge. After the jaws.
+  void addFork(double sleeve);
+  /// The shaft, in pieces from the working end towards the port. @param sleeve z where its full radius ends (m). Last.
+  void addShaft(double sleeve);
+
+  /// The reaches of what was built.
+  void measure();
+
+ private:
+  InstrumentShape& shape_;
+  double scale_;
+  double shaftRadius_;
+  double length_;
+  double cosine_;  ///< of half the jaw angle
+  double sine_;
+  double hinge_ = 0.0;
+};
 
 }  // namespace calot

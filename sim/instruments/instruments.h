@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is known of each instrument. Each has its definition in a file of its own here; the step, scene files,
+// Definitions of the instruments. Each has its definition in a file of its own here; the step, scene files,
 // recordings, pictures and the trainer take from it what they need.
 #pragma once
 
@@ -13,7 +13,7 @@ namespace calot {
 
 class ShapeBuilder;
 
-/// What an instrument does to tissue, besides pushing it.
+/// Effect of an instrument on tissue, besides pushing it.
 enum class InstrumentAction : std::uint8_t {
   none,
   grasp,  ///< closing jaws hold the tissue between them
@@ -61,10 +61,10 @@ std::span<const InstrumentDefinition* const> instruments();
 /// Total: a number that no instrument has counts as nothing mounted.
 const InstrumentDefinition& instrumentOf(InstrumentKind kind);
 
-/// By its name in scene files; null where there is none.
+/// Instrument by its name in scene files; null if unknown.
 const InstrumentDefinition* findInstrument(std::string_view name);
 
-/// Is this the number of an instrument, or 0 for none?
+/// True for the number of an instrument, and for 0 (none).
 bool isInstrumentNumber(unsigned number);
 
 }  // namespace calot

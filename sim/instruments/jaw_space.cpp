@@ -3,7 +3,7 @@
 
 #include "sim/instruments/jaw_space.h"
 
-#include "sim/instruments/shape_builder.h"
+#include "sim/instruments/instrument_shape.h"
 #include "sim/math/elementary.h"
 
 namespace calot {

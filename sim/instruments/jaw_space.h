@@ -33,7 +33,8 @@ struct SmallPolygon {
   std::size_t count = 0;
 };
 
-/// What of triangle abc (in I) lies between the jaws; a segment is a triangle with two equal corners. May be empty.
+/// The part of triangle abc (in I) that lies between the jaws; a segment is a triangle with two equal corners. May be
+/// empty.
 SmallPolygon between(const JawSpace& space, const Vec3& a, const Vec3& b, const Vec3& c);
 
 }  // namespace calot

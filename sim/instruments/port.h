@@ -19,7 +19,7 @@ Quat alongAxis(const Vec3& axis, const Vec3& roll);
 /// undefined. @param previousAxis unit, from port to tip
 Pose throughPort(const Vec3& port, const Vec3& tip, const Quat& orientation, const Vec3& previousAxis);
 
-/// How a tool moves a point of itself: displacement of the tip (m), then roll about its axis (rad). The shaft turns
+/// Jacobian of a point of a tool: displacement of the tip (m), then roll about its axis (rad). The shaft turns
 /// about the port, so the point at r from the port follows a displacement d of the tip by
 ///   ((a x d) / L) x r + a (a . d),   L the tip's distance from the port, a the axis,
 /// and a roll by t about the axis by t a x (point - tip).

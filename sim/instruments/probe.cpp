@@ -2,8 +2,8 @@
 // A rod with a round end, to palpate and to push aside with.
 #include "sim/math/no_fused_pairs.h"  // first
 
+#include "sim/instruments/instrument_shape.h"
 #include "sim/instruments/instruments.h"
-#include "sim/instruments/shape_builder.h"
 
 namespace calot {
 

@@ -2,8 +2,8 @@
 // Curved blades of 15 mm.
 #include "sim/math/no_fused_pairs.h"  // first
 
+#include "sim/instruments/instrument_shape.h"
 #include "sim/instruments/instruments.h"
-#include "sim/instruments/shape_builder.h"
 
 namespace calot {
 

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "sim/judgement/judge.h"
 
 #include <algorithm>
 #include <optional>
 
-#include "sim/math/bounds.h"
+#include "sim/math/linear.h"
 
 namespace calot {
 

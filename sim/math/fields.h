@@ -21,10 +21,28 @@
 #include <type_traits>
 #include <vector>
 
-#include "sim/math/digest.h"
 #include "sim/math/linear.h"
 
 namespace calot {
+
+/// XXH3-64 (xxHash 0.8 specification, seed 0) of bytes. Not cryptographic: it detects differences but proves no origin.
+std::uint64_t digest64(std::span<const std::byte> bytes);
+
+/// Streaming form of the same hash: feeding pieces one after the other equals hashing their concatenation.
+class DigestStream {
+ public:
+  DigestStream();
+  ~DigestStream();
+  DigestStream(const DigestStream&) = delete;
+  DigestStream& operator=(const DigestStream&) = delete;
+  void reset();
+  void append(const void* data, std::size_t size);
+  [[nodiscard]] std::uint64_t value() const;
+
+ private:
+  struct Storage;
+  Storage* storage_;
+};
 
 static_assert(std::endian::native == std::endian::little, "State bytes are little-endian by contract");
 
@@ -142,7 +160,7 @@ class ByteReader {
   }
 
   [[nodiscard]] bool ok() const { return ok_; }
-  /// Were all bytes consumed and none missing?
+  /// True if all bytes were consumed and none was missing.
   [[nodiscard]] bool complete() const { return ok_ && at_ == bytes_.size(); }
 
  private:

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <cstddef>
 #include <iterator>
 #include <set>
 
@@ -144,12 +145,12 @@ std::size_t SymmetricBlocks::factor() {
     for (Mat3& block : column) block = block * inverse.transpose();
     for (std::size_t b = 0; b < column.size(); ++b) {
       const std::size_t j = below_[k][b];
-      const Mat3 turned = column[b].transpose();
-      diagonal_[j] -= column[b] * turned;
+      const Mat3 transposed = column[b].transpose();
+      diagonal_[j] -= column[b] * transposed;
       std::size_t at = 0;
       for (std::size_t a = b + 1; a < column.size(); ++a) {
         while (below_[j][at] != below_[k][a]) ++at;
-        lower_[j][at] -= column[a] * turned;
+        lower_[j][at] -= column[a] * transposed;
       }
     }
   }
@@ -201,6 +202,43 @@ std::vector<Vec3> SymmetricBlocks::solve(std::span<const Vec3> b) const {
     error = now;
   }
   return best;
+}
+
+bool invertPositive(std::span<double> a, std::size_t n) {
+  assert(a.size() == n * n);
+  for (std::size_t j = 0; j < n; ++j) {
+    double pivot = a[j * n + j];
+    for (std::size_t k = 0; k < j; ++k) pivot -= a[j * n + k] * a[j * n + k];
+    if (!(pivot > 0.0) || !std::isfinite(pivot)) return false;
+    const double inverse = 1.0 / std::sqrt(pivot);
+    a[j * n + j] = inverse;
+    for (std::size_t i = j + 1; i < n; ++i) {
+      double sum = a[i * n + j];
+      for (std::size_t k = 0; k < j; ++k) sum -= a[i * n + k] * a[j * n + k];
+      a[i * n + j] = sum * inverse;
+    }
+  }
+  // L^-1 in the lower triangle.
+  for (std::size_t j = 0; j < n; ++j) {
+    for (std::size_t i = j + 1; i < n; ++i) {
+      double sum = 0.0;
+      for (std::size_t k = j; k < i; ++k) sum -= a[i * n + k] * a[k * n + j];
+      a[i * n + j] = sum * a[i * n + i];
+    }
+  }
+  // L^-T L^-1: entry (i, j) reads rows at or below the larger index, so that processing rows from the
+  // top overwrites nothing needed.
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t j = 0; j <= i; ++j) {
+      double sum = 0.0;
+      for (std::size_t k = i; k < n; ++k) sum += a[k * n + i] * a[k * n + j];
+      a[i * n + j] = sum;
+    }
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t j = 0; j < i; ++j) a[j * n + i] = a[i * n + j];
+  }
+  return true;
 }
 
 }  // namespace calot

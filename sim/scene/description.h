@@ -14,7 +14,7 @@
 
 namespace calot {
 
-/// Where a hand's instrument enters, and how it is coupled.
+/// Port of a hand's instrument, and its virtual coupling.
 struct HandDescription {
   Vec3 port = Vec3::Zero();  ///< p_WP, the trocar's pivot (m)
   Vec3 home = Vec3::Zero();  ///< p_WI at the start (m)
@@ -62,8 +62,8 @@ struct ClipDescription {
   }
 };
 
-/// What the energised hook does to what it touches. Times are those at full power: where more than `spot` is touched,
-/// the power is shared, and each place gets spot / (all that is touched) of it.
+/// Effect of the energised hook on the tissue that it touches. Times are those at full power: where more than `spot` is
+/// touched, the power is shared, and each place gets spot / (all that is touched) of it.
 struct CauteryDescription {
   double power = 30.0;             ///< W, all of it taken to go into the tissue touched
   double reach = 0.0003;           ///< farther than this from the hook's metal nothing is touched, of any tissue (m)
@@ -105,7 +105,7 @@ struct DivideDescription {
   }
 };
 
-/// What is to be done in a scene (docs/explanation/procedure.md). Without a specimen there is nothing.
+/// Task of a scene (docs/explanation/procedure.md). Scenes without a specimen have no task.
 struct ProcedureDescription {
   std::string specimen;                   ///< organ that is to be freed
   std::string bed;                        ///< connective tissue that holds it

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What counts as a measurement of a hand, and the real pose that it gives: once for step and haptic tick.
+// Validity of a hand's measurement, and the real pose that it gives, for the step and the haptic tick alike.
 #pragma once
 
 #include "sim/scene/description.h"

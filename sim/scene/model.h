@@ -46,7 +46,7 @@ class Model : public Tissues::Models {
   [[nodiscard]] const std::vector<RetractionModel>& retractions() const { return retraction_; }
   /// Linear systems: organs, then vessel trees, then fat.
   [[nodiscard]] std::size_t bodies() const;
-  /// Is a body in equilibrium in the reference configuration? One with weight that nothing holds is not.
+  /// True if a body is in equilibrium in the reference configuration. An unsupported body with weight is not.
   [[nodiscard]] bool holds(std::size_t body) const { return held_[body]; }
   /// Index of the structure of this name, or structures().size().
   [[nodiscard]] std::size_t structureNamed(const std::string& name) const;

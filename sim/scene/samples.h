@@ -13,7 +13,7 @@ enum class Hand : std::uint8_t { left = 0, right = 1 };
 inline constexpr int handCount = 2;
 inline constexpr std::array<const char*, handCount> handNames{"left", "right"};
 
-/// What is mounted on a hand's shaft: nothing, or one of the list in sim/instruments/instrument_list.h.
+/// Instrument mounted on a hand's shaft: none, or one of the list in sim/instruments/instrument_list.h.
 /// `instrumentOf` (sim/instruments/instruments.h) gives all that is known of a kind.
 #define CALOT_INSTRUMENT_NUMBER(name, number) name = (number),
 enum class InstrumentKind : std::uint8_t { none = 0, CALOT_INSTRUMENTS(CALOT_INSTRUMENT_NUMBER) };

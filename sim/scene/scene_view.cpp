@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "sim/scene/scene_view.h"
 
-#include "sim/scene/down.h"
 #include "sim/scene/scene_viewer.h"
 
 namespace calot {

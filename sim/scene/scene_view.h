@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a renderer may know: surfaces, instruments, camera; never the State behind them.
+// Everything that a renderer sees: surfaces, instruments, camera; never the State behind them.
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -45,5 +46,11 @@ struct SceneView {
   double verticalFieldOfView = 1.0;  ///< rad
   Vec3 down = -Vec3::UnitY();        ///< where gravity pulls, unit; of a scene without gravity -y, as scenes are drawn
 };
+
+/// SceneView::down of a scene with this gravity (m/s^2): its direction, or the view's default where there is none.
+inline Vec3 downOf(const Vec3& gravity) {
+  const double strength = gravity.norm();
+  return std::isfinite(strength) && strength > 0.0 ? Vec3(gravity / strength) : SceneView().down;
+}
 
 }  // namespace calot

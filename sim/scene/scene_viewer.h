@@ -8,7 +8,7 @@
 #include "sim/scene/model.h"
 #include "sim/scene/scene_view.h"
 #include "sim/scene/state.h"
-#include "sim/tissue/tissue_viewer.h"
+#include "sim/tissue/structure.h"
 
 namespace calot {
 

@@ -11,14 +11,61 @@
 #include <vector>
 
 #include "sim/math/random.h"
+#include "sim/scene/description.h"
 #include "sim/scene/digests.h"
 #include "sim/scene/model.h"
-#include "sim/scene/retraction.h"
 #include "sim/scene/samples.h"
 #include "sim/scene/step_result.h"
 #include "sim/tissue/tissues.h"
 
 namespace calot {
+
+// An assistant's retraction: where its pull is, and how a request moves it.
+
+/// Variable part of a scene's retractions, one number of each. Positions are shares of
+/// RetractionDescription::displacement; each move runs from one share to another along a cubic that goes on from the
+/// speed at hand and ends at rest.
+struct RetractionState {
+  std::vector<double> from;   ///< share where the move began
+  std::vector<double> speed;  ///< and its rate there (1/s)
+  std::vector<double> goal;   ///< share where it ends
+  std::vector<double> begun;  ///< when it began (s)
+  std::vector<double> takes;  ///< how long it lasts (s), above 0
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("from", self.from);
+    visit("speed", self.speed);
+    visit("goal", self.goal);
+    visit("begun", self.begun);
+    visit("takes", self.takes);
+  }
+};
+
+/// A retraction at one moment.
+struct RetractionPlace {
+  double share = 0.0;
+  double rate = 0.0;  ///< of the share (1/s)
+};
+
+/// The pulls that the scene itself has: from nothing to the whole displacement.
+RetractionState retractionsAtStart(const SceneDescription& scene);
+
+/// One number of each retraction, and moves that take time?
+bool fits(const SceneDescription& scene, const RetractionState& state);
+
+/// @param which of the scene's retractions @param time of the attempt (s)
+/// @pre fits(scene, state)
+RetractionPlace retractionAt(const RetractionState& state, std::size_t which, double time);
+
+/// True while it moves.
+bool isMoving(const RetractionState& state, std::size_t which, double time);
+
+/// The trainee asks for one stage more, or less: the goal moves by RetractionDescription::stage within 0 and `most`,
+/// and the pull sets out for it from where it is, at the mean speed of the scene's own pull. At a limit nothing
+/// changes.
+void askForRetraction(const RetractionDescription& of, std::size_t which, double time, bool more,
+                      RetractionState& state);
 
 struct ClockState {
   std::uint64_t step = 0;  ///< the next step to compute
@@ -69,7 +116,7 @@ struct HandState {
   std::uint32_t grasped = noStructure;       ///< structure that the jaws hold
   bool jawsOpened = false;  ///< since they last closed: only then do they grasp, clip or cut when they close
   std::uint32_t clips = 0;  ///< left in the clip applier
-  /// What the hook burns (a structure, or 100 + connective tissue), and energy put into it so far (J).
+  /// Tissue that the hook burns (a structure, or 100 + connective tissue), and energy put into it so far (J).
   std::uint32_t burning = noStructure;
   double burnedEnergy = 0.0;
   /// Places of its skin that the jaws hold: corners of a triangle and barycentric coordinates,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a step reports: the versioned contract (stepResultVersion) on which judgement, analytics and pictures stand.
+// Results of a step: the versioned contract (stepResultVersion) on which judgement, analytics and pictures stand.
 // Raw facts alone: what they mean for a grade is judged by an observer (sim/judgement).
 #pragma once
 
@@ -89,7 +89,7 @@ struct Event {
   }
 };
 
-/// What the hook's current does. Numbers are stored in recordings.
+/// State of the hook's current. Numbers are stored in recordings.
 enum class Cautery : std::uint8_t { off = 0, withoutContact = 1, onTissue = 2 };
 
 /// One instrument at the end of a step.
@@ -203,7 +203,7 @@ namespace miss {
 inline constexpr std::uint32_t solver = 1U << 0U;
 inline constexpr std::uint32_t contact = 1U << 1U;
 inline constexpr std::uint32_t speed = 1U << 3U;    ///< some tissue was held back: EventKind::motionHeldBack
-inline constexpr std::uint32_t runaway = 1U << 2U;  ///< State is worth nothing from here on: the attempt is to end
+inline constexpr std::uint32_t runaway = 1U << 2U;  ///< the State is invalid from here on: the attempt has to end
 }  // namespace miss
 
 /// Everything that a step reports, in the order of its groups: both hands, then what is in `Tissues`, the contact

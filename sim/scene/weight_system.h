@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What carries the weight of a scene where it is drawn. Internal to this folder.
+// Equilibrium of a scene's weight in the reference configuration. Internal to this folder.
 //
 // A scene is drawn as it is in the body, under gravity g: there every force is to be in equilibrium. The law of all
 // tissue is linear about that reference configuration, so the inverse problem is linear too: with K the stiffness of

@@ -11,7 +11,8 @@
 #include <span>
 #include <vector>
 
-#include "sim/math/lanes.h"
+#include "sim/math/linear.h"
+#include "sim/math/vectors.h"
 
 namespace calot {
 
@@ -75,5 +76,16 @@ class BlockMatrix {
   std::vector<std::uint8_t> left_;          ///< per row: number of blocks left of the diagonal
   std::vector<std::int32_t> column_;
 };
+
+// Sums of 3x3 blocks between nodes, each rotated with its nodes: compliance between two points of a body.
+
+/// A matrix by columns, each padded to four numbers.
+using RotatedColumns = std::array<double, 12>;
+RotatedColumns columnsOf(const Mat3& matrix);
+
+/// sum over i, then j of  A_i B_ij C_j^T, in this order, with the bits of the plain expression of Eigen.
+/// @param block B_ij, row-major, at 9 (i nb + j) for nb matrices C; and one number of padding
+/// @pre block.size() = 9 na nb + 1
+Mat3 sumOfRotated(std::span<const RotatedColumns> a, std::span<const double> block, std::span<const RotatedColumns> c);
 
 }  // namespace calot

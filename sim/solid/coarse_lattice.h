@@ -12,14 +12,14 @@
 #include <span>
 #include <vector>
 
-#include "sim/solid/row_sweeps.h"
+#include "sim/solid/row_lanes.h"
 #include "sim/solid/solid_model.h"
 
 namespace calot {
 
 class CoarseLattice {
  public:
-  /// Does a lattice pay off? In small solids, sweeps alone are as fast.
+  /// True if a lattice pays off. In small solids, sweeps alone are as fast.
   static bool isWorthwhile(const SolidModel& model);
 
   /// @param rest values of the whole system's matrix in the reference configuration (BlockMatrix)

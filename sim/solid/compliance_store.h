@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where the columns of a scene's rest compliances are kept beyond one stepper. They depend on the Model alone, so every
+// Cache of a scene's rest compliances, shared by steppers. They depend on the Model alone, so every
 // run of it can have them from any other.
 #pragma once
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "sim/solid/conjugate_gradient.h"
 
 #include <algorithm>
@@ -6,7 +7,6 @@
 
 #include "sim/solid/row_lanes.h"
 #include "sim/solid/sweeps.h"
-#include "sim/solid/system_coupling.h"
 
 namespace calot {
 

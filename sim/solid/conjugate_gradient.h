@@ -130,4 +130,19 @@ class ConjugateGradient {
   bool pairs_ = false;                      ///< does the present solve have a lattice?
 };
 
+// Coupling of the linear systems of several solids.
+
+class ConjugateGradient;
+
+class SystemCoupling {
+ public:
+  SystemCoupling() = default;
+  SystemCoupling(const SystemCoupling&) = delete;
+  SystemCoupling& operator=(const SystemCoupling&) = delete;
+  virtual ~SystemCoupling() = default;
+
+  /// Adds its part of the product with the present search directions, both ways; of one system, twice the same.
+  virtual void addTo(ConjugateGradient& first, ConjugateGradient& second) = 0;
+};
+
 }  // namespace calot

@@ -2,7 +2,7 @@
 // Isotropic dampers between points of two solids, in the matrix of both as one system: the blocks beside the solids'
 // own matrices,
 //   A_pq = -h sum of c_s w_sp w_sq I   over the dampers s, for node p of the first solid and q of the second.
-// What a damper adds to the solids' own matrices is an Attachment of each.
+// Each damper also enters the solids' own matrices, as an Attachment.
 #pragma once
 
 #include <array>
@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "sim/math/vectors.h"
+#include "sim/solid/conjugate_gradient.h"
 #include "sim/solid/solid.h"
-#include "sim/solid/system_coupling.h"
 
 namespace calot {
 

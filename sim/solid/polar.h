@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "sim/math/lanes.h"
+#include "sim/math/vectors.h"
 
 namespace calot {
 

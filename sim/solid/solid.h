@@ -13,7 +13,6 @@
 #include "sim/solid/coarse_lattice.h"
 #include "sim/solid/conjugate_gradient.h"
 #include "sim/solid/solid_model.h"
-#include "sim/solid/stiffness_assembly.h"
 
 namespace calot {
 

@@ -72,7 +72,7 @@ class SolidSystem {
   };
   /// Block columns of the whole matrix including diagonals, ordered so that blocks of consecutive elements are close.
   [[nodiscard]] const std::vector<Column>& columns() const { return column_; }
-  /// Of tetrahedra 16 element + 4 a + b, for K_ab. Of cubes 2 (36 element + HexahedralElements::pairOf()), and
+  /// For tetrahedra 16 element + 4 a + b, for K_ab. Of cubes 2 (36 element + HexahedralElements::pairOf()), and
   /// 1 more where it is transposed. Lanes with fewer contributions are padded with noElement(): equal trip
   /// counts avoid branch mispredictions.
   [[nodiscard]] const std::vector<std::uint32_t>& sources() const { return columnSource_; }

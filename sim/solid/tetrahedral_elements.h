@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "sim/math/executor.h"
-#include "sim/math/lanes.h"
 #include "sim/math/linear.h"
+#include "sim/math/vectors.h"
 #include "sim/solid/polar.h"
 
 namespace calot {

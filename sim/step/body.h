@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the step needs of the mechanics and of the skin of whatever can be touched: an organ, vessels, fat. Internal to
+// Mechanics and skin of a body that can be touched, as the step sees them: an organ, vessels, fat. Internal to
 // this folder.
 //
-// A body is what is solved as one; a structure is what has a name and a skin. Vessels that grow out of one another are
+// A body is solved as one system; a structure has a name and a skin. Vessels that grow out of one another are
 // one body and several structures; everything else is one of each.
 #pragma once
 
@@ -81,9 +81,9 @@ class Skin {
   virtual bool follow(const State& state) = 0;
   /// @pre follow(), as for all that comes
   [[nodiscard]] virtual const ContactSurface& surface() const = 0;
-  /// Where its vertices are (m).
+  /// Positions of its vertices (m).
   virtual void place(const State& state, std::vector<Vec3>& out) const = 0;
-  /// Is there such a vertex now?
+  /// True if this vertex exists now.
   [[nodiscard]] virtual bool exists(int /*node*/) const { return true; }
   /// A place on the skin in terms of the body's nodes.
   [[nodiscard]] virtual SolidSolver::Impulse influence(const std::array<int, 3>& corner, const Vec3& weight) const = 0;

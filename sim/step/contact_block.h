@@ -36,7 +36,7 @@ struct ContactBlock {
   std::array<double, 3> gap{};  ///< now; slip counts from the step's beginning (m)
   Vec3 where = Vec3::Zero();    ///< of instruments on each other: the place (m, W)
   std::uint64_t key = 0;        ///< names the contact point: equal in two steps means the same one
-  /// Of an instrument on an organ (contact_dimples.h): the capsule's radius, its number, the place on the skin, the
+  /// For an instrument on an organ (contact_dimples.h): the capsule's radius, its number, the place on the skin, the
   /// size of the patch over which the mesh spreads a force there (m), and the dimple that it presses.
   double radius = 0.0;
   std::size_t piece = 0;
@@ -59,7 +59,7 @@ struct ContactBlock {
   }
 };
 
-/// How one instrument moved before contact, and what the virtual coupling still asks for.
+/// Contact-free motion of an instrument, and the displacement that the virtual coupling still demands.
 struct InstrumentTravel {
   Pose before;                        ///< simulated pose at the step's beginning
   Pose reference;                     ///< simulated pose after the contact-free advance
@@ -68,7 +68,7 @@ struct InstrumentTravel {
 };
 using InstrumentTravels = std::array<InstrumentTravel, handCount>;
 
-/// What one capsule of an instrument presses into an organ (contact_dimples.h).
+/// Pressure of one capsule of an instrument on an organ (contact_dimples.h).
 struct Dimple {
   std::size_t hand = 0;
   std::uint64_t key = 0;       ///< structure and capsule

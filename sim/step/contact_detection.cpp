@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/math/no_fused_pairs.h"  // first
+
 #include "sim/step/contact_detection.h"
 
 #include <algorithm>
 #include <cmath>
 
+#include "sim/math/linear.h"
 #include "sim/step/contact_dimples.h"
 #include "sim/step/instrument_motion.h"
-#include "sim/step/pressed_patch.h"
 #include "sim/step/sleeping.h"
 
 namespace calot {
@@ -126,6 +128,129 @@ void ContactDetection::run(Surfaces& surfaces, Bodies& bodies, const InstrumentT
     if (block.isClash()) return false;
     return !activity.awake[block.body] && (block.other == ContactBlock::none || !activity.awake[block.other]);
   });
+}
+
+namespace {
+
+/// Radius of the ring, in those of the capsule, and how many of its points the contact point counts as. A larger ring
+/// or a lighter centre: sheets as thin as the tool are pierced by fast ones; the opposite: deep presses are too soft on
+/// fine meshes and too firm beside a coarse one's vertices. Measured (docs/explanation/accuracy.md).
+constexpr double ringRadius = 1.4;
+constexpr double centrePoints = 2.0;
+/// Directions of the ring's points: the corners of a regular hexagon. Fewer: their places in the cells show.
+constexpr std::array<std::array<double, 2>, 6> ringPoint{{{1.0, 0.0},
+                                                          {0.5, 0.8660254037844386},
+                                                          {-0.5, 0.8660254037844386},
+                                                          {-1.0, 0.0},
+                                                          {-0.5, -0.8660254037844386},
+                                                          {0.5, -0.8660254037844386}}};
+constexpr int maxWalk = 16;  ///< triangles between a contact point and one of its ring; beyond, it stays behind
+
+struct SkinPoint {
+  std::size_t triangle = 0;
+  Vec3 weight = Vec3::Zero();
+};
+
+Vec3 pointAt(const std::vector<Vec3>& points, const std::array<int, 3>& node, const Vec3& weight) {
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t k = 0; k < 3; ++k) sum += weight[static_cast<int>(k)] * points[static_cast<std::size_t>(node[k])];
+  return sum;
+}
+
+std::size_t triangleOf(const ContactSurface& mesh, const std::array<int, 3>& node) {
+  const std::span<const std::uint32_t> around = mesh.trianglesAround(node[0]);
+  const auto same = [&](std::uint32_t t) {
+    const Index3& at = mesh.triangles()[t];
+    return at[0] == node[0] && at[1] == node[1] && at[2] == node[2];
+  };
+  const auto found = std::find_if(around.begin(), around.end(), same);
+  return found == around.end() ? around[0] : *found;
+}
+
+/// The skin's point below or above another, from triangle to triangle; on the last one's border where the skin turns
+/// away from it.
+SkinPoint walkTo(const Vec3& target, const ContactSurface& mesh, const std::vector<Vec3>& points,
+                 const SkinPoint& start) {
+  SkinPoint at = start;
+  std::size_t before = at.triangle;
+  for (int step = 0;; ++step) {
+    const Index3& t = mesh.triangles()[at.triangle];
+    const Vec3& a = points[static_cast<std::size_t>(t[0])];
+    const Vec3 ab = points[static_cast<std::size_t>(t[1])] - a;
+    const Vec3 ac = points[static_cast<std::size_t>(t[2])] - a;
+    const Vec3 normal = ab.cross(ac);
+    const double area = normal.squaredNorm();
+    if (!(area > 0.0)) return start;
+    const Vec3 way = target - a;
+    const double b = way.cross(ac).dot(normal) / area;
+    const double c = ab.cross(way).dot(normal) / area;
+    at.weight = Vec3(1.0 - b - c, b, c);
+    int least = 0;
+    at.weight.minCoeff(&least);
+    if (at.weight[least] >= 0.0) return at;
+    const int next = mesh.neighbourTriangle(at.triangle, (least + 1) % 3);
+    if (next < 0 || static_cast<std::size_t>(next) == before || step == maxWalk) break;
+    before = at.triangle;
+    at.triangle = static_cast<std::size_t>(next);
+  }
+  at.weight = notNegative(at.weight);
+  at.weight /= at.weight.sum();
+  return at;
+}
+
+/// Two directions along a plane that turn little where its normal does: the smallest rotation from +y to the normal
+/// takes x and z there. They turn fast near -y.
+std::array<Vec3, 2> alongPlane(const Vec3& n) {
+  const double a = 1.0 / std::max(1.0 + n[1], 1e-6);
+  return {Vec3(1.0 - n[0] * n[0] * a, -n[0], -n[0] * n[2] * a), Vec3(-n[0] * n[2] * a, -n[2], 1.0 - n[2] * n[2] * a)};
+}
+
+/// Adds a place's share to another. @return false: it has no room, nothing was added
+bool addPlace(SolidSolver::Impulse& place, const SolidSolver::Impulse& more) {
+  const auto end = place.node.begin() + static_cast<std::ptrdiff_t>(place.count);
+  std::size_t room = SolidSolver::Impulse::maxNodes - place.count;
+  for (std::size_t k = 0; k < more.count; ++k) {
+    if (std::find(place.node.begin(), end, more.node[k]) != end) continue;
+    if (room == 0) return false;
+    --room;
+  }
+  for (std::size_t k = 0; k < more.count; ++k) addShare(place, more.node[k], more.weight[k]);
+  return true;
+}
+
+}  // namespace
+
+Vec3 smoothNormal(const ContactSurface& mesh, const std::vector<Vec3>& points, const std::array<int, 3>& node,
+                  const Vec3& weight) {
+  Vec3 sum = Vec3::Zero();
+  for (int k = 0; k < 3; ++k) {
+    Vec3 corner = Vec3::Zero();
+    for (const std::uint32_t t : mesh.trianglesAround(node[static_cast<std::size_t>(k)])) {
+      const Index3& at = mesh.triangles()[t];
+      const Vec3& a = points[static_cast<std::size_t>(at[0])];
+      corner += (points[static_cast<std::size_t>(at[1])] - a).cross(points[static_cast<std::size_t>(at[2])] - a);
+    }
+    if (corner.squaredNorm() > 0.0) sum += weight[k] * corner.normalized();
+  }
+  return sum.norm() > 0.1 ? Vec3(sum.normalized()) : Vec3(Vec3::Zero());
+}
+
+SolidSolver::Impulse pressedPatch(const OrganModel& organ, const Skin& skin, const std::array<int, 3>& node,
+                                  const Vec3& weight, double radius) {
+  const Vec3 centre = pointAt(organ.skin, node, weight);
+  const std::array<Vec3, 2> along = alongPlane(smoothNormal(organ.surface, organ.skin, node, weight));
+  const SkinPoint start{triangleOf(organ.surface, node), weight};
+  SolidSolver::Impulse patch = skin.influence(node, weight);
+  for (std::size_t k = 0; k < patch.count; ++k) patch.weight[k] *= centrePoints;
+  double points = centrePoints;
+  for (const std::array<double, 2>& p : ringPoint) {
+    const Vec3 target = centre + ringRadius * radius * (p[0] * along[0] + p[1] * along[1]);
+    const SkinPoint at = walkTo(target, organ.surface, organ.skin, start);
+    const Index3& t = organ.surface.triangles()[at.triangle];
+    if (addPlace(patch, skin.influence({t[0], t[1], t[2]}, at.weight))) points += 1.0;
+  }
+  for (std::size_t k = 0; k < patch.count; ++k) patch.weight[k] /= points;
+  return patch;
 }
 
 }  // namespace calot

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "sim/contact/sphere_indentation.h"
-#include "sim/math/bounds.h"
+#include "sim/math/linear.h"
 
 namespace calot {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a mesh is too coarse to show of an instrument's pressure on an organ: the dimple under it. Internal to this
+// The dimple under an instrument that presses on an organ, which the mesh is too coarse to resolve. Internal to this
 // folder.
 //
 // A force on a mesh of cells of size h acts as if it were spread over a patch of size e: the mesh is stiffer to an
@@ -23,8 +23,8 @@
 
 namespace calot {
 
-/// How far a structure's skin gives way to a hand's capsule beyond what the mesh shows (m): detection takes the capsule
-/// as much farther out.
+/// Depth by which a structure's skin gives way to a hand's capsule beyond what the mesh resolves (m): detection takes
+/// the capsule as much farther out.
 Vec3 dimpleOf(const HandState& hand, std::size_t structure, std::size_t piece);
 
 /// Size of the patch over which an organ's mesh spreads a force that its nodes take, as seen from a place on its skin

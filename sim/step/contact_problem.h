@@ -9,7 +9,8 @@
 
 #include <vector>
 
-#include "sim/solid/rotated_blocks.h"
+#include "sim/scene/state.h"
+#include "sim/solid/block_matrix.h"
 #include "sim/step/bodies.h"
 #include "sim/step/contact_block.h"
 
@@ -62,5 +63,14 @@ class ContactProblemStage {
   std::vector<RotatedColumns> rotations_;
   std::vector<double> nodeBlocks_;
 };
+
+// Contact forces from step to step: the warm start of the contact problem. Internal to this folder.
+
+/// Numbers the rows and looks up the forces of the last step at the same contact points, projected onto what each block
+/// admits: `carried` and `lambda`.
+void loadWarmStart(const State& state, ContactSystem& contact);
+
+/// Stores the forces by contact point for the next step.
+void storeWarmStart(const ContactSystem& contact, State& state);
 
 }  // namespace calot

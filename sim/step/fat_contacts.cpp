@@ -13,8 +13,8 @@
 #include "sim/contact/capsule_contact.h"
 #include "sim/contact/surface_normal.h"
 #include "sim/geometry/closest_point.h"
-#include "sim/math/bounds.h"
 #include "sim/math/elementary.h"
+#include "sim/math/linear.h"
 #include "sim/step/contact_problem.h"
 #include "sim/step/tissue_contacts.h"
 #include "sim/step/vessel_contacts.h"
@@ -31,7 +31,7 @@ constexpr double fatRounding = 1e-9;  ///< of a motion (m)
 /// time (rows cubed); smaller lets crumpled fat sink in. Assumed.
 constexpr std::size_t maxFatContacts = 128;
 /// A cube with less of its fat than this touches nothing: it weighs next to nothing and trembles. Assumed.
-constexpr double leastFill = 0.25;
+constexpr double minFill = 0.25;
 constexpr unsigned pairShift = 40;  ///< of a contact's key: below, the cube; from here up, the pair
 
 Box boundsOf(const Surfaces& surfaces, const TissueTravel& travel, std::size_t structure, std::size_t vessel) {
@@ -72,7 +72,7 @@ double ballRadius(double volume) { return cubeRoot(0.75 / std::numbers::pi * vol
 /// Is there fat in such a cube?
 bool has(const FatBody& body, const Index3& hexahedron) {
   const int cube = body.model().cubeAt(hexahedron);
-  return cube >= 0 && !(body.fill()[static_cast<std::size_t>(cube)] < leastFill);
+  return cube >= 0 && !(body.fill()[static_cast<std::size_t>(cube)] < minFill);
 }
 
 /// Has a cube a side at which nothing lies?
@@ -160,7 +160,7 @@ void FatContacts::follow(const FatBody& body, const State& state, bool awake, Fa
   fat.speed.assign(cubes.size(), 0.0);
   fat.size.assign(cubes.size(), 0.0);
   for (std::size_t c = 0; c < cubes.size(); ++c) {
-    if (body.fill()[c] < leastFill) continue;
+    if (body.fill()[c] < minFill) continue;
     const Vec3 middle = meanOf(cubes[c], solid.position);
     fat.motion[c] = known ? (middle - fat.middle[c]).norm() : 0.0;
     fat.middle[c] = middle;

@@ -17,12 +17,12 @@ namespace calot {
 /// nearest. A cube touches only what lies on a side on which the cube beside it is gone: where the next cube is there,
 /// that one touches.
 ///
-/// What a cube is tied to it does not touch until the last of those ties is gone. A cube that overlaps an organ or a
-/// vessel in the reference configuration is measured from that depth; one whose middle lies in it there never touches
-/// it.
+/// A cube does not touch a body that it is tied to until the last of those ties is gone. A cube that overlaps an organ
+/// or a vessel in the reference configuration is measured from that depth; one whose middle lies in it there never
+/// touches it.
 ///
-/// What is far apart is not searched: for each cube and each organ or vessel the last distance found is kept, less what
-/// both have moved since. This changes no result, so it is no part of State.
+/// Bodies that are far apart are not searched: for each cube and each organ or vessel the last distance found is kept,
+/// less what both have moved since. This changes no result, so it is no part of State.
 class FatContacts {
  public:
   /// @param travel of the same model
@@ -39,7 +39,7 @@ class FatContacts {
   [[nodiscard]] std::size_t searches() const { return searches_; }
 
  private:
-  /// What fat can touch: an organ, or a vessel.
+  /// A body that fat can touch: an organ, or a vessel.
   struct Target {
     std::size_t structure = 0, body = 0;
     std::size_t vessel = ContactBlock::none;  ///< in TissueTravel's order

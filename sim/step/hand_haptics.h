@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the haptic tick needs of a hand of a scene.
+// Data of the haptic tick for a hand of a scene.
 #pragma once
 
 #include <cstddef>

@@ -1,17 +1,38 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What an energised hook touches in a step, and for how much of it. Internal to this folder.
+// Tissue that an energised hook touches in a step, and for what share of it. Internal to this folder.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "sim/connective/connective_tissue.h"
+#include "sim/scene/model.h"
+#include "sim/scene/state.h"
 #include "sim/step/bodies.h"
-#include "sim/step/hook_motion.h"
+#include "sim/step/contact_block.h"
 #include "sim/step/surfaces.h"
 
 namespace calot {
+
+// The way of an energised hook through a step. Internal to this folder.
+
+/// An energised hook's way through a step.
+struct HookSweep {
+  std::vector<MovingCapsule> electrode;  ///< what carries current; empty: no current
+  double pace = 1.0;                     ///< at which it divides tissue, of that of the cutting current
+  double charring = 1.0;                 ///< char in the same time, of that by the coagulating current
+  std::vector<std::uint8_t> piece;       ///< number of each capsule of the electrode
+  std::size_t hand = 0;                  ///< that holds it
+
+  [[nodiscard]] bool energised() const { return !electrode.empty(); }
+};
+
+/// Per hand. With both pedals pressed the current is the cutting one.
+using HookSweeps = std::array<HookSweep, handCount>;
+
+void sweepHooks(const Model& model, const InstrumentTravels& travels, const State& state, HookSweeps& sweeps);
 
 /// Touched is what is no farther from the electrode than the scene's `reach`: strands, cells of organs' skins, stations
 /// of vessels' walls, the surface of fat. Every share of the step is exact for straight motion (sim/geometry/dwell.h),
@@ -36,7 +57,7 @@ struct HookTouches {
   double area = 0.0;        ///< of everything touched, in the mean over the step (m^2)
 
   [[nodiscard]] bool any() const { return area > 0.0; }
-  /// Of the power, what each place gets: all of it as long as no more than `spot` is touched (m^2).
+  /// Share of the power that each contact point gets: all of it as long as no more than `spot` is touched (m^2).
   [[nodiscard]] double intensity(double spot) const { return area > spot ? spot / area : 1.0; }
 };
 

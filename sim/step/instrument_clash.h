@@ -5,10 +5,36 @@
 #include <cstdint>
 #include <vector>
 
+#include "sim/instruments/instrument_shape.h"
+#include "sim/scene/model.h"
+#include "sim/scene/state.h"
 #include "sim/step/contact_block.h"
-#include "sim/step/placed_instrument.h"
 
 namespace calot {
+
+// A hand's instrument as capsules in W, and how far its jaws may sink into tissue. Internal to this folder.
+
+/// Simulated pose of a hand's instrument: p_WI, q_WI.
+inline Pose simulatedPose(const HandState& hand) { return {hand.simulatedPosition, hand.simulatedOrientation}; }
+
+/// The instrument's capsules at a pose.
+struct PlacedInstrument {
+  InstrumentShape local;         ///< in I
+  Pose pose;                     ///< p_WI, q_WI
+  Vec3 port = Vec3::Zero();      ///< p_WP (m)
+  std::vector<Capsule> capsule;  ///< in W
+
+  void place(const HandDescription& hand, InstrumentKind kind, const Pose& at, double jaw);
+};
+
+/// At which a hand's hook divides tissue now, of the cutting current's pace; 0 without current.
+double currentPace(const CauteryDescription& cautery, const HandState& hand);
+
+/// Depth to which this part of the instrument may enter a structure (m): jaws in what they grasp, because a mesh does
+/// not fold between them, and in a vessel that they close a clip on, because a tube does not flatten between them; an
+/// energised electrode in fat, as far as that recedes in a step; 0 otherwise.
+double allowedDepth(const Model& model, const State& state, std::size_t hand, const Capsule& capsule,
+                    std::size_t structure);
 
 /// Coulomb coefficient of an instrument on the other. Larger: shafts that cross drag each other along; smaller: they
 /// slide off. Assumed: wet polished steel.
@@ -26,7 +52,7 @@ struct ClashPoint {
 /// Bits 56 to 63 of a clash's key; no piece of an instrument has this number.
 inline constexpr std::uint64_t clashKey = std::uint64_t{0xFF} << 56U;
 
-/// Are two instruments surely farther apart than `reach`? One test of their axes.
+/// True if two instruments are surely farther apart than `reach`: one test of their axes.
 bool surelyApart(const PlacedInstrument& a, const PlacedInstrument& b, double reach);
 
 /// Least distance of two instruments' surfaces (m), negative where they overlap; at most `limit`. Points in a port,

@@ -7,7 +7,6 @@
 #include "sim/contact/capsule_contact.h"
 #include "sim/instruments/port.h"
 #include "sim/step/instrument_clash.h"
-#include "sim/step/placed_instrument.h"
 #include "sim/step/surfaces.h"
 
 namespace calot {
@@ -31,7 +30,7 @@ class PenetrationResolver {
     Vec3 normal;
     double gap;
   };
-  /// Where a search led.
+  /// Result of a search.
   struct Outcome {
     Pose pose;
     double depth;  ///< that is left (m)

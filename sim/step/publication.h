@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "sim/step/contact_response.h"
+#include "sim/step/contact_solution.h"
 #include "sim/step/grasping.h"
 
 namespace calot {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which bodies a step solves: what nothing touches and nothing moves, sleeps. Internal to this folder.
+// Selection of the bodies that a step solves: a body that nothing touches and nothing moves sleeps. Internal to this
+// folder.
 #pragma once
 
 #include "sim/step/bodies.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where the stages of a step report. Internal to this folder.
+// Reports of a step's stages: events and misses. Internal to this folder.
 #pragma once
 
 #include <cstddef>

@@ -2,7 +2,7 @@
 #include "sim/step/surfaces.h"
 
 #include "sim/geometry/closest_point.h"
-#include "sim/step/organ_body.h"
+#include "sim/step/solid_body.h"
 
 namespace calot {
 

@@ -8,7 +8,7 @@
 #include <cassert>
 #include <utility>
 
-#include "sim/math/dense.h"
+#include "sim/math/symmetric_blocks.h"
 #include "sim/solid/conjugate_gradient.h"
 
 namespace calot {
@@ -107,8 +107,8 @@ void TieCoupling::begin(const State& state, std::span<const std::unique_ptr<Body
   pull(body[organ_]->velocity(state), vessels);
 }
 
-/// What vessels were pushed by since is part of what the organ feels from here on.
-void TieCoupling::takeUp(std::span<VesselBody* const> vessels) {
+/// Adds the impulses that the vessels have received since to the force on the organ.
+void TieCoupling::gatherImpulses(std::span<VesselBody* const> vessels) {
   for (std::size_t i = 0; i < tie_.size(); ++i) {
     const Vec3& now = velocityOf(i, vessels);
     change_[i] = now - vesselSeen_[i];
@@ -125,8 +125,8 @@ const Vec3& TieCoupling::velocityOf(std::size_t i, std::span<VesselBody* const> 
 }
 
 void TieCoupling::pull(std::span<const Vec3> organVelocity, std::span<VesselBody* const> vessels) {
-  takeUp(vessels);
-  // force = D (V - ...) as the organ moves now; the vessels get what it changed by.
+  gatherImpulses(vessels);
+  // force = D (V - ...) for the organ's present motion; the vessels get the change.
   for (std::size_t i = 0; i < tie_.size(); ++i) change_[i] = tie(i).place[0].of(organVelocity);
   for (std::size_t i = 0; i < tie_.size(); ++i) {
     const Vec3 force = applied(i, change_) - joint_.force[i];
@@ -147,7 +147,7 @@ void TieCoupling::pull(std::span<const Vec3> organVelocity, std::span<VesselBody
 }
 
 void TieCoupling::react(const SolidSystem& organ, ConjugateGradient& gradient, std::size_t vessel,
-                        std::span<const Vec3> answer, std::vector<Vec3>& push) {
+                        std::span<const Vec3> response, std::vector<Vec3>& push) {
   push.assign(tie_.size(), Vec3::Zero());
   for (std::size_t i = 0; i < tie_.size(); ++i) {
     more_[i].setZero();
@@ -163,7 +163,7 @@ void TieCoupling::react(const SolidSystem& organ, ConjugateGradient& gradient, s
   }
   for (std::size_t i = 0; i < tie_.size(); ++i) {
     if (vesselOf(i) != vessel) continue;
-    const Vec3 back = step_ * applied(i, answer);
+    const Vec3 back = step_ * applied(i, response);
     push[i] = step_ * applied(i, more_) - back;
     const MaterialPoint& place = tie(i).place[0];
     for (std::size_t k = 0; k < place.count; ++k) {
@@ -179,7 +179,7 @@ void TieCoupling::react(const SolidSystem& organ, ConjugateGradient& gradient, s
 
 void TieCoupling::passOn(std::span<const Vec3> organVelocity, std::span<VesselBody* const> vessels,
                          std::vector<Vec3>& impulse) {
-  takeUp(vessels);
+  gatherImpulses(vessels);
   for (std::size_t i = 0; i < tie_.size(); ++i) {
     if (more_[i].isZero(0.0)) continue;
     const MaterialPoint& place = tie(i).place[0];

@@ -33,7 +33,7 @@ class TieCoupling {
   /// Gathers the vessels' contact-free velocities, and pulls them as if the organ went on as it did.
   /// @pre solveUnconstrained() of all vessels that it joins
   void begin(const State& state, std::span<const std::unique_ptr<Body>> body, std::span<VesselBody* const> vessels);
-  /// What the organ feels. @pre begin()
+  /// Impulse on the organ. @pre begin()
   [[nodiscard]] const JointAttachment& joint() const { return joint_; }
   /// Pulls the vessels, with these velocities of the organ's nodes. @pre begin()
   void pull(std::span<const Vec3> organVelocity, std::span<VesselBody* const> vessels);
@@ -42,10 +42,10 @@ class TieCoupling {
   [[nodiscard]] int nodeOf(std::size_t tie, std::size_t vessel) const {
     return vesselOf(tie) == vessel ? nodeOf(tie) : -1;
   }
-  /// Of the product of the matrix of organ, vessels and what else pulls these, with the present search direction: how
-  /// the organ's ties push a vessel, and what the organ feels of it. @param vessel its body's number @param answer to
-  /// the other pulls, without the ties, where each tie of this vessel holds @param push per tie @pre begin()
-  void react(const SolidSystem& organ, ConjugateGradient& gradient, std::size_t vessel, std::span<const Vec3> answer,
+  /// Product of the matrix of organ, vessels and further couplings with the present search direction: the impulses of
+  /// the organ's ties on a vessel, and their reaction on the organ. @param vessel its body's number @param response the
+  /// vessel's response to other impulses, without the ties, at the node of each tie @param push per tie @pre begin()
+  void react(const SolidSystem& organ, ConjugateGradient& gradient, std::size_t vessel, std::span<const Vec3> response,
              std::vector<Vec3>& push);
 
   /// Impulses on the organ's nodes by which it feels what vessels were pushed since; holds these, with these velocities
@@ -75,7 +75,7 @@ class TieCoupling {
   [[nodiscard]] int nodeOf(std::size_t i) const { return tie(i).place[1].node[0]; }
   [[nodiscard]] Vec3 applied(std::size_t i, std::span<const Vec3> velocity) const;
   [[nodiscard]] const Vec3& velocityOf(std::size_t i, std::span<VesselBody* const> vessels) const;
-  void takeUp(std::span<VesselBody* const> vessels);
+  void gatherImpulses(std::span<VesselBody* const> vessels);
   void rigidity(std::span<const std::unique_ptr<Body>> body, std::vector<double>& out) const;
 
   const Model& model_;

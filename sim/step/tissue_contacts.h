@@ -19,11 +19,11 @@ inline constexpr double allowedOverlap = 2e-5;
 /// By which overlapping tissue parts in one step (m). Larger throws it apart; smaller lets overlaps last. Assumed.
 inline constexpr double maxRecovery = 0.0005;
 
-/// Is the tissue that a vertex of an organ's skin is part of inverted? Outward is then inward there, and contact would
+/// True if the tissue at a vertex of an organ's skin is inverted. Outward is then inward there, and contact would
 /// hold it so.
 bool isInverted(const Model& model, const State& state, std::size_t organ, int vertex);
 
-/// Of the blocks from `first` on, keeps `limit` of the smallest gaps, in their order. Where tissue is crumpled,
+/// Keeps, among the blocks from `first` on, the `limit` smallest gaps, in their order. Where tissue is crumpled,
 /// hundreds of its points are inside of it: more rows than its nodes can respond to. @param gap of those blocks, as
 /// found (m)
 void keepDeepest(std::size_t first, std::size_t limit, std::span<const double> gap, std::vector<ContactBlock>& blocks);

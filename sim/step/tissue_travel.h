@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How far organs and vessels have moved since the last step, and where vessels are: what is far apart is not searched
+// Travel of organs and vessels since the last step, and bounds of vessels: bodies that are far apart are not searched
 // for contact until it may have come near. Internal to this folder.
 #pragma once
 
@@ -7,12 +7,47 @@
 #include <span>
 #include <vector>
 
-#include "sim/math/bounds.h"
+#include "sim/math/linear.h"
+#include "sim/scene/model.h"
+#include "sim/scene/state.h"
+#include "sim/solid/solid.h"
 #include "sim/step/bodies.h"
 #include "sim/step/surfaces.h"
-#include "sim/step/vessel_capsules.h"
 
 namespace calot {
+
+// Vessels as capsules, for their contact with other tissue: one along each element; two where it is parted, one a
+// stump. Internal to this folder.
+
+/// A straight piece of a vessel.
+struct VesselCapsule {
+  Vec3 p0 = Vec3::Zero();  ///< ends of its axis, towards the vessel's start and end (m, W)
+  Vec3 p1 = Vec3::Zero();
+  int node0 = 0;  ///< nodes that the ends follow; of a stump, both are the node that it hangs on
+  int node1 = 0;
+  std::size_t element = 0;  ///< of the branch, from 0
+  bool after = false;       ///< the stump beyond a parting
+
+  /// A place on its axis in terms of the vessel's nodes. @param s share of the way from p0 to p1
+  [[nodiscard]] SolidSolver::Impulse place(double s) const;
+};
+
+/// Capsules of a branch in the order of its elements.
+void vesselCapsules(const BeamModel& beams, const BeamState& state, std::size_t branch,
+                    std::vector<VesselCapsule>& out);
+
+/// Distances along a tree of vessels between its nodes at rest (m).
+class TreeDistances {
+ public:
+  explicit TreeDistances(const BeamModel& beams);
+  [[nodiscard]] double between(int a, int b) const {
+    return distance_[static_cast<std::size_t>(a) * nodes_ + static_cast<std::size_t>(b)];
+  }
+
+ private:
+  std::size_t nodes_;
+  std::vector<double> distance_;
+};
 
 /// As far ahead as contact is sought for what comes fast (m). Larger: rows that stay open; smaller: passes through.
 /// Assumed: what the fastest vessel goes in half a step.

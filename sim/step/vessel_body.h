@@ -35,7 +35,7 @@ class VesselBody final : public Body {
   [[nodiscard]] double heldBack() const override { return report_.limited ? report_.requestedSpeed : 0.0; }
   void stop(State& state) const override;
 
-  /// Of the last advance().
+  /// Report of the last advance().
   [[nodiscard]] const BeamReport& report() const { return report_; }
   /// Per element, after advance(): pull (N) and stretch.
   [[nodiscard]] const std::vector<double>& tension() const { return solver_.tension(); }

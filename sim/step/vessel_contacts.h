@@ -10,7 +10,6 @@
 #include "sim/step/contact_block.h"
 #include "sim/step/surfaces.h"
 #include "sim/step/tissue_travel.h"
-#include "sim/step/vessel_capsules.h"
 
 namespace calot {
 
@@ -36,8 +35,9 @@ inline constexpr double junctionReach = 4.0;
 /// A capsule that overlaps an organ or another vessel in the reference configuration is measured from that depth,
 /// however large: what a scene draws into each other does not push at rest.
 ///
-/// What is far apart is not searched. For each capsule and each organ the last distance found is kept, less what both
-/// have moved since; while that is out of reach, no triangle is. This changes no result, so it is no part of State.
+/// Bodies that are far apart are not searched. For each capsule and each organ the last distance found is kept, less
+/// what both have moved since; while that is out of reach, no triangle is. This changes no result, so it is no part of
+/// State.
 class VesselContacts {
  public:
   /// @param travel of the same model
@@ -58,7 +58,7 @@ class VesselContacts {
     double distance = -1.0;  ///< of the axis from the other surface or axis (m); negative: unknown
     bool outside = false;    ///< surely
   };
-  /// What is known of one vessel's contacts.
+  /// Contacts of one vessel.
   struct Nearby {
     // Per organ:
     std::vector<std::vector<double>> restOffset;  ///< per element: gap at rest where they overlap, or 0 (m)

@@ -65,7 +65,7 @@ void VesselReaction::assemble(FatMotion& fat, VesselBody& vessel, TieCoupling* g
     version_ = fat.solver().systemVersion();
     summed_ = weight_;
   }
-  response_.prepare(vessel.solver().matrix(), vessel.model().parents(), touched_);
+  response_.precompute(vessel.solver().matrix(), vessel.model().parents(), touched_);
   if (grown_ != nullptr) findReach(vessel);
 }
 
@@ -143,11 +143,11 @@ void VesselReaction::addTo(ConjugateGradient& organ, ConjugateGradient& fat) {
 
 /// What the organ does to it.
 void VesselReaction::addGrown(ConjugateGradient& organ) {
-  heldAnswer_.assign(held_.size(), Vec3::Zero());
+  heldResponse_.assign(held_.size(), Vec3::Zero());
   for (std::size_t i = 0; i < held_.size(); ++i) {
-    if (held_[i] != none) heldAnswer_[i] = vectorOf(moved_[held_[i]]);
+    if (held_[i] != none) heldResponse_[i] = vectorOf(moved_[held_[i]]);
   }
-  grown_->react(*organ_, organ, model_.organs().size() + tree_, heldAnswer_, heldPush_);
+  grown_->react(*organ_, organ, model_.organs().size() + tree_, heldResponse_, heldPush_);
   const FourFloats* column = reach_.data();
   for (std::size_t i = 0; i < held_.size(); ++i) {
     if (held_[i] == none) continue;

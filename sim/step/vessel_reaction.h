@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "sim/math/vectors.h"
-#include "sim/solid/system_coupling.h"
-#include "sim/step/fat_motion.h"
+#include "sim/solid/conjugate_gradient.h"
+#include "sim/step/solid_body.h"
 #include "sim/step/tie_coupling.h"
 #include "sim/step/vessel_body.h"
-#include "sim/vessel/tree_response.h"
+#include "sim/vessel/block_tree.h"
 
 namespace calot {
 
@@ -28,9 +28,9 @@ class VesselReaction final : public SystemCoupling {
 
   [[nodiscard]] std::size_t fat() const { return fat_; }
   [[nodiscard]] std::size_t tree() const { return tree_; }
-  /// Is there any such tie?
+  /// True if there is any such tie.
   [[nodiscard]] bool exists() const { return !tie_.empty(); }
-  /// Does any still hold? @pre linearise() of this step
+  /// True while any of them holds. @pre linearise() of this step
   [[nodiscard]] bool holds() const { return holds_; }
 
   /// Takes the ties as they are left. @param awake otherwise nothing of it holds
@@ -80,10 +80,10 @@ class VesselReaction final : public SystemCoupling {
   const SolidSystem* organ_ = nullptr;    ///< of that
   TreeResponse response_;
   std::vector<FourFloats> moved_;  ///< pushes, then answers, of `touched_`
-  // Of ties of `grown_`: the nodes that they hold, in `touched_`, or none; how `touched_` answer, by columns.
+  // Per tie of `grown_`: its node's index in `touched_`, or none; then the columns of the response of `touched_`.
   std::vector<std::uint32_t> held_;
   std::vector<FourFloats> reach_;
-  std::vector<Vec3> heldAnswer_, heldPush_;
+  std::vector<Vec3> heldResponse_, heldPush_;
   std::vector<Vec3> push_;  ///< of pull(), per node
 };
 

@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What all kinds of tissue contribute to a Model: structures that can be touched, and ties between bodies.
+// Contributions of all kinds of tissue to a Model: structures that can be touched, and ties between bodies.
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <vector>
 
+#include "sim/geometry/triangle_mesh.h"
+#include "sim/math/fields.h"
 #include "sim/math/linear.h"
 #include "sim/solid/solid.h"
-#include "sim/tissue/structure_limit.h"
 #include "sim/tissue/structure_role.h"
 
 namespace calot {
@@ -17,7 +19,7 @@ namespace calot {
 /// Position of a kind of tissue in the list of kinds (sim/tissue/tissues.h).
 using TissueId = std::uint8_t;
 
-/// What has a name and a skin, and can be touched: organs, then vessels, then fat, in the scene's order. Contacts,
+/// A body with a name and a skin that can be touched: organs, then vessels, then fat, in the scene's order. Contacts,
 /// events and StepResult refer to structures by their index in this list; it has at most maxStructures.
 struct StructureModel {
   std::string name;
@@ -43,6 +45,55 @@ struct Tie {
   std::size_t fatTie = 0;      ///< its tie of that number
   double stiffness = 0.0;      ///< N/m
   double damping = 0.0;        ///< N s/m
+};
+
+// Common parts of the descriptions of several kinds of tissue.
+
+/// Closed triangle surface of an organ in W, in the reference configuration (m).
+struct SurfaceDescription {
+  std::vector<Vec3> vertex;
+  std::vector<Index3> triangle;  ///< outward
+
+  [[nodiscard]] TriangleMesh mesh() const { return {vertex, triangle}; }
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("vertex", self.vertex);
+    visit("triangle", self.triangle);
+  }
+};
+
+/// Isotropic material of a co-rotational solid.
+struct MaterialDescription {
+  double youngModulus = 5000.0;    ///< Pa
+  double poissonRatio = 0.45;      ///< in [0, 0.5)
+  double density = 1060.0;         ///< kg/m^3
+  double massDamping = 0.0;        ///< Rayleigh alpha (1/s)
+  double stiffnessDamping = 0.01;  ///< Rayleigh beta (s)
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("youngModulus", self.youngModulus);
+    visit("poissonRatio", self.poissonRatio);
+    visit("density", self.density);
+    visit("massDamping", self.massDamping);
+    visit("stiffnessDamping", self.stiffnessDamping);
+  }
+};
+
+inline SolidModel::Material solidMaterial(const MaterialDescription& m) {
+  return {lameConstants(m.youngModulus, m.poissonRatio), m.density, m.massDamping, m.stiffnessDamping};
+}
+
+struct SceneView;
+struct State;
+
+/// Adds what pictures show of one kind of tissue to scene views, and keeps from view to view what stays the same.
+class TissueViewer {
+ public:
+  virtual ~TissueViewer() = default;
+  /// @pre the state is one of the model's
+  virtual void addTo(SceneView& view, const State& state) = 0;
 };
 
 }  // namespace calot

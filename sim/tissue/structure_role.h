@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a tissue is in the anatomy of a cholecystectomy. Judgement, performers and pictures identify tissue by its role,
+// Role of a tissue in the anatomy of a cholecystectomy. Judgement, performers and pictures identify tissue by its role,
 // never by its name or appearance.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 namespace calot {
@@ -54,5 +55,9 @@ constexpr bool isCystic(StructureRole role) {
 constexpr bool carriesBile(StructureRole role) {
   return role == StructureRole::cysticDuct || role == StructureRole::bileDuct;
 }
+
+/// Most structures (organs, vessels and bodies of fat together) of a scene. The key of a contact block has four bits
+/// for its structure; masks of structures, as HandResult::touching, have 32. A scene with more is refused at load.
+inline constexpr std::size_t maxStructures = 16;
 
 }  // namespace calot

@@ -5,8 +5,8 @@
 
 #include <algorithm>
 
-#include "sim/math/bounds.h"
-#include "sim/vessel/frames.h"
+#include "sim/math/linear.h"
+#include "sim/vessel/centre_line.h"
 
 namespace calot {
 

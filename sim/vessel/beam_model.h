@@ -23,6 +23,7 @@
 #include <vector>
 
 #include "sim/math/linear.h"
+#include "sim/math/symmetric_blocks.h"
 
 namespace calot {
 
@@ -100,7 +101,7 @@ class BeamModel {
   /// @pre faultOf(branches) is empty
   explicit BeamModel(const std::vector<BeamBranch>& branches);
 
-  /// Error of a description, naming branch and value; empty if there is none.
+  /// Error of a description, naming branch and value; empty if valid.
   static std::string faultOf(const std::vector<BeamBranch>& branches);
 
   [[nodiscard]] std::size_t nodes() const { return rest_.size(); }
@@ -111,14 +112,14 @@ class BeamModel {
   /// @pre the same elements, otherwise loaded (sim/vessel/beam_preload.h)
   void setElements(std::vector<BeamElement> elements) { element_ = std::move(elements); }
   [[nodiscard]] const std::vector<Branch>& branches() const { return branch_; }
-  /// Of all branches.
+  /// Stations of all branches together.
   [[nodiscard]] std::size_t stations() const { return branch_.back().firstStation + branch_.back().stations; }
   /// Distance between stations is at most this (m). Larger: the dose of a vessel's wall blurs; smaller: more State.
   /// Assumed: a sixth of what the hook's wire touches of a wall.
   static constexpr double maxSpacing = 0.00025;
   /// Neighbour towards the start, a smaller index; -1 for a node where a tree starts.
   [[nodiscard]] std::span<const int> parents() const { return parent_; }
-  /// Element between a node and its parent; -1 where there is none.
+  /// Element between a node and its parent; -1 at a root.
   [[nodiscard]] int elementBefore(std::size_t node) const { return elementBefore_[node]; }
   [[nodiscard]] bool fixed(std::size_t node) const { return fixed_[node]; }
   /// Lumped masses (kg): half of each element at the node.
@@ -143,5 +144,19 @@ class BeamModel {
   std::vector<BeamElement> element_;
   std::vector<Branch> branch_;
 };
+
+// Loads of vessels in the reference configuration: their stiffness in the reference configuration, and the loads of
+// their elements there.
+
+/// Adds the stiffness of sim/vessel/beam_element.h in the reference configuration.
+/// @param factor of all of it
+/// @param row per node: the row of its place (N/m), followed by that of its rotation about W's axes (N m); -1: fixed
+void addStiffness(const BeamModel& model, double factor, std::span<const int> row, SymmetricBlocks& matrix);
+
+/// Loads each element as a motion from the reference configuration by these displacements (m) and rotations (rad)
+/// would, to first order, without moving it: the configuration that is free of stress lies that far from where it is
+/// drawn. The loads are measured in the elements' frames and turn with them.
+/// @param displacement, rotation per node
+void preload(BeamModel& model, std::span<const Vec3> displacement, std::span<const Vec3> rotation);
 
 }  // namespace calot

@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "sim/vessel/beam_element.h"
-#include "sim/vessel/frames.h"
+#include "sim/vessel/centre_line.h"
 
 namespace calot {
 

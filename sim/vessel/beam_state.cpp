@@ -7,7 +7,7 @@
 #include <cassert>
 #include <cmath>
 
-#include "sim/math/bounds.h"
+#include "sim/math/linear.h"
 
 namespace calot {
 

@@ -11,7 +11,7 @@
 
 namespace calot {
 
-/// How an element was parted. A parted element transmits no force; its remains stay on its two nodes.
+/// Cause of an element's parting. A parted element transmits no force; its remains stay on its two nodes.
 enum class Parting : std::uint8_t { none, cut, torn, burned };
 
 struct BeamState {
@@ -69,8 +69,8 @@ struct BeamState {
 /// Reference state: no displacement, no velocity, whole, without clips, asleep.
 BeamState restState(const BeamModel& model);
 
-/// Is this a valid state of the model (numbers of nodes and elements, equal lengths of lists, clips on branches,
-/// positions in range)? Checks external data.
+/// True if this is a valid state of the model (numbers of nodes and elements, equal lengths of lists, clips on
+/// branches, positions in range)? Checks external data.
 bool fits(const BeamModel& model, const BeamState& state);
 
 /// A material point of a branch's centre line.

@@ -11,10 +11,12 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
 #include "sim/math/linear.h"
+#include "sim/math/vectors.h"
 
 namespace calot {
 
@@ -53,6 +55,42 @@ class BlockTree {
   std::vector<Block6> diagonal_;  ///< after factor(): L_i, reciprocals on its diagonal
   std::vector<Block6> coupling_;  ///< after factor(): W_i
   std::vector<Columns> work_;
+};
+
+// A factorised BlockTree for many right-hand sides on a few nodes, in floats: for products within an iterative solve,
+// whose vectors are floats.
+
+/// Response of some nodes' translations to impulses on the same nodes. With A_i' what elimination of a node's
+/// children left of A_i, and G_i = A_i'^-1 B_i:
+///   y_p -= G_i^T y_i from the last node to the first, then x_i = A_i'^-1 y_i - G_i x_p.
+/// Products alone, where BlockTree::solve() substitutes number after number. Nodes with none of those below them take
+/// no part.
+class TreeResponse {
+ public:
+  /// @param tree after BlockTree::factor() @param parent of its nodes @param touched ascending
+  void precompute(const BlockTree& tree, std::span<const int> parent, std::span<const std::uint32_t> touched);
+
+  /// @param impulses in, response out: three numbers for each touched node @pre precompute()
+  void solve(std::span<FourFloats> push);
+
+ private:
+  /// Translation, padding, rotation, padding.
+  using Motion = std::array<float, 8>;
+  using Columns = std::array<Motion, 6>;
+  struct Node {
+    Columns inverse;           ///< columns of A_i'^-1
+    Columns up;                ///< rows of G_i
+    Columns down;              ///< columns of G_i
+    std::int32_t parent = -1;  ///< among those that take part
+  };
+
+  static void sumOf(const Columns& columns, const Motion& x, EightFloats& sum);
+  static void solveNodes(std::span<const Node> node, std::span<Motion> x);
+
+  std::vector<Node> node_;
+  std::vector<std::int32_t> number_;    ///< per node of the tree: among those that take part, or -1
+  std::vector<std::uint32_t> touched_;  ///< among those that take part
+  std::vector<Motion> x_;
 };
 
 }  // namespace calot

@@ -8,8 +8,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "sim/math/bounds.h"
-#include "sim/vessel/frames.h"
+#include "sim/math/linear.h"
+#include "sim/vessel/centre_line.h"
 
 namespace calot {
 

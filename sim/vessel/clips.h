@@ -23,7 +23,7 @@ struct ClipAttempt {
   double closure = 1.0;  ///< 0 open to 1 closed
 };
 
-/// How a clip would sit. Facts: what is wrong with it is judged elsewhere.
+/// Seat of a clip, as facts: faults are judged elsewhere.
 struct ClipSeat {
   static constexpr double none = 1e300;
 
@@ -42,7 +42,7 @@ ClipSeat clipSeat(const BeamModel& model, const BeamState& state, const ClipAtte
 /// 0
 void setClip(const BeamModel& model, BeamState& state, const ClipAttempt& attempt, double enclosed);
 
-/// Does this clip close the lumen? It encloses all of the section and is closed to at least 95 %.
+/// True if this clip closes the lumen: it encloses all of the section and is closed to at least 95 %.
 bool closes(const BeamState& state, std::size_t clip);
 
 /// Flattening of the tube at a point: 0 round to 1 (walls touching), and its direction.
@@ -62,7 +62,8 @@ struct PinchedSection {
 };
 PinchedSection pinchedSection(const TubeSection& section, double amount);
 
-/// What a cut opens and between which clips it lies. "Before" is towards the branch's start, "after" towards its end.
+/// Ends that a cut opens, and the clips between which it lies. "Before" is towards the branch's start, "after" towards
+/// its end.
 struct CutSides {
   int clipBefore = -1;  ///< nearest closing clip on the same piece; -1: none
   int clipAfter = -1;

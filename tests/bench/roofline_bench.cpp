@@ -14,7 +14,7 @@
 
 #include "sim/math/vectors.h"
 #include "sim/solid/conjugate_gradient.h"
-#include "sim/solid/stiffness_assembly.h"
+#include "sim/solid/solid_model.h"
 #include "tests/bench/benchmarks.h"
 #include "tests/bench/figures.h"
 #include "tests/bench/hanging_box.h"

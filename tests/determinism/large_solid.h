@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "sim/math/digest.h"
+#include "sim/math/fields.h"
 #include "sim/math/random.h"
 #include "sim/solid/solid.h"
 #include "tests/accuracy/support/kuhn_box.h"

@@ -8,7 +8,6 @@
 
 #include "recorder/sources/devices/device_source.h"
 #include "sim/instruments/instrument_shape.h"
-#include "sim/instruments/shape_builder.h"
 #include "sim/tissue/tissues.h"
 #include "tests/analytics/checkpoints/support/steps.h"
 #include "tests/extending/support/cord_kind.h"

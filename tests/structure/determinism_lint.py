@@ -41,7 +41,7 @@ RULES = (
      r"\bstd\s*::\s*max(?:<double>)?\s*\((?:[^()]|\((?:[^()]|\([^()]*\))*\))*,\s*0\.0F?\s*\)|\bstd\s*::\s*min(?:<double>)?\s*\(\s*0\.0F?\s*,|"
      r"\bstd\s*::\s*clamp(?:<double>)?\s*\((?:[^(),]|\((?:[^()]|\([^()]*\))*\))*,\s*0\.0F?\s*,|<\s*0\.0F?\s*\?\s*0\.0F?\s*:|"
      r"\bcwiseM(?:ax|in)\s*\(\s*(?:\w+::Zero|0\.0)|<\s*0\.0F?\s*\?\s*\w+\{\}\s*:|\.max\(0\.0\)",
-     "clang loses which zero it is on some machines; use sim/math/bounds.h",
+     "clang loses which zero it is on some machines; use sim/math/linear.h",
      ("a = std::max(x, 0.0);", "b = std::max(f(x, g(y)) - z, 0.0);", "c = std::min(0.0, x);", "d = std::clamp(x, 0.0, 1.0);",
       "e = u < 0.0 ? 0.0 : u;", "v.cwiseMax(Vec3::Zero())", "d = d < 0.0F ? Floats{} : d;", "a.array().max(0.0)"),
      ("a = std::max(0.0, x);", "b = std::min(x, 0.0);", "c = std::max(x, 10.0);", "d = std::clamp(x, 1.0, 2.0);", "e = x > 0.0 ? x : 0.0;",

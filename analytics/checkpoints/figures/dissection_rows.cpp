@@ -7,7 +7,7 @@
 
 #include "analytics/checkpoints/figures/rows.h"
 #include "analytics/checkpoints/phases.h"
-#include "sim/math/bounds.h"
+#include "sim/math/linear.h"
 
 namespace calot::analytics {
 namespace {

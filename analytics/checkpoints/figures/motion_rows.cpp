@@ -14,7 +14,7 @@
 #include "analytics/checkpoints/movements.h"
 #include "analytics/checkpoints/two_hands.h"
 #include "analytics/statistics/descriptive.h"
-#include "sim/math/bounds.h"
+#include "sim/math/linear.h"
 #include "sim/math/elementary.h"
 
 namespace calot::analytics {

@@ -16,7 +16,7 @@
 #include "gui/render/view_check.h"
 #include "recorder/engine/messages.h"
 #include "recorder/engine/wire_forms.h"
-#include "sim/scene/down.h"
+#include "sim/scene/scene_view.h"
 
 namespace {
 

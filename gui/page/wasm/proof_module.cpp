@@ -11,7 +11,7 @@
 #include "gui/page/wasm/blake2b.h"
 #include "gui/page/wasm/thrown.h"
 #include "recorder/recording/keyframe_code.h"
-#include "sim/math/digest.h"
+#include "sim/math/fields.h"
 
 namespace {
 

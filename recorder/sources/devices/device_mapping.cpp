@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "recorder/sources/pointing.h"
-#include "sim/math/bounds.h"
+#include "sim/math/linear.h"
 
 namespace calot::recorder {
 namespace {

@@ -11,8 +11,8 @@
 #include <utility>
 
 #include "recorder/base/errors.h"
-#include "sim/math/bounds.h"
 #include "sim/math/elementary.h"
+#include "sim/math/linear.h"
 
 namespace calot::recorder {
 namespace {

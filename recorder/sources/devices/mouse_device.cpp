@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "recorder/sources/devices/evdev_mouse.h"
-#include "sim/math/bounds.h"
 #include "sim/math/elementary.h"
+#include "sim/math/linear.h"
 
 namespace calot::recorder {
 namespace {

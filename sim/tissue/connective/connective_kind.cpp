@@ -3,17 +3,17 @@
 
 #include <utility>
 
-#include "sim/connective/connective_bed.h"
+#include "sim/connective/connective_tissue.h"
 #include "sim/scene/model.h"
 #include "sim/scene/scene_view.h"
 #include "sim/scene/state.h"
-#include "sim/tissue/tissue_viewer.h"
+#include "sim/tissue/structure.h"
 
 namespace calot {
 
 namespace {
 
-/// @return what is wrong with it, or nothing
+/// @return its fault, or nothing
 std::string addConnective(const SceneDescription& scene, const ConnectiveDescription& description, Model& model) {
   const std::vector<OrganModel>& organs = model.organs();
   const auto index = [&](const std::string& name) {

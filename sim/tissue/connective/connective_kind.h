@@ -22,7 +22,7 @@ struct ConnectiveDescription {
   std::string first;             ///< organ whose surface the bed is part of
   std::string second;            ///< organ that it lies on
   double reach = 0.004;          ///< triangles of the first organ no farther from the second are the bed (m)
-  std::uint32_t strands = 200;   ///< at least so many
+  std::uint32_t strands = 200;   ///< minimum number
   double stiffness = 2e5;        ///< of a unit area of bed (N/m^3)
   double damping = 2e3;          ///< (N s/m^3)
   double strength = 4e3;         ///< largest traction: beyond, it softens (Pa)
@@ -45,7 +45,7 @@ struct ConnectiveDescription {
   }
 };
 
-/// Why its cohesive law is none: the fracture energy must cover what is stored at the strength. @return one clause, or
+/// Checks the cohesive law: the fracture energy must cover the energy stored at the strength. @return one clause, or
 /// nothing
 std::string cohesiveFault(const ConnectiveDescription& description);
 
@@ -55,9 +55,9 @@ struct ConnectiveModel {
   std::size_t a = 0;
   std::size_t b = 0;
   ConnectiveTissue tissue;
-  /// Of the bed that the scene's procedure names, where it also names a vessel to be divided; else empty: strands of
-  /// its lower, middle and upper third, ascending. Thirds of the bed's area by distance, in the reference
-  /// configuration, of a strand's end on the specimen from where the first vessel to be divided enters it.
+  /// Strands of the lower, middle and upper third of the procedure's bed, ascending; empty if this is another bed or
+  /// no vessel is to be divided. Thirds of the bed's area by distance, in the reference configuration, of a strand's
+  /// end on the specimen from the point where the first vessel to be divided enters it.
   std::array<std::vector<std::uint32_t>, 3> third;
 };
 
@@ -107,7 +107,7 @@ struct SceneView;
 struct State;
 class TissueViewer;
 
-/// What the core knows of connective tissue; see sim/tissue/tissues.h for what each member is for.
+/// Connective tissue as a kind of tissue; sim/tissue/tissues.h documents the members.
 struct ConnectiveKind {
   using Result = ConnectiveResult;
   static constexpr const char* componentPrefix = "connective.";

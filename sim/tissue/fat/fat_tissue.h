@@ -9,14 +9,12 @@
 #include <vector>
 
 #include "sim/fat/fat_model.h"
-#include "sim/fat/fat_state.h"
-#include "sim/tissue/material.h"
 #include "sim/tissue/result_field.h"
 #include "sim/tissue/structure.h"
 
 namespace calot {
 
-/// How fat hangs on an organ or a vessel: springs over what of it is no farther than `distance`.
+/// Attachment of fat to an organ or a vessel: springs over the fat that is no farther from it than `distance`.
 struct FatAttachmentDescription {
   std::string to;           ///< name of an organ or a vessel
   double distance = 0.002;  ///< from its rest surface (m)
@@ -43,7 +41,7 @@ struct FatDescription {
   MaterialDescription material{1000.0, 0.4, 920.0, 2.0, 0.01};
   double friction = 0.1;  ///< Coulomb coefficient of an instrument on it
   std::vector<FatAttachmentDescription> attachments;
-  /// What is to be cleared, at rest: what lies over or under this triangle (m), no farther from its plane than
+  /// Region to be cleared: all fat over or under this triangle (m, reference configuration), up to `triangleDepth`.
   std::array<Vec3, 3> triangle{Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
   double triangleDepth = 0.0;  ///< m; 0: nothing
 
@@ -101,7 +99,7 @@ struct SceneView;
 struct State;
 class TissueViewer;
 
-/// What the core knows of fat; see sim/tissue/tissues.h for what each member is for.
+/// Fat as a kind of tissue; sim/tissue/tissues.h documents the members.
 struct FatTissue {
   using Result = FatResult;
   static constexpr const char* componentPrefix = "fat.";

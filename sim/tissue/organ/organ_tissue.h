@@ -13,7 +13,6 @@
 #include "sim/geometry/embedding.h"
 #include "sim/geometry/mesh_to_count.h"
 #include "sim/solid/solid.h"
-#include "sim/tissue/material.h"
 #include "sim/tissue/result_field.h"
 #include "sim/tissue/structure.h"
 
@@ -78,11 +77,11 @@ struct OrganModel {
 struct TissuePair {
   std::size_t a = 0;
   std::size_t b = 0;
-  /// Of two organs. Of an organ with itself it is computed when the organ first folds: most never do.
+  /// Two organs in the reference configuration. For an organ with itself, computed when it first folds: most never do.
   std::optional<SurfacePair> rest;
 };
 
-/// Where cautery has burned an organ's skin, by cells of its triangles (OrganModel::division). Irreversible.
+/// Burns of an organ's skin by cautery, by cells of its triangles (OrganModel::division). Irreversible.
 struct CharState {
   std::vector<std::uint32_t> triangle;   ///< burned anywhere, in the order in which they were first touched
   std::vector<std::uint32_t> firstCell;  ///< of each of them, in the lists below
@@ -138,7 +137,7 @@ struct SceneView;
 struct State;
 class TissueViewer;
 
-/// What the core knows of organs; see sim/tissue/tissues.h for what each member is for.
+/// Organs as a kind of tissue; sim/tissue/tissues.h documents the members.
 struct OrganTissue {
   using Result = OrganResult;
   static constexpr const char* componentPrefix = "organ.";

@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "sim/tissue/material.h"
 #include "sim/tissue/result_field.h"
 #include "sim/tissue/structure.h"
 #include "sim/vessel/beam_model.h"
@@ -16,7 +15,7 @@
 
 namespace calot {
 
-/// How an end of a vessel is held.
+/// Support of an end of a vessel.
 struct VesselEndDescription {
   enum class Kind : std::uint8_t {
     free,   ///< not at all
@@ -135,7 +134,7 @@ struct SceneView;
 struct State;
 class TissueViewer;
 
-/// What the core knows of vessels; see sim/tissue/tissues.h for what each member is for.
+/// Vessels as a kind of tissue; sim/tissue/tissues.h documents the members.
 struct VesselTissue {
   using Result = VesselResult;
   static constexpr const char* componentPrefix = "vessels.";

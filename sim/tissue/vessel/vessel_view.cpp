@@ -5,12 +5,12 @@
 #include <span>
 #include <utility>
 
-#include "sim/math/bounds.h"
 #include "sim/math/elementary.h"
+#include "sim/math/linear.h"
 #include "sim/scene/model.h"
 #include "sim/scene/scene_view.h"
 #include "sim/scene/state.h"
-#include "sim/tissue/tissue_viewer.h"
+#include "sim/tissue/structure.h"
 #include "sim/vessel/centre_line.h"
 #include "sim/vessel/clips.h"
 #include "sim/vessel/tube_surface.h"

@@ -3,8 +3,8 @@
 // its kind and name would be its own.
 #include "sim/math/no_fused_pairs.h"  // first
 
+#include "sim/instruments/instrument_shape.h"
 #include "sim/instruments/instruments.h"
-#include "sim/instruments/shape_builder.h"
 #include "tests/extending/support/examples.h"
 
 namespace calot::instrument {

@@ -3,7 +3,7 @@
 
 #include <fstream>
 
-#include "sim/tissue/structure_limit.h"
+#include "sim/tissue/structure_role.h"
 #include "tests/recorder/formats/support/scene_with_vessels.h"
 
 namespace calot::recorder::test {

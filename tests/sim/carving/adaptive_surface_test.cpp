@@ -7,7 +7,6 @@
 #include <cmath>
 #include <iostream>
 
-#include "sim/carving/field_sample.h"
 #include "tests/sim/carving/support/carving_bodies.h"
 
 namespace calot {

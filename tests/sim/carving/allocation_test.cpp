@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <new>
 
-#include "sim/carving/fill.h"
+#include "sim/carving/carved_field.h"
 #include "sim/carving/islands.h"
 #include "tests/sim/carving/support/carving_bodies.h"
 

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <limits>
 
-#include "sim/carving/fill.h"
 #include "sim/math/fields.h"
 #include "tests/sim/carving/support/carving_bodies.h"
 

@@ -9,7 +9,7 @@
 #include <memory>
 
 #include "sim/carving/adaptive_surface.h"
-#include "sim/carving/fill.h"
+#include "sim/carving/carved_field.h"
 #include "sim/carving/islands.h"
 #include "tests/sim/carving/support/carving_bodies.h"
 

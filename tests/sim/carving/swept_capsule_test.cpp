@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sim/carving/swept_capsule.h"
+#include "sim/carving/carve.h"
 
 #include <gtest/gtest.h>
 

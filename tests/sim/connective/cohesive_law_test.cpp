@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sim/connective/cohesive_law.h"
+#include "sim/connective/connective_tissue.h"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstdio>
 
-#include "sim/connective/connective_bed.h"
 #include "sim/math/random.h"
 #include "sim/solid/point_coupling.h"
 #include "tests/accuracy/support/cube_box.h"

@@ -7,7 +7,6 @@
 #include <limits>
 #include <vector>
 
-#include "sim/contact/float_bounds.h"
 #include "sim/contact/surface_patches.h"
 #include "tests/sim/contact/support/broad_phase_checks.h"
 

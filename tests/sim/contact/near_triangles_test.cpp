@@ -13,7 +13,6 @@
 #include <utility>
 #include <vector>
 
-#include "sim/contact/rigid_motion.h"
 #include "sim/contact/surface_surface.h"
 #include "sim/math/random.h"
 #include "tests/sim/contact/support/body.h"

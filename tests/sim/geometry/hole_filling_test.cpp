@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "recorder/formats/mesh_file.h"
-#include "sim/geometry/self_crossing.h"
 #include "sim/geometry/surface_report.h"
 #include "tests/sim/geometry/surfaces.h"
 

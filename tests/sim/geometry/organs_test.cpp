@@ -9,7 +9,6 @@
 #include "assets/organs/organ_shapes.h"
 #include "recorder/base/file_bytes.h"
 #include "recorder/formats/obj.h"
-#include "sim/geometry/self_crossing.h"
 #include "sim/geometry/surface_distance.h"
 #include "sim/geometry/surface_report.h"
 

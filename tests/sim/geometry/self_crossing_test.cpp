@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sim/geometry/self_crossing.h"
+#include "sim/geometry/surface_report.h"
 
 #include <gtest/gtest.h>
 

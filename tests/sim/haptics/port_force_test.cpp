@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sim/haptics/port_force.h"
+#include "sim/haptics/haptic_tick.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,6 @@
 #include <numbers>
 #include <vector>
 
-#include "sim/haptics/haptic_tick.h"
 #include "sim/step/hand_haptics.h"
 #include "tests/sim/scene/support/scenes.h"
 

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "sim/geometry/closest_point.h"
-#include "sim/instruments/shape_builder.h"
+#include "sim/instruments/instrument_shape.h"
 #include "sim/math/random.h"
 
 namespace calot {

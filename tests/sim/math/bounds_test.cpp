@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sim/math/bounds.h"
+#include "sim/math/linear.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "sim/math/random.h"
-#include "sim/scene/retraction.h"
+#include "sim/scene/state.h"
 
 namespace calot {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sim/solid/rotated_blocks.h"
+#include "sim/solid/block_matrix.h"
 
 #include <gtest/gtest.h>
 

@@ -13,7 +13,7 @@
 #include "sim/contact/surface_normal.h"
 #include "sim/geometry/closest_point.h"
 #include "sim/step/fat_contacts.h"
-#include "sim/step/vessel_capsules.h"
+#include "sim/step/tissue_travel.h"
 #include "tests/sim/scene/support/scenes.h"
 
 namespace calot {

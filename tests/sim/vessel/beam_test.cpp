@@ -11,8 +11,8 @@
 #include "sim/math/fields.h"
 #include "sim/math/random.h"
 #include "sim/vessel/beam_element.h"
+#include "sim/vessel/centre_line.h"
 #include "sim/vessel/clips.h"
-#include "sim/vessel/frames.h"
 #include "tests/sim/vessel/support/beams.h"
 
 namespace calot {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A forest's response in floats is that of the exact substitution.
-#include "sim/vessel/tree_response.h"
+#include "sim/vessel/block_tree.h"
 
 #include <gtest/gtest.h>
 
@@ -61,7 +61,7 @@ TEST(TreeResponse, IsThatOfTheTree) {
       if (random.uniform() < 0.3) touched.push_back(n);
     }
     TreeResponse response;
-    response.prepare(forest.tree, forest.parent, touched);
+    response.precompute(forest.tree, forest.parent, touched);
     std::vector<Vector6> exact(forest.parent.size(), Vector6{});
     std::vector<FourFloats> push;
     for (const std::uint32_t n : touched) {
@@ -92,7 +92,7 @@ TEST(TreeResponse, OfNoNodeIsNothing) {
   Forest forest(random);
   ASSERT_TRUE(forest.tree.factor(forest.parent));
   TreeResponse response;
-  response.prepare(forest.tree, forest.parent, {});
+  response.precompute(forest.tree, forest.parent, {});
   response.solve({});
 }
 

@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "recorder/base/errors.h"
-#include "sim/math/bounds.h"
+#include "sim/math/linear.h"
 
 namespace calot::recorder {
 namespace {

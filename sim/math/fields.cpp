@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sim/math/digest.h"
+
+#include "sim/math/fields.h"
 
 #define XXH_INLINE_ALL
 #if defined(__GNUC__)

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sim/solid/row_sweeps.h"
 
 #include "sim/solid/row_lanes.h"
 

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
+#include "sim/contact/broad_phase.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
 
-#include "sim/contact/broad_phase.h"
-#include "sim/contact/float_bounds.h"
 #include "sim/math/vectors.h"
 
 namespace calot {
