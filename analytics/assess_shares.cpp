@@ -8,8 +8,8 @@
 #include "analytics/shards/values_set.h"
 #include "analytics/shards/values_writer.h"
 #include "recorder/base/errors.h"
-#include "recorder/recording/identify.h"
 #include "recorder/recording/probe.h"
+#include "recorder/recording/recording_facts.h"
 
 namespace calot::analytics {
 namespace {

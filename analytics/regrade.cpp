@@ -7,7 +7,7 @@
 #include <exception>
 #include <utility>
 
-#include "analytics/recordings_found.h"
+#include "analytics/cohort_files.h"
 #include "recorder/recording/probe.h"
 
 namespace calot::analytics {
@@ -101,7 +101,7 @@ void judgeAll(const std::vector<std::string>& files, recorder::WorkerPool& pool,
     const auto each = static_cast<unsigned>(std::max<std::size_t>(1, pool.threadCount() / works.size()));
     const auto judge = [&](std::size_t i) {
       try {
-        works[i].judged = judgedRecording(assessRecording(files[begin + i], {.threads = each}));
+        works[i].judged = assessRecording(files[begin + i], {.threads = each});
       } catch (...) {
         works[i].failure = std::current_exception();
       }

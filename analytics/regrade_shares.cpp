@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "analytics/cohort/withdraw.h"
-#include "analytics/recordings_found.h"
+#include "analytics/cohort_files.h"
 #include "analytics/shards/values_set.h"
 #include "analytics/shards/values_writer.h"
 #include "recorder/recording/probe.h"

@@ -10,7 +10,7 @@
 #include "analytics/cohort/cohort_database.h"
 #include "recorder/attempt.h"
 #include "recorder/base/errors.h"
-#include "recorder/recording/header.h"
+#include "recorder/recording/layout.h"
 
 namespace calot::analytics {
 namespace {

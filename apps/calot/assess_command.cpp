@@ -200,7 +200,7 @@ int assess(const AssessOptions& o) {
   std::optional<recorder::ProbeProcesses> probes;
   if (files.size() > 1) probes.emplace(1);
   for (const std::string& file : files) {
-    analytics::JudgedRecording judged = analytics::judgedRecording(analytics::assessRecording(file, settings));
+    analytics::JudgedRecording judged = analytics::assessRecording(file, settings);
     Stored stored;
     if (database) {
       storeJudged(file, o, *database, metrics, judged, stored);

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "recorder/attempt.h"
+#include "recorder/loop.h"
 #include "recorder/base/identity.h"
 #include "recorder/recording/writer.h"
 #include "recorder/sources/devices/device_source.h"

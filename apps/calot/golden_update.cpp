@@ -16,7 +16,7 @@
 #include "apps/calot/golden_values.h"
 #include "apps/calot/source_options.h"
 #include "apps/calot/stop_request.h"
-#include "recorder/attempt.h"
+#include "recorder/loop.h"
 #include "recorder/base/errors.h"
 #include "recorder/base/text_output.h"
 #include "recorder/formats/scene_file.h"

@@ -12,7 +12,7 @@
 #include "apps/calot/station_options.h"
 #include "apps/calot/stop_request.h"
 #include "apps/calot/wrong_word.h"
-#include "recorder/attempt.h"
+#include "recorder/loop.h"
 #include "recorder/base/errors.h"
 #include "recorder/formats/scene_file.h"
 #include "recorder/live/worker_pool.h"

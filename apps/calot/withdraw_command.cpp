@@ -12,7 +12,7 @@
 
 #include "analytics/cohort/key_file.h"
 #include "analytics/cohort/withdraw.h"
-#include "analytics/withdrawal_files.h"
+#include "analytics/cohort_files.h"
 #include "apps/calot/passphrase.h"
 #include "apps/calot/wrong_word.h"
 #include "apps/common/exit_code.h"
