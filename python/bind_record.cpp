@@ -2,7 +2,7 @@
 
 #include "python/bindings.h"
 #include "python/places.h"
-#include "recorder/attempt.h"
+#include "recorder/loop.h"
 #include "recorder/formats/scene_file.h"
 #include "recorder/live/worker_pool.h"
 #include "recorder/prepared_scene.h"

@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include "analytics/checkpoints/motion.h"
-#include "recorder/recording/header.h"
+#include "recorder/recording/layout.h"
 #include "recorder/recording/reader.h"
 #include "sim/scene/samples.h"
 

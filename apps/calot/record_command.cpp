@@ -9,7 +9,7 @@
 #include "apps/calot/run_report.h"
 #include "apps/calot/source_options.h"
 #include "apps/calot/wrong_word.h"
-#include "recorder/attempt.h"
+#include "recorder/loop.h"
 #include "recorder/base/errors.h"
 #include "recorder/formats/scene_file.h"
 #include "recorder/live/worker_pool.h"

@@ -5,7 +5,7 @@
 #include <functional>
 #include <memory>
 
-#include "recorder/attempt.h"
+#include "recorder/loop.h"
 #include "recorder/recording/writer.h"
 #include "recorder/sources/devices/device_source.h"
 #include "recorder/sources/devices/mouse_input.h"

@@ -10,9 +10,9 @@
 #include "gui/trainer/trainer_texts.h"
 #include "gui/words/problem_words.h"
 #include "recorder/base/errors.h"
-#include "recorder/blended_source.h"
 #include "recorder/branch.h"
 #include "recorder/live/worker_pool.h"
+#include "recorder/live/wrapped_sources.h"
 #include "recorder/words.h"
 
 namespace calot::gui {
@@ -263,7 +263,7 @@ void TrainingSession::run(recorder::Session& session, recorder::SampleSource& so
                           recorder::ControlledSource& controlled, recorder::RecordingWriter& writer,
                           AttemptMonitor& monitor, const recorder::AttemptHeader& header,
                           const std::filesystem::path& file) {
-  tap_.follow(session);
+  tap_.begin(session);
   session.join(tap_);
   awaitPicture(session);
   if (!header.parent.empty()) countDown(controlled);

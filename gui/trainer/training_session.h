@@ -18,7 +18,7 @@
 #include "gui/trainer/attempt_monitor.h"
 #include "gui/trainer/picture_timing.h"
 #include "recorder/formats/scene_file.h"
-#include "recorder/live/controlled_source.h"
+#include "recorder/live/wrapped_sources.h"
 #include "recorder/prepared_scene.h"
 #include "recorder/recording/station_key.h"
 

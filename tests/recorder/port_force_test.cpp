@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "recorder/attempt.h"
+#include "recorder/loop.h"
 #include "recorder/engine/session.h"
 #include "recorder/formats/scene_file.h"
 #include "recorder/recording/writer.h"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "recorder/attempt.h"
+#include "recorder/loop.h"
 #include "recorder/engine/session.h"
 #include "recorder/recording/writer.h"
 

@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <limits>
 
-#include "recorder/attempt.h"
+#include "recorder/loop.h"
 #include "recorder/base/errors.h"
 #include "recorder/formats/scene_file.h"
 #include "recorder/live/worker_pool.h"

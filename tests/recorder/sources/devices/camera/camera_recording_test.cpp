@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "recorder/attempt.h"
+#include "recorder/loop.h"
 #include "recorder/formats/scene_file.h"
 #include "recorder/live/worker_pool.h"
 #include "recorder/recording/writer.h"

@@ -12,7 +12,7 @@
 #include <memory>
 #include <thread>
 
-#include "recorder/attempt.h"
+#include "recorder/loop.h"
 #include "recorder/base/errors.h"
 #include "recorder/formats/scene_file.h"
 #include "recorder/live/worker_pool.h"
