@@ -151,7 +151,7 @@ void addHistory(GradedFigure& figure, const std::vector<const AttemptRow*>& past
       y.push_back(figure.history.back().value);
     }
   }
-  figure.curve = fitLearningCurve(CurveShape::inverse, x, y);
+  figure.curve = fitLearningCurve(x, y);
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 namespace calot::analytics {
 namespace {
 
-constexpr std::array<DesignEntry, 10> allDesigns{{
+constexpr std::array<DesignEntry, 9> allDesigns{{
     {Design::twoGroups, "two-groups", "Do two groups differ", "Mann-Whitney, A, shift", GroupsNeeded::two, true},
     {Design::severalGroups, "groups", "Do three or more groups differ", "Kruskal-Wallis, Dunn's pairs",
      GroupsNeeded::several, true},
@@ -17,9 +17,7 @@ constexpr std::array<DesignEntry, 10> allDesigns{{
     {Design::timeToCriterion, "time-to-criterion", "Who finishes sooner, unfinished attempts included",
      "log-rank, Kaplan-Meier", GroupsNeeded::two, true},
     {Design::learning, "learning", "How fast do groups learn, and who has reached the criterion",
-     "curves, attempts to criterion, CUSUM", GroupsNeeded::any, false},
-    {Design::areas, "areas", "Which of several figures separates two groups better", "two ROC areas, DeLong",
-     GroupsNeeded::two, true},
+     "curves, attempts to criterion", GroupsNeeded::any, false},
     {Design::correlation, "correlation", "Do figures go with another, such as a rating", "Spearman", GroupsNeeded::none,
      true},
     {Design::agreement, "agreement", "Do two devices or methods measure the same", "Bland-Altman, Deming",

@@ -11,8 +11,6 @@
 #include <vector>
 
 #include "analytics/report/study.h"
-#include "analytics/statistics/cusum.h"
-#include "analytics/statistics/learning_curve.h"
 
 namespace calot::analytics {
 
@@ -23,7 +21,6 @@ enum class Design : std::uint8_t {
   repeated,
   timeToCriterion,
   learning,
-  areas,
   correlation,
   agreement,
   reliability
@@ -60,9 +57,7 @@ struct DesignChoices : StudyChoices {
   std::string finishedColumn;       ///< of a table: whether the attempt reached its end
   std::optional<double> criterion;  ///< in the figure's display unit; at it one passes
   std::size_t run = 1;              ///< attempts in a row that meet the criterion
-  CusumGoal goal;                   ///< failure rates of the cumulative sums
-  CurveShape shape = CurveShape::inverse;
-  double errorRatio = 1.0;  ///< Deming: variance of the second method's errors over that of the first
+  double errorRatio = 1.0;          ///< Deming: variance of the second method's errors over that of the first
 };
 
 }  // namespace calot::analytics

@@ -30,8 +30,6 @@ Analyse analysisOf(Design design) {
       return analyseTimes;
     case Design::learning:
       return analyseLearning;
-    case Design::areas:
-      return analyseAreas;
     case Design::correlation:
       return analyseCorrelation;
     case Design::agreement:

@@ -94,7 +94,6 @@ void analyseStrata(const DesignData& data, const DesignChoices& choices, DesignR
 void analyseRepeated(const DesignData& data, const DesignChoices& choices, DesignReport& report);
 void analyseTimes(const DesignData& data, const DesignChoices& choices, DesignReport& report);
 void analyseLearning(const DesignData& data, const DesignChoices& choices, DesignReport& report);
-void analyseAreas(const DesignData& data, const DesignChoices& choices, DesignReport& report);
 void analyseCorrelation(const DesignData& data, const DesignChoices& choices, DesignReport& report);
 void analyseAgreement(const DesignData& data, const DesignChoices& choices, DesignReport& report);
 void analyseReliability(const DesignData& data, const DesignChoices& choices, DesignReport& report);

@@ -30,7 +30,7 @@ void keepCommon(const AttemptMeans& means, std::size_t people, GroupCurve& curve
 
 }  // namespace
 
-GroupCurve groupCurve(const std::vector<PersonalCourse>& courses, CurveShape shape, std::size_t resamples) {
+GroupCurve groupCurve(const std::vector<PersonalCourse>& courses, std::size_t resamples) {
   GroupCurve result;
   AttemptMeans means;
   std::vector<double> indices;
@@ -41,7 +41,7 @@ GroupCurve groupCurve(const std::vector<PersonalCourse>& courses, CurveShape sha
   }
   result.participants = courses.size();
   keepCommon(means, courses.size(), result);
-  result.curve = fitLearningCurve(shape, result.attempt, result.mean);
+  result.curve = fitLearningCurve(result.attempt, result.mean);
   if (!result.curve || resamples == 0) return result;
   if (courses.size() < 3) {
     result.plateau = Expected<Interval>::none("fewer than three participants");
@@ -52,7 +52,7 @@ GroupCurve groupCurve(const std::vector<PersonalCourse>& courses, CurveShape sha
     for (const double index : drawn) addCourse(sums, courses[static_cast<std::size_t>(index)]);
     GroupCurve resampled;
     keepCommon(sums, drawn.size(), resampled);
-    const Expected<LearningCurve> curve = fitLearningCurve(shape, resampled.attempt, resampled.mean);
+    const Expected<LearningCurve> curve = fitLearningCurve(resampled.attempt, resampled.mean);
     return curve ? Expected<double>(curve->plateau) : Expected<double>::none(curve.reason());
   };
   BootstrapOptions options;

@@ -24,6 +24,6 @@ struct GroupCurve {
 
 /// Curve through the means of each attempt. Values of one participant are not independent, so the fit's own errors are
 /// not used. @param resamples 0: no interval @pre courses not empty
-GroupCurve groupCurve(const std::vector<PersonalCourse>& courses, CurveShape shape, std::size_t resamples);
+GroupCurve groupCurve(const std::vector<PersonalCourse>& courses, std::size_t resamples);
 
 }  // namespace calot::analytics

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Learning over attempts: curves by group, attempts to a criterion, cumulative sums by participant.
+// Learning over attempts: curves by group, attempts to a criterion.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,7 +7,6 @@
 
 #include "analytics/design/design_report.h"
 #include "analytics/design/learning_curves.h"
-#include "analytics/statistics/cusum.h"
 #include "analytics/statistics/survival.h"
 #include "recorder/base/errors.h"
 
@@ -25,10 +24,6 @@ Courses coursesOf(const DesignFigure& figure) {
     courses[v.person].value.push_back(v.value);
   }
   return courses;
-}
-
-const char* formulaOf(CurveShape shape) {
-  return shape == CurveShape::inverse ? "a - b / x" : shape == CurveShape::power ? "a - b x^-c" : "a - b exp(-c x)";
 }
 
 std::size_t groupsIn(const DesignData& data) { return std::max<std::size_t>(data.groups.size(), 1); }
@@ -51,7 +46,6 @@ DesignJson curveJson(const DesignData& data, const DesignFigure& figure, std::si
   }
   json["plateau"] = c.curve->plateau;
   json["gap"] = c.curve->gap;
-  json["rate"] = c.curve->rate;
   json["sigma"] = c.curve->sigma;
   json["plateau_interval"] = c.plateau ? intervalJson(*c.plateau) : reasonJson(c.plateau.reason());
   return json;
@@ -60,9 +54,8 @@ DesignJson curveJson(const DesignData& data, const DesignFigure& figure, std::si
 /// @returns how many curves could be fitted
 std::size_t addCurves(const DesignData& data, const DesignChoices& choices, DesignReport& report,
                       std::vector<std::pair<std::string, std::string>>& refused) {
-  ReportTable table = tableOf(fmt::format("Curves {} through the groups' means", formulaOf(choices.shape)),
-                              {"=figure", "=group", "participants", "attempts", "up to", "plateau a", "95 %", "gap b",
-                               choices.shape == CurveShape::inverse ? "" : "rate c"});
+  ReportTable table = tableOf("Curves a - b / x through the groups' means",
+                              {"=figure", "=group", "participants", "attempts", "up to", "plateau a", "95 %", "gap b"});
   report.json["curves"] = DesignJson::array();
   std::size_t fitted = 0;
   for (const DesignFigure& figure : data.figures) {
@@ -75,7 +68,7 @@ std::size_t addCurves(const DesignData& data, const DesignChoices& choices, Desi
         if (data.people[person].group == g) of.push_back(course);
       }
       if (of.empty()) continue;
-      const GroupCurve c = groupCurve(of, choices.shape, data.figures.size() <= mostWithIntervals ? curveResamples : 0);
+      const GroupCurve c = groupCurve(of, data.figures.size() <= mostWithIntervals ? curveResamples : 0);
       report.json["curves"].push_back(curveJson(data, figure, g, c));
       if (!c.curve) {
         refused.emplace_back(fmt::format("the curve of {}, {}", figure.name, groupTitle(data, g)), c.curve.reason());
@@ -84,8 +77,7 @@ std::size_t addCurves(const DesignData& data, const DesignChoices& choices, Desi
       ++fitted;
       table.rows.push_back({figureTitle(figure), groupTitle(data, g), fmt::format("{}", c.participants),
                             fmt::format("{}", c.attempts), significant(c.attempt.back()), significant(c.curve->plateau),
-                            intervalText(c.plateau), significant(c.curve->gap),
-                            choices.shape == CurveShape::inverse ? "" : significant(c.curve->rate)});
+                            intervalText(c.plateau), significant(c.curve->gap)});
       PlotSeries points{groupTitle(data, g), g, {}, false, false}, line{"", g, {}, true, false};
       for (std::size_t i = 0; i < c.attempt.size(); ++i) points.points.emplace_back(c.attempt[i], c.mean[i]);
       constexpr int pieces = 40;
@@ -144,83 +136,6 @@ void addCriterion(const DesignData& data, const DesignChoices& choices, const De
   report.json["to_criterion"] = json;
 }
 
-/// The first limit that the plain sum reaches; after "acceptable" the later attempts are monitored.
-struct CusumVerdict {
-  std::string text;
-  std::optional<std::size_t> acceptable, unacceptable, drop;  ///< attempts from 1
-};
-
-CusumVerdict verdictOf(const CusumDesign& design, const std::vector<bool>& failures, const CusumChart& chart) {
-  CusumVerdict v;
-  if (chart.acceptable && (!chart.unacceptable || *chart.acceptable < *chart.unacceptable)) {
-    v.acceptable = *chart.acceptable + 1;
-    v.text = fmt::format("acceptable at attempt {}", *v.acceptable);
-    const std::vector<bool> later(failures.begin() + static_cast<std::ptrdiff_t>(*v.acceptable), failures.end());
-    const CusumChart watched = cusum(design, later, CusumKind::monitoring);
-    if (watched.unacceptable) {
-      v.drop = *v.acceptable + *watched.unacceptable + 1;
-      v.text += fmt::format("; dropped at attempt {}", *v.drop);
-    }
-  } else if (chart.unacceptable) {
-    v.unacceptable = *chart.unacceptable + 1;
-    v.text = fmt::format("not acceptable at attempt {}", *v.unacceptable);
-  } else {
-    v.text = "undecided";
-  }
-  return v;
-}
-
-void addCusum(const DesignData& data, const DesignChoices& choices, const DesignFigure& figure, const Courses& courses,
-              Better better, DesignReport& report) {
-  const Expected<CusumDesign> design = CusumDesign::scaled(choices.goal);
-  if (!design) throw Error(ErrorKind::invalid, "study: cumulative sums: " + design.reason());
-  ReportTable table = tableOf("Cumulative sums", {"=participant", "=group", "attempts", "failures", "sum", "=verdict"});
-  LinePlot plot{"CUSUM: " + figure.name, "sum", data.occasionWord, {}, {design->lowerLimit(), design->upperLimit()},
-                data.synthetic};
-  report.json["cusum"] = {{"acceptable_rate", choices.goal.acceptable},
-                          {"unacceptable_rate", choices.goal.unacceptable},
-                          {"alpha", choices.goal.alpha},
-                          {"beta", choices.goal.beta},
-                          {"success_step", design->successStep()},
-                          {"failure_step", design->failureStep()},
-                          {"lower_limit", design->lowerLimit()},
-                          {"upper_limit", design->upperLimit()},
-                          {"participants", DesignJson::array()}};
-  std::vector<bool> labelled(groupsIn(data), false);
-  for (const auto& [person, course] : courses) {
-    std::vector<bool> failures;
-    for (const double value : course.value) failures.push_back(!meets(value, *choices.criterion, better));
-    const CusumChart chart = cusum(*design, failures, CusumKind::sequential);
-    const CusumVerdict verdict = verdictOf(*design, failures, chart);
-    const DesignPerson& p = data.people[person];
-    const auto failed = std::count(failures.begin(), failures.end(), true);
-    table.rows.push_back({p.name, groupTitle(data, p.group), fmt::format("{}", failures.size()),
-                          fmt::format("{}", failed), fmt::format("{:+.2f}", chart.sums.back()), verdict.text});
-    const auto number = [](const std::optional<std::size_t>& n) { return n ? DesignJson(*n) : DesignJson(nullptr); };
-    report.json["cusum"]["participants"].push_back({{"participant", p.name},
-                                                    {"group", groupTitle(data, p.group)},
-                                                    {"failures", failed},
-                                                    {"sums", chart.sums},
-                                                    {"acceptable_at", number(verdict.acceptable)},
-                                                    {"unacceptable_at", number(verdict.unacceptable)},
-                                                    {"dropped_at", number(verdict.drop)}});
-    PlotSeries line{labelled[p.group] ? "" : groupTitle(data, p.group), p.group, {{0.0, 0.0}}, true, false};
-    labelled[p.group] = true;
-    for (std::size_t i = 0; i < chart.sums.size(); ++i)
-      line.points.emplace_back(static_cast<double>(i + 1), chart.sums[i]);
-    plot.series.push_back(std::move(line));
-  }
-  report.tables.push_back(std::move(table));
-  report.notes.push_back(fmt::format(
-      "Cumulative sums: failure rate {} acceptable, {} not, risks {} and {}; a success adds {}, a failure {}; at {} or "
-      "less the participant is acceptable, at {} or more not. After that the sum is held at zero and watched for a "
-      "drop.",
-      significant(choices.goal.acceptable), significant(choices.goal.unacceptable), significant(choices.goal.alpha),
-      significant(choices.goal.beta), significant(design->successStep()), significant(design->failureStep()),
-      significant(design->lowerLimit()), significant(design->upperLimit())));
-  if (std::optional<Drawing> drawing = drawLines(plot)) report.drawings.push_back(std::move(*drawing));
-}
-
 }  // namespace
 
 void analyseLearning(const DesignData& data, const DesignChoices& choices, DesignReport& report) {
@@ -233,9 +148,8 @@ void analyseLearning(const DesignData& data, const DesignChoices& choices, Desig
   const std::size_t fitted = addCurves(data, choices, report, refused);
   if (!choices.criterion) askForResults(data, fitted, refused);
   report.methods = fmt::format(
-      "Curves {} were fitted by least squares to the groups' means of each attempt that at least half of the "
+      "Curves a - b / x were fitted by least squares to the groups' means of each attempt that at least half of the "
       "participants made{}.",
-      formulaOf(choices.shape),
       data.figures.size() <= mostWithIntervals
           ? "; intervals of the plateau are percentile bootstraps of 1,999 resamples of participants (seed 1)"
           : "");
@@ -249,11 +163,8 @@ void analyseLearning(const DesignData& data, const DesignChoices& choices, Desig
     const Better better = figure.direction == Direction::lower ? Better::lower : Better::higher;
     const Courses courses = coursesOf(figure);
     addCriterion(data, choices, figure, courses, better, report);
-    addCusum(data, choices, figure, courses, better, report);
     report.methods +=
-        " Attempts to the criterion were censored for those who did not reach it, with Kaplan-Meier medians; "
-        "cumulative "
-        "sums are Wald's sequential test in the scaled form.";
+        " Attempts to the criterion were censored for those who did not reach it, with Kaplan-Meier medians.";
     if (groupsIn(data) == 2) report.methods += " Groups were compared by the log-rank test.";
   }
   report.notes.emplace_back("An attempt without a value of the figure is passed over.");

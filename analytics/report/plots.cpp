@@ -217,14 +217,13 @@ constexpr double historyRadius = 3.0;
 /// Points of the curve and its band over attempts 1 to `last`.
 struct CurvePart {
   double x, y;
-  std::optional<Interval> band;
+  Interval band;
 };
 std::vector<CurvePart> partsOf(const LearningCurve& curve, double last) {
   std::vector<CurvePart> parts;
   for (int i = 0; i <= curveParts; ++i) {
     const double x = 1.0 + (last - 1.0) * i / curveParts;
-    const Expected<Interval> band = bandOf(curve, x);
-    parts.push_back({x, curve.at(x), band ? std::optional(*band) : std::nullopt});
+    parts.push_back({x, curve.at(x), bandOf(curve, x)});
   }
   return parts;
 }
@@ -249,15 +248,14 @@ std::optional<Drawing> drawHistory(const HistoryPlot& plot) {
   std::vector<LegendEntry> legend{{Ink::firstPoint, "attempt"}};
   // Boxes overlap: their edges would show.
   for (std::size_t i = 0; i + 1 < curve.size(); ++i) {
-    const auto& band = curve[i].band;
-    if (band)
-      drawing.box(Ink::band, x(curve[i].x), y(band->upper), x(curve[i + 1].x) - x(curve[i].x) + 1.0,
-                  y(band->lower) - y(band->upper));
+    const Interval& band = curve[i].band;
+    drawing.box(Ink::band, x(curve[i].x), y(band.upper), x(curve[i + 1].x) - x(curve[i].x) + 1.0,
+                y(band.lower) - y(band.upper));
   }
   for (std::size_t i = 1; i < curve.size(); ++i)
     drawing.line(Ink::secondLine, x(curve[i - 1].x), y(curve[i - 1].y), x(curve[i].x), y(curve[i].y));
   if (!curve.empty()) legend.push_back({Ink::secondLine, "learning curve a - b / x"});
-  if (!curve.empty() && curve.front().band) legend.push_back({Ink::band, "95 % band of the curve"});
+  if (!curve.empty()) legend.push_back({Ink::band, "95 % band of the curve"});
   if (plot.mark) {
     drawing.line(Ink::cut, frame.left(), y(*plot.mark), frame.right(), y(*plot.mark));
     legend.push_back({Ink::cut, "norm's cut"});

@@ -32,9 +32,8 @@ namespace {
 
 struct DesignOptions {
   std::string design;  ///< empty: implied by other options, else two groups
-  std::string strata, against, finishedColumn, shape = "inverse";
+  std::string strata, against, finishedColumn;
   std::optional<double> criterion;
-  std::vector<double> failureRates;
   std::size_t run = 1;
   double errorRatio = 1.0;
 };
@@ -88,17 +87,10 @@ void addDesignOptions(CLI::App& command, DesignOptions& o) {
                      "Figure that others are held against (correlation, agreement): a checkpoint, a column, or of a "
                      "cohort \"rating FORM\"");
   command.add_option("--criterion", o.criterion,
-                     "Value that one figure is to reach (learning), in its display unit; adds attempts to the "
-                     "criterion and CUSUM");
+                     "Value that one figure is to reach (learning), in its display unit; adds attempts to "
+                     "the criterion");
   command.add_option("--in-a-row", o.run, "Attempts in a row that must meet the criterion (learning)")
       ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
-  command.add_option("--failure-rates", o.failureRates, "Acceptable and unacceptable rate of the CUSUM (learning)")
-      ->delimiter(',')
-      ->expected(2)
-      ->default_str("0.05,0.15");
-  command.add_option("--curve", o.shape, "Shape of the learning curve: a - b/x, a - b x^-c or a - b exp(-c x)")
-      ->check(oneOf({"inverse", "power", "exponential"}))
       ->capture_default_str();
   command.add_option("--finished-column", o.finishedColumn,
                      "Of a table: whether the attempt was finished, 1 or 0 (time-to-criterion)");
@@ -118,8 +110,6 @@ analytics::Design designOf(const DesignOptions& o, const StudySource& source) {
                                       {"--against", !o.against.empty(), {Design::correlation, Design::agreement}},
                                       {"--criterion", o.criterion.has_value(), {Design::learning}},
                                       {"--in-a-row", o.run != 1, {Design::learning}},
-                                      {"--failure-rates", !o.failureRates.empty(), {Design::learning}},
-                                      {"--curve", o.shape != "inverse", {Design::learning}},
                                       {"--finished-column", !o.finishedColumn.empty(), {Design::timeToCriterion}},
                                       {"--error-ratio", o.errorRatio != 1.0, {Design::agreement}}};
   for (const DesignOption& option : own) {
@@ -135,8 +125,7 @@ analytics::Design designOf(const DesignOptions& o, const StudySource& source) {
   if (design == Design::correlation && o.against.empty()) failDesign("--design correlation needs --against");
   if (design == Design::timeToCriterion && !source.table.empty() && o.finishedColumn.empty())
     failDesign("--design time-to-criterion of a table needs --finished-column");
-  if (!o.criterion && (o.run != 1 || !o.failureRates.empty()))
-    failDesign("--in-a-row and --failure-rates need --criterion");
+  if (!o.criterion && o.run != 1) failDesign("--in-a-row needs --criterion");
   if (o.criterion && !std::isfinite(*o.criterion)) failDesign("--criterion: a finite number is wanted");
   if (source.table.empty() && !o.strata.empty() && o.strata != "site" && o.strata != "arm")
     failDesign("--strata of a cohort: site or arm");
@@ -158,13 +147,6 @@ analytics::DesignReport designReportOf(const DesignOptions& o, StudySource& sour
   choices.criterion = o.criterion;
   choices.run = o.run;
   choices.errorRatio = o.errorRatio;
-  choices.shape = o.shape == "power"         ? analytics::CurveShape::power
-                  : o.shape == "exponential" ? analytics::CurveShape::exponential
-                                             : analytics::CurveShape::inverse;
-  if (!o.failureRates.empty()) {
-    choices.goal.acceptable = o.failureRates[0];
-    choices.goal.unacceptable = o.failureRates[1];
-  }
   if (!source.table.empty())
     return analytics::makeDesignReport(
         analytics::tableDesignData(readCsvTable(source.table), source.elsewhere, choices), choices);

@@ -95,7 +95,7 @@ TraineeHistory historyOf(const std::vector<analytics::AttemptRow>& attempts,
     y.push_back(*entry.value);
   }
   history.curve = trainee.synthetic ? analytics::Expected<analytics::LearningCurve>::none("a performer does not learn")
-                                    : analytics::fitLearningCurve(analytics::CurveShape::inverse, x, y);
+                                    : analytics::fitLearningCurve(x, y);
   std::uint32_t version = 0;
   for (const analytics::Norm& norm : norms) {
     if (norm.comparabilityKey != key || norm.synthetic != trainee.synthetic) continue;

@@ -109,10 +109,9 @@ class Cohort(manifest_test.Manifest):
         self.assertEqual(said["participants"], 8)
 
     def test_one_value_of_each(self):
-        self.refused(3, "study", self.cohort, "--design", "areas", names=("P0", "--attempt-rule"))
-        areas = ("study", self.cohort, "--design", "areas", "--attempt-rule", "mean")
-        self.refused(3, *areas, names=("2 to 12", "--family"))
-        said = json.loads(self.well(*areas, "--family", "path-length left,idle-time left", "--json").out)
+        correlation = ("study", self.cohort, "--design", "correlation", "--against", "idle-time left")
+        self.refused(3, *correlation, names=("P0", "--attempt-rule"))
+        said = json.loads(self.well(*correlation, "--attempt-rule", "mean", "--family", "path-length left,idle-time left", "--json").out)
         self.assertEqual(said["attempt_rule"], "the mean of a participant's attempts")
         self.refused(2, "study", self.cohort, "--design", "repeated", "--masked", names=("--masked",))
         self.refused(2, "study", self.cohort, "--design", "reliability", "--family", "none", names=("none", "path-length left"))

@@ -94,24 +94,6 @@ TEST(DesignLevels, timesWithALimit) {
   expectLevelAndPower("log-rank", s);
 }
 
-/// Two figures of the same people, correlated, that separate the groups equally well.
-TEST(DesignLevels, twoAreas) {
-  Simulated s{asked(Design::areas, {"a:higher", "b:higher"}), {}, {}, 2.0};
-  s.asked.choices.better = std::string(1, 'x');
-  s.table = [](std::mt19937& random, double effect) {
-    std::string text = "id,group,a,b\n";
-    for (int i = 0; i < 2 * perGroup; ++i) {
-      const double person = normal(random), better = i % 2 == 0 ? 1.0 : 0.0;
-      const double a = 0.7 * person + 0.7 * normal(random) + better * (0.5 + effect);
-      const double b = 0.7 * person + 0.7 * normal(random) + better * 0.5;
-      text += fmt::format("P{},{},{},{}\n", i, "xy"[i % 2], a, b);
-    }
-    return text;
-  };
-  s.p = [](const auto& json) { return json["results"][0]["p"].template get<double>(); };
-  expectLevelAndPower("two areas", s);
-}
-
 TEST(DesignLevels, correlationWithARating) {
   Simulated s{asked(Design::correlation, {"a"}), {}, {}, 2.0};
   s.asked.options.groupColumn.clear();
