@@ -24,8 +24,9 @@ using recorder::shown;
 
 constexpr std::size_t maxAnswerBytes = std::size_t{4} << 20U, maxAnswerWord = 80, maxPackFilms = 10000;
 
+// "seal" is of pages that earlier versions made.
 const recorder::ObjectRule answersRule{
-    "", {{"format"}, {"formatVersion", true, 1, 1}, {"pack"}, {"rater"}, {"films"}, {"seal"}}};
+    "", {{"format"}, {"formatVersion", true, 1, 1}, {"pack"}, {"rater"}, {"films"}, {"seal", false}}};
 const recorder::ObjectRule filmRule{"film", {{"film"}, {"scores"}}};
 
 using Scores = std::vector<std::pair<std::string, std::string>>;  ///< item and score, in the form's order
@@ -67,16 +68,11 @@ PackAnswers readPackAnswers(const std::filesystem::path& file,
                                   [&](const PackedRater& r) { return r.rater == answers.rater; });
   if (rater == pack->raters.end()) refuse(name, fmt::format("no rater \"{}\" has this pack", shown(answers.rater)));
 
-  std::string sealed = "calot-answers 1\n" + id + "\n" + answers.rater;
   std::vector<std::pair<std::string, Scores>> films;
   for (const JsonPlace& place : root.at("films").list(1, maxPackFilms)) {
     const JsonObject film = place.object(filmRule);
     films.emplace_back(film.at("film").text(maxAnswerWord), scoresOf(film.at("scores"), answers.form));
-    sealed += "\n" + films.back().first;
-    for (const auto& [item, score] : films.back().second) sealed += fmt::format(" {}={}", item, score);
   }
-  if (sealOf(rater->sealKey, sealed) != root.at("seal").text(maxAnswerWord))
-    refuse(name, "was changed after the rater's page saved it; ask the rater to save it again");
 
   std::map<std::string, std::string> attemptOf;
   for (const PackedFilm& film : rater->films) attemptOf[film.name] = film.attempt;
@@ -84,7 +80,7 @@ PackAnswers readPackAnswers(const std::filesystem::path& file,
   for (const auto& [film, scores] : films) {
     if (!seen.insert(film).second) refuse(name, fmt::format("film {} is there twice", shown(film)));
     const auto at = attemptOf.find(film);
-    if (at == attemptOf.end()) {  // sealed by the page, so it was in the pack
+    if (at == attemptOf.end()) {
       ++answers.withdrawn;
       continue;
     }

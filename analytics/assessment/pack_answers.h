@@ -24,11 +24,10 @@ struct PackAnswers {
 };
 
 /// Reads and checks the file that a rating page saved: {"format": "calot-answers", "formatVersion": 1, "pack", "rater",
-/// "films": [{"film", "scores": {ITEM: "SCORE" or "-"}}], "seal"}. The seal is HMAC-SHA-256 of the lines "calot-answers
-/// 1", pack, rater and, for each film, "FILM ITEM=SCORE ...", joined by line feeds.
+/// "films": [{"film", "scores": {ITEM: "SCORE" or "-"}}]}; a "seal", which earlier pages wrote, is not read.
 /// @param find the pack of that id, if there is one
-/// @throws Error (damaged) for a file that is none; (refused) for a pack or rater that is not known, a seal that does
-/// not fit, a film that is missing or there twice.
+/// @throws Error (damaged) for a file that is none; (refused) for a pack or rater that is not known, a film that is
+/// missing or there twice.
 PackAnswers readPackAnswers(const std::filesystem::path& file,
                             const std::function<std::optional<RatingPack>(const std::string& id)>& find);
 

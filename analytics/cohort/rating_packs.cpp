@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstring>
 #include <set>
 #include <utility>
 
@@ -36,15 +35,10 @@ void shuffle(std::vector<T>& items) {
     std::swap(items[i - 1], items[randombytes_uniform(static_cast<std::uint32_t>(i))]);
 }
 
-void bindKey(SQLite::Statement& statement, int index, const SealKey& key) {
-  statement.bind(index, key.data(), static_cast<int>(key.size()));
-}
-
 PackedRater raterRow(SQLite::Statement& row) {
   PackedRater rater;
   rater.rater = text(row.getColumn(0));
-  std::memcpy(rater.sealKey.data(), row.getColumn(1).getBlob(), rater.sealKey.size());
-  rater.takenUtc = text(row.getColumn(2));
+  rater.takenUtc = text(row.getColumn(1));
   return rater;
 }
 
@@ -58,7 +52,6 @@ RatingPack drawRatingPack(const StoredDocument& form, const std::vector<std::str
   for (const std::string& name : raters) {
     PackedRater& rater = pack.raters.emplace_back();
     rater.rater = name;
-    randombytes_buf(rater.sealKey.data(), rater.sealKey.size());
     for (const std::string& attempt : attempts) {
       std::string film = drawName();
       while (!taken.insert(film).second) film = drawName();
@@ -79,10 +72,9 @@ void storeRatingPack(const std::string& path, const RatingPack& pack) {
     put.exec();
     for (const PackedRater& rater : pack.raters) {
       checkPseudonym(rater.rater);
-      SQLite::Statement who(db, "INSERT INTO rating_pack_rater (pack, rater, seal_key) VALUES (?, ?, ?)");
-      who.bind(1, pack.id);
-      who.bind(2, rater.rater);
-      bindKey(who, 3, rater.sealKey);
+      // Earlier versions sealed the answers; the column stays, empty.
+      SQLite::Statement who(db, "INSERT INTO rating_pack_rater (pack, rater, seal_key) VALUES (?, ?, zeroblob(32))");
+      SQLite::bind(who, pack.id, rater.rater);
       who.exec();
       SQLite::Statement film(db, "INSERT INTO rating_pack_film VALUES (?, ?, ?, ?, ?)");
       for (std::size_t i = 0; i < rater.films.size(); ++i) {
@@ -110,8 +102,7 @@ std::optional<RatingPack> readRatingPack(const std::string& path, const std::str
         id,
         {text(find.getColumn(0)), find.getColumn(1).getUInt(), text(find.getColumn(2)), text(find.getColumn(3))},
         {}};
-    SQLite::Statement raters(db,
-                             "SELECT rater, seal_key, taken_utc FROM rating_pack_rater WHERE pack = ? ORDER BY rater");
+    SQLite::Statement raters(db, "SELECT rater, taken_utc FROM rating_pack_rater WHERE pack = ? ORDER BY rater");
     raters.bind(1, id);
     while (raters.executeStep()) pack.raters.push_back(raterRow(raters));
     SQLite::Statement films(db,
@@ -146,15 +137,6 @@ void storePackAnswers(const std::string& path, const RatingPack& pack, const std
     mark.exec();
     transaction.commit();
   });
-}
-
-std::string sealOf(const SealKey& key, const std::string& text) {
-  std::array<unsigned char, crypto_auth_hmacsha256_BYTES> seal{};
-  crypto_auth_hmacsha256(seal.data(), reinterpret_cast<const unsigned char*>(text.data()), text.size(),
-                         reinterpret_cast<const unsigned char*>(key.data()));
-  std::string hex;
-  for (const unsigned char byte : seal) hex += fmt::format("{:02x}", byte);
-  return hex;
 }
 
 }  // namespace calot::analytics

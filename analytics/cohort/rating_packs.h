@@ -3,8 +3,6 @@
 // (schemas/cohort/0007_blinding.sql).
 #pragma once
 
-#include <array>
-#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,8 +10,6 @@
 #include "analytics/cohort/assessment_database.h"
 
 namespace calot::analytics {
-
-using SealKey = std::array<std::byte, 32>;
 
 struct PackedFilm {
   std::string name;     ///< random
@@ -23,7 +19,6 @@ struct PackedFilm {
 /// One rater's part of a pack.
 struct PackedRater {
   std::string rater;              ///< pseudonym
-  SealKey sealKey{};              ///< of HMAC-SHA-256 over the answers
   std::string takenUtc = {};      ///< when the answers were stored; empty: not yet
   std::vector<PackedFilm> films;  ///< in the order in which the rater sees them; those of withdrawn attempts are gone
 };
@@ -34,7 +29,7 @@ struct RatingPack {
   std::vector<PackedRater> raters;
 };
 
-/// Draws names, orders and keys from the system's source of randomness: of each rater others.
+/// Draws names and orders from the system's source of randomness: of each rater others.
 RatingPack drawRatingPack(const StoredDocument& form, const std::vector<std::string>& raters,
                           const std::vector<std::string>& attempts);
 
@@ -47,8 +42,5 @@ std::optional<RatingPack> readRatingPack(const std::string& path, const std::str
 /// `replace` is not set; as AssessmentDatabase::storeRating().
 void storePackAnswers(const std::string& path, const RatingPack& pack, const std::string& rater,
                       const std::vector<Rating>& ratings, bool replace);
-
-/// HMAC-SHA-256 of a text, in hexadecimal.
-std::string sealOf(const SealKey& key, const std::string& text);
 
 }  // namespace calot::analytics

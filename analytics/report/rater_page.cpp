@@ -32,9 +32,9 @@ std::string dataOf(const RatingPage& page) {
       items.push_back({{"key", item.key}, {"text", item.text}, {"section", section.name}, {"anchors", item.anchors}});
     }
   }
-  const Json data{{"pack", page.pack},        {"rater", page.rater},    {"sealKey", page.sealKey},
-                  {"least", page.form.least}, {"most", page.form.most}, {"words", page.form.words},
-                  {"items", items},           {"films", page.films}};
+  const Json data{{"pack", page.pack},      {"rater", page.rater},      {"least", page.form.least},
+                  {"most", page.form.most}, {"words", page.form.words}, {"items", items},
+                  {"films", page.films}};
   std::string text = data.dump(-1, ' ', true, Json::error_handler_t::replace);
   for (std::size_t at = text.find('<'); at != std::string::npos; at = text.find('<', at))
     text.replace(at, 1, "\\u003c");

@@ -11,7 +11,6 @@ namespace calot::analytics {
 /// What a rater's page knows: neither attempt nor participant, group or figures.
 struct RatingPage {
   std::string pack, rater;
-  std::string sealKey;  ///< hexadecimal
   RatingForm form;
   std::vector<std::string> films;  ///< random names, in the order to watch; each is films/NAME.mp4
 };

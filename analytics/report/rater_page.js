@@ -89,13 +89,7 @@ function show(number, move) {
   count();
   if (move) { at("heading").focus(); window.scrollTo(0, 0); }
 }
-async function seal(text) {
-  const bytes = Uint8Array.from(data.sealKey.match(/../g), pair => parseInt(pair, 16));
-  const key = await crypto.subtle.importKey("raw", bytes, { name: "HMAC", hash: "SHA-256" }, false, ["sign"]);
-  const sum = new Uint8Array(await crypto.subtle.sign("HMAC", key, new TextEncoder().encode(text)));
-  return Array.from(sum, byte => byte.toString(16).padStart(2, "0")).join("");
-}
-async function save() {
+function save() {
   const open = data.films.findIndex(film => !isWhole(film));
   if (open >= 0) {
     show(open, true);
@@ -103,12 +97,9 @@ async function save() {
       .map(item => item.text).join(", ") + ". Choose \u201ccannot judge\u201d where the film does not show it.");
     return;
   }
-  const lines = ["calot-answers 1", data.pack, data.rater];
-  for (const film of data.films) lines.push([film, ...data.items.map(item => item.key + "=" + answers[film][item.key])].join(" "));
   try {
     const file = { format: "calot-answers", formatVersion: 1, pack: data.pack, rater: data.rater,
-      films: data.films.map(film => ({ film: film, scores: Object.fromEntries(data.items.map(item => [item.key, answers[film][item.key]])) })),
-      seal: await seal(lines.join("\n")) };
+      films: data.films.map(film => ({ film: film, scores: Object.fromEntries(data.items.map(item => [item.key, answers[film][item.key]])) })) };
     const link = document.createElement("a");
     link.href = URL.createObjectURL(new Blob([JSON.stringify(file, null, 2) + "\n"], { type: "application/json" }));
     link.download = "answers-" + data.rater + ".json";

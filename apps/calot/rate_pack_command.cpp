@@ -188,8 +188,7 @@ void levelTimes(const fs::path& folder) {
 
 analytics::RatingPage pageOf(const analytics::RatingPack& pack, const analytics::PackedRater& rater,
                              const analytics::RatingForm& form) {
-  analytics::RatingPage page{pack.id, rater.rater, {}, form, {}};
-  for (const std::byte b : rater.sealKey) page.sealKey += fmt::format("{:02x}", static_cast<unsigned>(b));
+  analytics::RatingPage page{pack.id, rater.rater, form, {}};
   for (const analytics::PackedFilm& film : rater.films) page.films.push_back(film.name);
   return page;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Packs for raters: what is drawn, what is stored, and the seal against a published vector.
+// Packs for raters: what is drawn, and what is stored.
 #include "analytics/cohort/rating_packs.h"
 
 #include <gtest/gtest.h>
@@ -34,14 +34,7 @@ TEST(RatingPacks, eachRaterHasNamesAnOrderAndAKeyOfTheirOwn) {
     orders.push_back(order);
   }
   EXPECT_NE(orders[0], orders[1]);
-  EXPECT_NE(pack.raters[0].sealKey, pack.raters[1].sealKey);
   EXPECT_NE(pack.id, drawRatingPack(pack.form, {"R1"}, attempts).id);
-}
-
-TEST(RatingPacks, theSealIsHmacSha256) {
-  SealKey key{};  // RFC 4231, test case 1: the key is padded with zeros
-  for (std::size_t i = 0; i < 20; ++i) key[i] = std::byte{0x0b};
-  EXPECT_EQ(sealOf(key, "Hi There"), "b0344c61d8db38535ca8afceaf0bf12b881dc200c9833da726e9376c2e32cff7");
 }
 
 TEST(AnalysisLocks, aMaskIsDrawnOnceAndALockStays) {
