@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "analytics/assessment/norm_rule.h"
 #include "analytics/assessment/create_norm.h"
 #include "analytics/assessment/grade.h"
 #include "analytics/assessment/norm.h"
+#include "analytics/assessment/norm_rule.h"
 #include "analytics/checkpoints/registry.h"
 #include "analytics/cohort/assessment_database.h"
 #include "analytics/report/report_document.h"

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "analytics/statistics/descriptive.h"
-#include "recorder/engine/observer.h"
 #include "recorder/base/errors.h"
+#include "recorder/engine/observer.h"
 #include "recorder/replay.h"
 
 namespace {

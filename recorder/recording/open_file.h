@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Opening untrusted files: their first 48 bytes (HDF5 File Format Specification 3.0, II.A), and the one shape that files
-// of recordings have (schemas/recording-integrity.md, "Shape"). Internal to this folder.
+// Opening untrusted files: their first 48 bytes (HDF5 File Format Specification 3.0, II.A), and the one shape that
+// files of recordings have (schemas/recording-integrity.md, "Shape"). Internal to this folder.
 #pragma once
 
 #include <cstddef>

@@ -14,8 +14,8 @@
 #include "analytics/checkpoints/movements.h"
 #include "analytics/checkpoints/two_hands.h"
 #include "analytics/statistics/descriptive.h"
-#include "sim/math/linear.h"
 #include "sim/math/elementary.h"
+#include "sim/math/linear.h"
 
 namespace calot::analytics {
 namespace {

@@ -7,9 +7,9 @@
 #include <filesystem>
 #include <thread>
 
-#include "recorder/loop.h"
 #include "recorder/formats/scene_file.h"
 #include "recorder/live/worker_pool.h"
+#include "recorder/loop.h"
 #include "recorder/recording/reader.h"
 #include "recorder/recording/recording_facts.h"
 #include "recorder/recording/writer.h"
