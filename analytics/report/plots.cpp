@@ -76,7 +76,7 @@ namespace {
 constexpr std::size_t maxGroup = 20;     // in letters
 constexpr std::size_t minBox = 5;        // values: quartiles of fewer are interpolations between two of them
 constexpr std::size_t mostPoints = 200;  // drawn of a group: more are one dark column, and a report of megabytes
-constexpr double mostBoxHalf = 26.0, pointRadius = 2.6;
+constexpr double usualBoxHalf = 26.0, pointRadius = 2.6;
 constexpr double groupLetter = 6.5, minName = 4.0;  // mean width of a letter; a name of fewer says nothing
 
 /// Where a group stands, and in what.
@@ -114,7 +114,7 @@ void drawGroup(Drawing& drawing, const BoxPlot& plot, std::size_t group, const C
   if (sorted.size() >= minBox) drawBox(drawing, sorted, column, scale);
   const auto draw = [&](std::size_t i, std::size_t place) {
     // Side by side in five places in turn, so that equal values do not hide each other.
-    const double x = column.x + (static_cast<double>(place * 2 % 5) - 2.0) * column.boxHalf * (7.0 / mostBoxHalf);
+    const double x = column.x + (static_cast<double>(place * 2 % 5) - 2.0) * column.boxHalf * (7.0 / usualBoxHalf);
     const double y = scale.y(sorted[i]);
     const BoxPlot::Point point = plot.point ? plot.point(group, order[i]) : BoxPlot::Point{};
     drawing.point(point.synthetic ? Ink::hollowPoint : column.point, x, y, pointRadius);
@@ -159,7 +159,8 @@ std::optional<Drawing> drawBoxPlot(const BoxPlot& plot) {
   Drawing drawing = beginPlot(plot.title, plot.axis, *scale);
   const double apart = (plot.frame.right() - plot.frame.left()) / static_cast<double>(plot.values.size());
   for (std::size_t g = 0; g < plot.values.size(); ++g) {
-    const Column column{plot.frame.left() + apart * (static_cast<double>(g) + 0.5), std::min(mostBoxHalf, 0.35 * apart),
+    const Column column{plot.frame.left() + apart * (static_cast<double>(g) + 0.5),
+                        std::min(std::max(usualBoxHalf, 0.12 * apart), 0.35 * apart),
                         g % 2 == 0 ? Ink::firstBox : Ink::secondBox, g % 2 == 0 ? Ink::firstPoint : Ink::secondPoint};
     nameGroup(drawing, plot, g, column.x, apart);
     if (!plot.values[g].empty()) drawGroup(drawing, plot, g, column, *scale);
@@ -211,7 +212,7 @@ Drawing drawForest(const ForestPlot& plot) {
 
 namespace {
 
-constexpr int curveParts = 120;
+constexpr int curveParts = 480;
 constexpr double historyRadius = 3.0;
 
 /// Points of the curve and its band over attempts 1 to `last`.
