@@ -80,12 +80,12 @@ constexpr double usualBoxHalf = 26.0, pointRadius = 2.6;
 constexpr double groupLetter = 6.5, minName = 4.0;  // mean width of a letter; a name of fewer says nothing
 
 /// Where a group stands, and in what.
-struct Column {
+struct BoxColumn {
   double x, boxHalf;
   Ink box, point;
 };
 
-void drawBox(Drawing& drawing, const std::vector<double>& sorted, const Column& column, const PlotScale& scale) {
+void drawBox(Drawing& drawing, const std::vector<double>& sorted, const BoxColumn& column, const PlotScale& scale) {
   const double q1 = quantileOfSorted(sorted, 0.25), q2 = quantileOfSorted(sorted, 0.5),
                q3 = quantileOfSorted(sorted, 0.75);
   const double reach = 1.5 * (q3 - q1);
@@ -103,7 +103,8 @@ void drawBox(Drawing& drawing, const std::vector<double>& sorted, const Column& 
 /// Every value is drawn, or one in so many of those in order.
 std::size_t strideOf(std::size_t values) { return values == 0 ? 1 : 1 + (values - 1) / mostPoints; }
 
-void drawGroup(Drawing& drawing, const BoxPlot& plot, std::size_t group, const Column& column, const PlotScale& scale) {
+void drawGroup(Drawing& drawing, const BoxPlot& plot, std::size_t group, const BoxColumn& column,
+               const PlotScale& scale) {
   const std::span<const double> values = plot.values[group];
   std::vector<std::size_t> order(values.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -159,9 +160,10 @@ std::optional<Drawing> drawBoxPlot(const BoxPlot& plot) {
   Drawing drawing = beginPlot(plot.title, plot.axis, *scale);
   const double apart = (plot.frame.right() - plot.frame.left()) / static_cast<double>(plot.values.size());
   for (std::size_t g = 0; g < plot.values.size(); ++g) {
-    const Column column{plot.frame.left() + apart * (static_cast<double>(g) + 0.5),
-                        std::min(std::max(usualBoxHalf, 0.12 * apart), 0.35 * apart),
-                        g % 2 == 0 ? Ink::firstBox : Ink::secondBox, g % 2 == 0 ? Ink::firstPoint : Ink::secondPoint};
+    const BoxColumn column{plot.frame.left() + apart * (static_cast<double>(g) + 0.5),
+                           std::min(std::max(usualBoxHalf, 0.12 * apart), 0.35 * apart),
+                           g % 2 == 0 ? Ink::firstBox : Ink::secondBox,
+                           g % 2 == 0 ? Ink::firstPoint : Ink::secondPoint};
     nameGroup(drawing, plot, g, column.x, apart);
     if (!plot.values[g].empty()) drawGroup(drawing, plot, g, column, *scale);
   }
@@ -220,7 +222,7 @@ struct CurvePart {
   double x, y;
   Interval band;
 };
-std::vector<CurvePart> partsOf(const LearningCurve& curve, double last) {
+std::vector<CurvePart> curvePartsOf(const LearningCurve& curve, double last) {
   std::vector<CurvePart> parts;
   for (int i = 0; i <= curveParts; ++i) {
     const double x = 1.0 + (last - 1.0) * i / curveParts;
@@ -234,7 +236,7 @@ std::vector<CurvePart> partsOf(const LearningCurve& curve, double last) {
 std::optional<Drawing> drawHistory(const HistoryPlot& plot) {
   const double last = std::max(1.0, plot.attempts > 0.0 ? plot.attempts : static_cast<double>(plot.values.size()));
   std::vector<CurvePart> curve;
-  if (plot.curve != nullptr) curve = partsOf(*plot.curve, last);
+  if (plot.curve != nullptr) curve = curvePartsOf(*plot.curve, last);
   std::vector<double> all;
   for (const HistoryPlot::Value& v : plot.values) all.push_back(v.value);
   for (const CurvePart& p : curve) all.push_back(p.y);
