@@ -6,9 +6,9 @@
 #include <poll.h>
 #include <signal.h>
 #include <spawn.h>
-#include <sys/pidfd.h>
 #include <sys/prctl.h>
 #include <sys/socket.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -162,7 +162,7 @@ ProcessEnd ChildProcess::end(std::chrono::milliseconds patience) {
   if (pid_ < 0) return end_;
   // It may be ending by itself: its own reason is the better one.
   ::shutdown(channel_.descriptor(), SHUT_RDWR);
-  const int process = ::pidfd_open(pid_, 0);
+  const int process = static_cast<int>(::syscall(SYS_pidfd_open, pid_, 0));
   const bool ended = waitFor(process, std::chrono::steady_clock::now() + patience);
   ::close(process);
   if (!ended) ::kill(pid_, SIGKILL);
