@@ -2,8 +2,6 @@
 // Keyframes as differences from earlier ones (schemas/recording.md, "Keyframes"). Between two keyframes most of a State
 // does not change, and what does changes little: as differences of 64-bit words it deflates to a third. Internal to
 // this folder.
-// The schedule takes them so that simulating from one to any step takes as long where steps are hard as where they are
-// easy.
 #pragma once
 
 #include <cstddef>
@@ -15,8 +13,6 @@
 #include <vector>
 
 #include "recorder/engine/observer.h"
-#include "recorder/recording/layout.h"
-#include "sim/scene/step_result.h"
 
 namespace calot::recorder {
 
@@ -64,27 +60,6 @@ class CodedKeyframe {
   std::optional<std::uint64_t> base_;
   std::uint64_t parts_ = 0;
   std::span<const std::uint64_t> descriptions_, values_;
-};
-
-/// Goes by what a step reports of its own work, never by clocks: the same attempt has the same keyframes everywhere.
-class KeyframeSchedule {
- public:
-  explicit KeyframeSchedule(const Layout& layout, double tickSeconds);
-
-  /// Takes the next step. @return whether a keyframe is due after it: only at the end of a block.
-  bool dueAfter(const StepResult& result);
-
-  /// A keyframe was taken. @param stateBytes of its State; the first one's is the measure of the scene's size.
-  void taken(std::size_t stateBytes);
-
- private:
-  std::uint64_t stepsPerBlock_;
-  std::uint64_t longest_;  ///< steps: about a second, whole blocks
-  std::uint64_t steps_ = 0;
-  std::uint64_t since_ = 0;  ///< steps since the last keyframe
-  double work_ = 0.0;        ///< since the last keyframe (ms)
-  double blockWork_ = 0.0;   ///< of the block so far (ms)
-  double size_ = 0.0;        ///< of the scene, as a multiple of the one that the work was measured in; 0: not yet known
 };
 
 }  // namespace calot::recorder

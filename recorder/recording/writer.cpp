@@ -16,6 +16,7 @@
 #include "recorder/base/text_output.h"
 #include "recorder/recording/file_writer.h"
 #include "recorder/recording/keyframe_code.h"
+#include "recorder/recording/keyframe_schedule.h"
 
 namespace calot::recorder {
 
