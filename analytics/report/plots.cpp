@@ -77,7 +77,8 @@ constexpr std::size_t maxGroup = 20;     // in letters
 constexpr std::size_t minBox = 5;        // values: quartiles of fewer are interpolations between two of them
 constexpr std::size_t mostPoints = 200;  // drawn of a group: more are one dark column, and a report of megabytes
 constexpr double usualBoxHalf = 26.0, pointRadius = 2.6;
-constexpr double groupLetter = 6.5, minName = 4.0;  // mean width of a letter; a name of fewer says nothing
+constexpr double countLetter = 4.9, groupLetter = 6.5,
+                 minName = 4.0;  // mean width of a letter; a name of fewer says nothing
 
 /// Where a group stands, and in what.
 struct BoxColumn {
@@ -134,7 +135,7 @@ void nameGroup(Drawing& drawing, const BoxPlot& plot, std::size_t group, double 
                cutTo(plot.groups[group], std::min(maxGroup, static_cast<std::size_t>(letters))));
   std::string count = fmt::format("n = {}", n);
   if (stride > 1) count += fmt::format(", one in {} drawn", stride);
-  if (static_cast<double>(count.size()) < letters + 1.0) drawing.text(Ink::group, x, bottom + 32.0, count);
+  if (static_cast<double>(count.size()) * countLetter < width) drawing.text(Ink::group, x, bottom + 32.0, count);
 }
 
 }  // namespace
