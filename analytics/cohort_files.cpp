@@ -54,17 +54,16 @@ std::optional<std::filesystem::path> RecordingsFound::of(const AttemptRow& a) co
   return std::min_element(at->second.begin(), at->second.end(), better)->file;
 }
 
-NamedFiles::NamedFiles(const std::vector<std::filesystem::path>& places) {
-  for (std::filesystem::path& file : recorder::filesUnder(places)) {
-    std::string name = file.filename().string();
-    byName_.emplace(std::move(name), std::move(file));
-  }
-}
-
-std::optional<std::filesystem::path> NamedFiles::only(const std::string& name) const {
-  const auto [begin, end] = byName_.equal_range(name);
-  if (begin == end || std::next(begin) != end) return std::nullopt;
-  return begin->second;
+std::vector<std::filesystem::path> recordingsUnder(const std::vector<std::filesystem::path>& places) {
+  std::vector<std::filesystem::path> files = recorder::filesUnder(places);
+  std::erase_if(files, [&](const std::filesystem::path& file) {
+    const bool named = std::find(places.begin(), places.end(), file) != places.end();
+    return !named && !recorder::looksLikeHdf5(file);
+  });
+  if (files.empty())
+    throw Error(ErrorKind::damaged, Where{places.empty() ? "" : places.front().string()},
+                "there are no recordings in it");
+  return files;
 }
 
 namespace {
