@@ -14,8 +14,8 @@
 #include <string>
 #include <vector>
 
-#include "recorder/attempt.h"
 #include "recorder/base/identity.h"
+#include "recorder/loop.h"
 #include "recorder/recording/station_key.h"
 #include "recorder/recording/writer.h"
 #include "recorder/sources/devices/device_source.h"
