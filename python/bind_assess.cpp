@@ -6,7 +6,7 @@
 #include "analytics/assess.h"
 #include "analytics/checkpoints/registry.h"
 #include "python/bindings.h"
-#include "python/errors.h"
+#include "python/exceptions.h"
 #include "python/value_rows.h"
 
 namespace py = pybind11;

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "python/bindings.h"
-#include "python/errors.h"
+#include "python/exceptions.h"
 #include "recorder/recording/layout.h"
 #include "recorder/recording/probe.h"
 #include "recorder/recording/recorded_columns.h"

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "python/bindings.h"
-#include "python/errors.h"
+#include "python/exceptions.h"
 #include "python/step_facts.h"
 #include "recorder/engine/state_fields.h"
 #include "recorder/prepared_scene.h"

@@ -2,7 +2,7 @@
 #include <pybind11/pybind11.h>
 
 #include "python/bindings.h"
-#include "python/errors.h"
+#include "python/exceptions.h"
 #include "python/places.h"
 #include "recorder/attempt.h"
 #include "recorder/compliance_cache.h"

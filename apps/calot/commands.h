@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Commands of `calot`: each adds its subcommand with its options to the application and, when chosen, sets `run` to
-// what main() shall call; `run` returns the exit code or throws calot::Error.
+// what main() shall call; `run` returns the exit code or throws calot::Error. A new command is a file that defines its
+// function, with an example in the footer or in help.cpp, and a line of this list.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -10,37 +11,42 @@ namespace calot::apps {
 
 using Run = std::function<int()>;
 
-void addRecord(CLI::App& app, Run& run);
-void addEngine(CLI::App& app, Run& run);
-void addReplay(CLI::App& app, Run& run);
-void addBranch(CLI::App& app, Run& run);
-void addInspect(CLI::App& app, Run& run);
-void addRecover(CLI::App& app, Run& run);
-void addExport(CLI::App& app, Run& run);
-void addState(CLI::App& app, Run& run);
-void addDiff(CLI::App& app, Run& run);
-void addMesh(CLI::App& app, Run& run);
-void addCache(CLI::App& app, Run& run);
-void addRender(CLI::App& app, Run& run);
-void addImport(CLI::App& app, Run& run);
-void addAssess(CLI::App& app, Run& run);
-void addVerify(CLI::App& app, Run& run);
-void addStudy(CLI::App& app, Run& run);
-void addProtocol(CLI::App& app, Run& run);
-void addPower(CLI::App& app, Run& run);
-void addRate(CLI::App& app, Run& run);
-void addNorm(CLI::App& app, Run& run);
-void addGrade(CLI::App& app, Run& run);
+// In the order of `calot --help`.
+#define CALOT_COMMAND_LIST(X) \
+  X(Record)                   \
+  X(Replay)                   \
+  X(Engine)                   \
+  X(Branch)                   \
+  X(Inspect)                  \
+  X(Recover)                  \
+  X(Export)                   \
+  X(State)                    \
+  X(Diff)                     \
+  X(Import)                   \
+  X(Assess)                   \
+  X(Verify)                   \
+  X(Study)                    \
+  X(Protocol)                 \
+  X(Power)                    \
+  X(Rate)                     \
+  X(Norm)                     \
+  X(Grade)                    \
+  X(Participant)              \
+  X(Attempt)                  \
+  X(Regrade)                  \
+  X(Cohort)                   \
+  X(Station)                  \
+  X(Render)                   \
+  X(Mesh)                     \
+  X(Scenes)                   \
+  X(Scene)                    \
+  X(Checkpoints)              \
+  X(Devices)                  \
+  X(Golden)                   \
+  X(Cache)
 
-void addParticipant(CLI::App& app, Run& run);
-void addAttempt(CLI::App& app, Run& run);
-void addRegrade(CLI::App& app, Run& run);
-void addCohort(CLI::App& app, Run& run);
-void addStation(CLI::App& app, Run& run);
-void addScene(CLI::App& app, Run& run);
-void addScenes(CLI::App& app, Run& run);
-void addCheckpoints(CLI::App& app, Run& run);
-void addDevices(CLI::App& app, Run& run);
-void addGolden(CLI::App& app, Run& run);
+#define CALOT_DECLARE_COMMAND(name) void add##name(CLI::App& app, Run& run);
+CALOT_COMMAND_LIST(CALOT_DECLARE_COMMAND)
+#undef CALOT_DECLARE_COMMAND
 
 }  // namespace calot::apps

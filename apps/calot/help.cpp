@@ -36,7 +36,6 @@ constexpr Example examples[] = {
     {"recover", "calot recover killed.h5 -o recovered.h5"},
     {"export", "calot export attempt.h5 --csv tables"},
     {"export", "calot export attempt.h5 --motion motion"},
-    {"export", "calot export attempt.h5 --motion motion"},
     {"state", "calot state attempt.h5 --step 100 -o step100.h5"},
     {"diff", "calot diff step100.h5 other.h5"},
     {"import", "calot import knots.txt --task knot-tying --participant P1 --mode assessment --cohort c.db"},

@@ -24,16 +24,9 @@ int main(int argc, char** argv) {
   const std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
   apps::lookForCohort(words);
   apps::Run run;
-  for (const auto add :
-       {apps::addRecord,  apps::addReplay, apps::addEngine,      apps::addBranch,      apps::addInspect,
-        apps::addRecover, apps::addExport, apps::addState,       apps::addDiff,        apps::addImport,
-        apps::addAssess,  apps::addVerify, apps::addStudy,       apps::addProtocol,    apps::addPower,
-        apps::addRate,    apps::addNorm,   apps::addGrade,       apps::addParticipant, apps::addAttempt,
-        apps::addRegrade, apps::addCohort, apps::addStation,     apps::addRender,      apps::addMesh,
-        apps::addScenes,  apps::addScene,  apps::addCheckpoints, apps::addDevices,     apps::addGolden,
-        apps::addCache}) {
-    add(app, run);
-  }
+#define CALOT_ADD_COMMAND(name) apps::add##name(app, run);
+  CALOT_COMMAND_LIST(CALOT_ADD_COMMAND)
+#undef CALOT_ADD_COMMAND
   apps::dressHelp(app);
   apps::addHelpJson(app);
   try {

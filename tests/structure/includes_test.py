@@ -55,7 +55,7 @@ MAY_SEE = {
     "gui/trainer": ("sim", "recorder", "analytics", "gui/attempt", "gui/render", "gui/view", "gui/words"),
     "gui/report": ("sim", "recorder", "analytics", "gui/render"),
     "apps": ("sim", "recorder", "analytics", "gui", "apps/common"),
-    "python": ("sim", "recorder", "analytics", "gui/render", "apps/common"),
+    "python": ("sim", "recorder", "analytics", "gui/render"),
     "apps/common": ("recorder/base",),
     "packaging/example": ("sim", "recorder", "analytics"),
     "apps/calot-bench": ("recorder", "apps/common", "tests/bench"),

@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "python/errors.h"
+#include "python/exceptions.h"
 
 #include <pybind11/pybind11.h>
 
 #include <exception>
-
-#include "apps/common/advice.h"
-#include "apps/common/exit_code.h"
 
 namespace py = pybind11;
 
@@ -14,9 +11,56 @@ namespace calot::python {
 
 namespace {
 
+/// Exit code of the command line (docs/reference/command-line.md).
+int exitCodeOf(ErrorKind kind) {
+  switch (kind) {
+    case ErrorKind::failure:
+      return 1;
+    case ErrorKind::invalid:
+      return 2;
+    case ErrorKind::refused:
+      return 3;
+    case ErrorKind::damaged:
+      return 4;
+    case ErrorKind::undecided:
+      return 5;
+  }
+  return 1;
+}
+
+/// Remedies that the module's functions can ask for; the others are of commands that it has not.
+const char* wordsOf(Remedy remedy) {
+  switch (remedy) {
+    case Remedy::replaceExisting:
+      return "force=True replaces what is there";
+    case Remedy::replayAnyway:
+      return "anyway=True repeats it all the same";
+    case Remedy::recover:
+      return "calot recover saves what it can";
+    case Remedy::installEngine:
+      return "calot engine list shows those that are there";
+    case Remedy::measureCalibration:
+      return "measure again with calot devices calibrate";
+    case Remedy::addParticipant:
+      return "register one with calot participant add";
+    case Remedy::changeParticipant:
+      return "change it with calot participant set";
+    case Remedy::upgradeCohort:
+      return "bring it there with calot cohort upgrade, which keeps a copy";
+    case Remedy::emptyLog:
+      return "end that program and run calot cohort scrub";
+    case Remedy::importAgain:
+      return "run calot import on its file";
+    case Remedy::assessAgain:
+      return "assess the older recordings again";
+    default:
+      return "";
+  }
+}
+
 py::dict about(const Error& e) {
   py::dict d;
-  d["exit_code"] = static_cast<int>(apps::codeOf(e.kind()));
+  d["exit_code"] = exitCodeOf(e.kind());
   d["file"] = e.where().file;
   d["place"] = e.where().place;
   d["advice"] = advice(e.remedies());
@@ -64,8 +108,9 @@ void throwUnlessExact(const recorder::ReplayReport& report) {
 std::string advice(const std::vector<Remedy>& remedies) {
   std::string text;
   for (const Remedy remedy : remedies) {
-    if (!text.empty()) text += ", or ";
-    text += remedy == Remedy::replaceExisting ? "force=True replaces what is there" : apps::advice({remedy});
+    const std::string words = wordsOf(remedy);
+    if (!text.empty() && !words.empty()) text += ", or ";
+    text += words;
   }
   return text;
 }
