@@ -36,7 +36,7 @@ std::pair<std::string, double> record(const std::filesystem::path& path, const s
   recorder::RecordingWriter writer(
       path, recorder::makeHeader(model, std::move(loaded.assets), source->provenance(), settings), {force, {}});
   recorder::WorkerPool pool(1);
-  recorder::Session session(model, seed, pool, &prepared->compliances());
+  recorder::Session session(model, seed, pool, {.compliances = &prepared->compliances()});
   session.join(writer);
   recorder::RunSettings run;
   run.seconds = seconds;

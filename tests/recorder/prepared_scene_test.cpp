@@ -36,7 +36,7 @@ class PreparedScenes : public testing::Test {
     if (!fs::exists(folder_ / "r.h5")) test::recordTouches(folder_ / "r.h5");
     Recording recording(folder_ / "r.h5");
     SerialExecutor executor;
-    Session session(scene.model(), recording.header().seed, executor, &scene.compliances());
+    Session session(scene.model(), recording.header().seed, executor, {.compliances = &scene.compliances()});
     session.precompute();
     std::vector<StateDigest> digests;
     while (session.steps() < steps) {
