@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <string>
 
-#include "assets/organs/fat_shape.h"
-#include "assets/organs/organ_shapes.h"
+#include "apps/calot-organs/fat_shape.h"
+#include "apps/calot-organs/organ_shapes.h"
 #include "recorder/base/file_bytes.h"
 #include "recorder/formats/obj.h"
 #include "sim/geometry/surface_distance.h"

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Liver and gallbladder of an adult in supine position, in W (docs/organs.md): origin in the middle of the gallbladder
+// Liver and gallbladder of an adult in supine position, in W (docs" "/organs.md): origin in the middle of the gallbladder
 // bed, +x to the patient's right, +y anterior, +z cranial (right-handed); metres. Sizes and their sources stand in
 // docs/organs.md.
 #pragma once
 
-#include "assets/organs/implicit.h"
-#include "assets/organs/polygonize.h"
+#include "apps/calot-organs/implicit.h"
+#include "apps/calot-organs/polygonize.h"
 
 namespace calot::organs {
 
@@ -69,10 +69,10 @@ inline TriangleMesh makeLiver() {
 inline TriangleMesh makeGallbladder() { return polygonize(gallbladder, gallbladderBox(), 0.0032); }
 
 inline constexpr const char* liverHead =
-    "Liver of an adult, made by calot-organs from implicit shapes (docs/organs.md).\n"
+    "Liver of an adult, made by calot-organs from implicit shapes (docs" "/organs.md).\n"
     "Metres; +x patient's right, +y anterior, +z cranial; origin in the middle of the gallbladder bed.";
 inline constexpr const char* gallbladderHead =
-    "Gallbladder of an adult, made by calot-organs from implicit shapes (docs/organs.md).\n"
+    "Gallbladder of an adult, made by calot-organs from implicit shapes (docs" "/organs.md).\n"
     "Metres; +x patient's right, +y anterior, +z cranial; origin in the middle of the gallbladder bed.";
 
 }  // namespace calot::organs

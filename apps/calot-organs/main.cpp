@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// calot-organs: writes the organ surfaces of this folder, or checks that they are what it would write; prints the
+// calot-organs: writes the organ surfaces of assets/organs, or checks that they are what it would write; prints the
 // vessels' paths as scenes hold them.
 #include <fmt/format.h>
 
@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
+#include "apps/calot-organs/fat_shape.h"
+#include "apps/calot-organs/organ_shapes.h"
+#include "apps/calot-organs/vessel_paths.h"
 #include "apps/common/help_json.h"
 #include "apps/common/program.h"
-#include "assets/organs/fat_shape.h"
-#include "assets/organs/organ_shapes.h"
-#include "assets/organs/vessel_paths.h"
 #include "recorder/base/errors.h"
 #include "recorder/base/file_bytes.h"
 #include "recorder/formats/mesh_file.h"

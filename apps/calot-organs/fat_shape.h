@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The fat over Calot's triangle, in W (docs/organs.md): a lobulated pad around cystic duct and cystic artery, between
+// The fat over Calot's triangle, in W (docs" "/organs.md): a lobulated pad around cystic duct and cystic artery, between
 // the gallbladder's neck, the hepatic duct and the underside of the liver.
 #pragma once
 
 #include <cstdint>
 
-#include "assets/organs/organ_shapes.h"
-#include "assets/organs/vessel_paths.h"
+#include "apps/calot-organs/organ_shapes.h"
+#include "apps/calot-organs/vessel_paths.h"
 
 namespace calot::organs {
 
@@ -80,7 +80,7 @@ inline TriangleMesh makeFat() {
 }
 
 inline constexpr const char* fatHead =
-    "Fat over Calot's triangle, made by calot-organs from implicit shapes (docs/organs.md).\n"
+    "Fat over Calot's triangle, made by calot-organs from implicit shapes (docs" "/organs.md).\n"
     "Metres; +x patient's right, +y anterior, +z cranial; origin in the middle of the gallbladder bed.";
 
 }  // namespace calot::organs
