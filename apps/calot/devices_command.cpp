@@ -16,7 +16,7 @@
 #include "apps/calot/stop_request.h"
 #include "apps/calot/terminal_text.h"
 #include "recorder/base/errors.h"
-#include "recorder/sources/devices/openigtlink_server.h"
+#include "recorder/sources/devices/openigtlink_device.h"
 
 namespace calot::apps {
 namespace {

@@ -17,7 +17,7 @@
 #include "apps/calot/value_report.h"
 #include "apps/common/advice.h"
 #include "recorder/base/errors.h"
-#include "recorder/sources/kinematics_file.h"
+#include "recorder/sources/tracked_motion.h"
 
 namespace calot::apps {
 namespace {

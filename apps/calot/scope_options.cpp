@@ -4,10 +4,8 @@
 #include <utility>
 
 #include "recorder/base/errors.h"
-#include "recorder/sources/devices/combined_device.h"
 #include "recorder/sources/devices/open_device.h"
 #include "recorder/sources/devices/scope_device.h"
-#include "recorder/sources/devices/scope_keys.h"
 #include "recorder/sources/scope/scope_assistant.h"
 #include "recorder/sources/scope/scope_source.h"
 

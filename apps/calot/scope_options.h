@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-#include "recorder/sources/devices/scope_input.h"
+#include "recorder/sources/devices/window_input.h"
 #include "recorder/sources/scope/scope_skill.h"
 #include "recorder/sources/source.h"
 #include "sim/scene/description.h"

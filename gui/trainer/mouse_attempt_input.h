@@ -6,7 +6,7 @@
 
 #include "gui/trainer/attempt_input.h"
 #include "recorder/sources/devices/device_source.h"
-#include "recorder/sources/devices/mouse_input.h"
+#include "recorder/sources/devices/window_input.h"
 
 namespace calot::gui {
 

@@ -6,8 +6,7 @@
 #include "gui/trainer/key_bindings.h"
 #include "gui/trainer/pointer_track.h"
 #include "gui/view/scene_picture_widget.h"
-#include "recorder/sources/devices/mouse_input.h"
-#include "recorder/sources/devices/scope_input.h"
+#include "recorder/sources/devices/window_input.h"
 
 class QLabel;
 
