@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "analytics/checkpoints/motion.h"
-#include "recorder/sources/kinematics_file.h"
+#include "recorder/sources/tracked_motion.h"
 
 namespace calot::analytics {
 namespace {

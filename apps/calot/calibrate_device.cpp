@@ -26,9 +26,8 @@
 #include "recorder/sources/devices/calibration_fit.h"
 #include "recorder/sources/devices/camera/camera_calibration.h"
 #include "recorder/sources/devices/camera/camera_device.h"
-#include "recorder/sources/devices/camera/camera_request.h"
 #include "recorder/sources/devices/camera/marker_sheets.h"
-#include "recorder/sources/devices/declared_calibration.h"
+#include "recorder/sources/devices/camera/open_camera.h"
 #include "recorder/sources/devices/device_pump.h"
 #include "recorder/sources/devices/mouse_device.h"
 

@@ -20,7 +20,7 @@
 #include "recorder/base/errors.h"
 #include "recorder/base/text_output.h"
 #include "recorder/sources/devices/force/force_server.h"
-#include "recorder/sources/devices/openigtlink_server.h"
+#include "recorder/sources/devices/openigtlink_device.h"
 #ifdef CALOT_PDF
 #include "gui/report/pdf_report.h"
 #endif

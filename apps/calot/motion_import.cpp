@@ -21,7 +21,7 @@
 #include "apps/common/advice.h"
 #include "apps/common/exit_code.h"
 #include "recorder/base/errors.h"
-#include "recorder/sources/kinematics_file.h"
+#include "recorder/sources/tracked_motion.h"
 
 namespace calot::apps {
 

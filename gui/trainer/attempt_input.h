@@ -8,7 +8,7 @@
 #include "recorder/loop.h"
 #include "recorder/recording/writer.h"
 #include "recorder/sources/devices/device_source.h"
-#include "recorder/sources/devices/mouse_input.h"
+#include "recorder/sources/devices/window_input.h"
 #include "recorder/sources/source.h"
 
 namespace calot::gui {

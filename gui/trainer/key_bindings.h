@@ -6,8 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "recorder/sources/devices/mouse_input.h"
-#include "recorder/sources/devices/scope_input.h"
+#include "recorder/sources/devices/window_input.h"
 #include "sim/scene/samples.h"
 
 namespace calot::gui {

@@ -7,8 +7,7 @@
 
 #include "gui/trainer/key_bindings.h"
 #include "gui/view/scene_picture_widget.h"
-#include "recorder/sources/devices/mouse_input.h"
-#include "recorder/sources/devices/scope_input.h"
+#include "recorder/sources/devices/window_input.h"
 
 namespace calot::gui {
 

@@ -15,8 +15,7 @@
 #include "gui/trainer/picture_timing.h"
 #include "gui/trainer/trainer_texts.h"
 #include "gui/trainer/training_session.h"
-#include "recorder/sources/devices/mouse_input.h"
-#include "recorder/sources/devices/scope_input.h"
+#include "recorder/sources/devices/window_input.h"
 
 class QAction;
 class QLabel;

@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <vector>
 
-#include "recorder/sources/kinematics_file.h"
 #include "recorder/sources/source.h"
+#include "recorder/sources/tracked_motion.h"
 #include "sim/scene/description.h"
 
 namespace calot::recorder {

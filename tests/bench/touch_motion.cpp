@@ -9,9 +9,9 @@
 
 #include "recorder/base/errors.h"
 #include "recorder/formats/scene_file.h"
+#include "recorder/sources/performer.h"
 #include "recorder/sources/pointing.h"
 #include "recorder/sources/scene_surfaces.h"
-#include "recorder/sources/touch_targets.h"
 
 namespace calot::bench {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A file of recorded kinematics.
-#include "recorder/sources/kinematics_file.h"
+#include "recorder/sources/tracked_motion.h"
 
 #include "tests/fuzz/support/fuzz_target.h"
 

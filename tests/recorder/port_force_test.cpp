@@ -14,7 +14,7 @@
 #include "recorder/loop.h"
 #include "recorder/recording/writer.h"
 #include "recorder/replay.h"
-#include "recorder/sources/performer_source.h"
+#include "recorder/sources/performer.h"
 #include "tests/recorder/support/small_scene.h"
 
 namespace calot::recorder {

@@ -1,16 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "recorder/sources/devices/calibration_fit.h"
 
 #include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/SVD>
 
 #include "recorder/base/dates.h"
 #include "recorder/base/errors.h"
+#include "recorder/sources/devices/mouse_device.h"
 #include "recorder/sources/pointing.h"
 
 namespace calot::recorder {
@@ -196,6 +198,30 @@ Calibration measureCalibration(const DeviceScript& stream, double strokeLength, 
     out.hand[h] = measureHand(stream, samples, rest, strokeLength, handNames[h]);
   }
   if (!any) refuse(stream, fmt::format("no hand has {} valid samples in a phase \"rest\"", fewestRest));
+  return out;
+}
+
+namespace {
+
+constexpr double leastPixel = 1e-6, mostPixel = 0.005;  // m: 25,000 and 5 counts an inch
+
+}  // namespace
+
+Calibration declaredCalibration(const DeviceInfo& device, double pixel) {
+  if (device.name != mouseKind.name)
+    throw Error(ErrorKind::invalid, fmt::format("{}: is measured; only a mouse is declared", device.identity));
+  if (!(pixel >= leastPixel && pixel <= mostPixel))
+    throw Error(ErrorKind::invalid, fmt::format("{:g} mm a pixel: a mouse's are {:g} to {:g}", 1e3 * pixel,
+                                                1e3 * leastPixel, 1e3 * mostPixel));
+  Calibration out;
+  out.device = device.name;
+  out.identity = device.identity;
+  out.date = presentDate();
+  out.declaredPixel = pixel;
+  HandCalibration hand;
+  hand.rate = device.capabilities.rate;
+  hand.longInterval = 1.0 / hand.rate;
+  for (int h = 0; h < device.capabilities.hands; ++h) out.hand[static_cast<std::size_t>(h)] = hand;
   return out;
 }
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "recorder/sources/devices/device.h"
 
 namespace calot::recorder {

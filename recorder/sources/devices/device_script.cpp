@@ -9,7 +9,7 @@
 #include "recorder/base/errors.h"
 #include "recorder/base/file_bytes.h"
 #include "recorder/base/json_reader.h"
-#include "recorder/sources/kinematics_file.h"
+#include "recorder/sources/tracked_motion.h"
 
 namespace calot::recorder {
 namespace {

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "recorder/sources/devices/device.h"
-#include "recorder/sources/devices/device_kind.h"
 
 namespace calot::recorder {
 

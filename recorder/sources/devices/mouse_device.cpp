@@ -1,14 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The kernel's interface itself (linux/input.h): a reader of relative axes and buttons is shorter than a library's
+// set-up, and takes events from any stream, which tests without a mouse need.
+
 #include "recorder/sources/devices/mouse_device.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
-
+#include <linux/input.h>
+#include <poll.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
 #include <algorithm>
+#include <cerrno>
+#include <charconv>
 #include <cmath>
+#include <cstring>
 #include <thread>
 #include <utility>
 
-#include "recorder/sources/devices/evdev_mouse.h"
+#include "recorder/base/errors.h"
 #include "sim/math/elementary.h"
 #include "sim/math/linear.h"
 
@@ -169,5 +179,213 @@ constinit const DeviceKind mouseKind{
       request.refuse("mouse and keyboard need a window: calot-trainer has one");
     },
 };
+
+namespace {
+
+constexpr std::int64_t samplePeriod = 4'000'000;    // ns
+constexpr std::int64_t searchPeriod = 500'000'000;  // ns, of a lost mouse
+constexpr double maxGap = 0.05;                     // s; after a longer one the tip does not leap
+constexpr double aCount = 0.00015, aNotch = 0.003;  // m
+constexpr double aTilt = 0.1, jawRate = 1.8;        // rad, rad/s
+constexpr double widestJaw = 1.2;                   // rad
+constexpr double fastestMotion = 0.5;               // m/s
+constexpr double mouseReach = 0.15;                 // m, each axis
+
+bool hasBit(const std::array<unsigned char, KEY_MAX / 8 + 1>& bits, unsigned bit) {
+  return (bits[bit / 8] & (1U << (bit % 8))) != 0;
+}
+
+std::string nameOf(int descriptor) {
+  std::array<char, 128> text{};
+  if (::ioctl(descriptor, EVIOCGNAME(text.size() - 1), text.data()) < 0) return "mouse";
+  std::string out;
+  for (const char* c = text.data(); *c != '\0' && out.size() < 64; ++c) out += *c >= 0x20 && *c < 0x7f ? *c : '?';
+  return out;
+}
+
+bool isMouse(int descriptor) {
+  std::array<unsigned char, KEY_MAX / 8 + 1> axes{}, keys{};
+  if (::ioctl(descriptor, EVIOCGBIT(EV_REL, axes.size()), axes.data()) < 0) return false;
+  if (::ioctl(descriptor, EVIOCGBIT(EV_KEY, keys.size()), keys.data()) < 0) return false;
+  return hasBit(axes, REL_X) && hasBit(axes, REL_Y) && hasBit(keys, BTN_LEFT);
+}
+
+int openFile(const std::filesystem::path& path) { return ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC); }
+
+double takeUpTo(double& wish, double most) {
+  const double part = std::clamp(wish, -most, most);
+  wish -= part;
+  return part;
+}
+
+}  // namespace
+
+std::vector<ListedMouse> listMice() {
+  std::vector<std::pair<int, ListedMouse>> found;
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::directory_iterator("/dev/input", ignored)) {
+    const std::string file = entry.path().filename().string();
+    if (!file.starts_with("event")) continue;
+    int number = 0;
+    std::from_chars(file.data() + 5, file.data() + file.size(), number);
+    const int descriptor = openFile(entry.path());
+    if (descriptor < 0) continue;
+    if (isMouse(descriptor)) found.emplace_back(number, ListedMouse{entry.path(), nameOf(descriptor)});
+    ::close(descriptor);
+  }
+  std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<ListedMouse> out;
+  out.reserve(found.size());
+  for (auto& [number, mouse] : found) out.push_back(std::move(mouse));
+  return out;
+}
+
+EvdevMouse::EvdevMouse(std::string which, Hand hand, DeviceClock clock)
+    : which_(std::move(which)), hand_(hand), clock_(std::move(clock)) {
+  const std::string fault = open();
+  if (!fault.empty())
+    throw Error(ErrorKind::failure, fmt::format("mouse \"{}\": {}", which_, fault), {Remedy::listDevices});
+  name_ = nameOf(descriptor_);
+  info_.name = "mouse";
+  info_.identity = fmt::format("mouse:{}", name_);
+  info_.detail = fmt::format("{}, {}", name_, path_.string());
+  DeviceCapabilities& c = info_.capabilities;
+  c.hands = 1;
+  c.sensedRotations = 1;
+  c.sensesGripper = true;
+  c.workspace = {Vec3::Constant(-mouseReach), Vec3::Constant(mouseReach)};
+  c.rate = 250.0;
+  c.absolute = false;
+  last_ = clock_();
+}
+
+EvdevMouse::~EvdevMouse() { close(); }
+
+std::string EvdevMouse::open() {
+  path_.clear();
+  if (which_.starts_with("/")) {
+    path_ = which_;
+  } else {
+    const std::vector<ListedMouse> mice = listMice();
+    std::size_t number = mice.size();
+    const auto [end, fault] = std::from_chars(which_.data(), which_.data() + which_.size(), number);
+    const bool numbered = fault == std::errc() && end == which_.data() + which_.size();
+    for (std::size_t i = 0; i < mice.size() && path_.empty(); ++i) {
+      if (numbered ? i == number : mice[i].name.find(which_) != std::string::npos) path_ = mice[i].path;
+    }
+    if (path_.empty())
+      return fmt::format("there is none such among {} that may be read; reading /dev/input needs the group input",
+                         mice.size());
+  }
+  descriptor_ = openFile(path_);
+  if (descriptor_ < 0) return fmt::format("{}: {}", path_.string(), std::strerror(errno));
+  // A stream that is no device has no grab; a mouse that another program has grabbed gives nothing.
+  if (::ioctl(descriptor_, EVIOCGRAB, 1) < 0 && errno == EBUSY) {
+    ::close(std::exchange(descriptor_, -1));
+    return fmt::format("{}: another program has grabbed it", path_.string());
+  }
+  // Numbers of mice change when one is unplugged: another one is not taken for it.
+  if (!name_.empty() && nameOf(descriptor_) != name_) {
+    ::close(std::exchange(descriptor_, -1));
+    return fmt::format("{}: another mouse", path_.string());
+  }
+  held_.fill(false);
+  skipping_ = false;
+  return {};
+}
+
+void EvdevMouse::close() {
+  open_ = false;
+  if (descriptor_ >= 0) ::close(std::exchange(descriptor_, -1));  // which ends the grab, too
+}
+
+void EvdevMouse::take(std::uint16_t type, std::uint16_t code, std::int32_t value) {
+  if (type == EV_SYN && code == SYN_DROPPED) {
+    // The kernel's buffer overflowed: what is left of this report is not whole, and buttons are not known.
+    skipping_ = true;
+    held_.fill(false);
+    return;
+  }
+  if (type == EV_SYN && code == SYN_REPORT) skipping_ = false;
+  if (skipping_) return;
+  if (type == EV_REL) {
+    if (code == REL_X) right_ += aCount * value;
+    if (code == REL_Y) down_ += aCount * value;
+    if (code == REL_WHEEL) in_ += aNotch * value;
+    if (code == REL_HWHEEL) roll_ += aTilt * value;
+  } else if (type == EV_KEY && code >= BTN_MOUSE && code < BTN_MOUSE + held_.size()) {
+    held_[static_cast<std::size_t>(code - BTN_MOUSE)] = value != 0;
+  }
+}
+
+void EvdevMouse::read() {
+  std::array<input_event, 64> events;
+  for (;;) {
+    const ssize_t n = ::read(descriptor_, events.data(), sizeof events);
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0 && (errno == EAGAIN || errno == EWOULDBLOCK)) return;
+    if (n <= 0) {
+      lost_ = true;
+      return;
+    }
+    const std::size_t count = static_cast<std::size_t>(n) / sizeof(input_event);
+    for (std::size_t i = 0; i < count; ++i) take(events[i].type, events[i].code, events[i].value);
+    if (count < events.size()) return;
+  }
+}
+
+void EvdevMouse::advance(double seconds) {
+  const double most = fastestMotion * seconds;
+  position_ += Vec3(takeUpTo(right_, most), takeUpTo(down_, most), takeUpTo(in_, most));
+  position_ = position_.cwiseMax(-mouseReach).cwiseMin(mouseReach);
+  const double open = (held_[BTN_RIGHT - BTN_MOUSE] ? 1.0 : 0.0) - (held_[BTN_LEFT - BTN_MOUSE] ? 1.0 : 0.0);
+  jaw_ = std::min(notNegative(jaw_ + seconds * jawRate * open), widestJaw);
+}
+
+void EvdevMouse::poll(std::chrono::nanoseconds wait, DeviceInput& out) {
+  if (!open_) return;
+  std::int64_t now = clock_();
+  if (descriptor_ < 0) {
+    if (now < nextAttempt_) {
+      std::this_thread::sleep_for(std::min<std::chrono::nanoseconds>(wait, std::chrono::milliseconds(20)));
+      return;
+    }
+    nextAttempt_ = now + searchPeriod;
+    if (!open().empty()) return;
+    last_ = now;
+    out.events.push_back({DeviceEvent::Kind::connected, now, info_.identity + ": there again"});
+  } else if (!std::exchange(greeted_, true)) {
+    out.events.push_back({DeviceEvent::Kind::connected, now, info_.identity + ": there"});
+  }
+  if (now < last_ + samplePeriod && wait.count() > 0) {
+    std::this_thread::sleep_for(std::min(wait, std::chrono::nanoseconds(last_ + samplePeriod - now)));
+    now = clock_();
+  }
+  if (now < last_ + samplePeriod) return;
+  read();
+  if (std::exchange(lost_, false)) {
+    ::close(std::exchange(descriptor_, -1));
+    nextAttempt_ = now + searchPeriod;
+    right_ = down_ = in_ = 0.0;
+    out.events.push_back({DeviceEvent::Kind::disconnected, now, info_.identity + ": unplugged"});
+    return;
+  }
+  advance(std::min(maxGap, 1e-9 * static_cast<double>(now - last_)));
+  last_ = now;
+  DeviceSample sample;
+  sample.hostTime = now;
+  sample.sequence = sequence_++;
+  sample.hand = hand_;
+  sample.position = position_;
+  sample.orientation = Quat(cosine(0.5 * roll_), 0.0, 0.0, sine(0.5 * roll_));
+  sample.gripper = jaw_;
+  const auto bit = [&](unsigned which, std::uint8_t mask) {
+    if (held_[which - BTN_MOUSE]) sample.buttons = static_cast<std::uint8_t>(sample.buttons | mask);
+  };
+  bit(BTN_MIDDLE, button::cutPedal | button::fire);
+  bit(BTN_SIDE, button::coagulatePedal);
+  bit(BTN_EXTRA, button::lock);
+  out.samples.push_back(sample);
+}
 
 }  // namespace calot::recorder

@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "recorder/sources/devices/open_device.h"
 
 #include <fmt/format.h>
-
+#include <algorithm>
 #include <iterator>
+#include <thread>
 #include <utility>
 
 #include "recorder/base/errors.h"
 #include "recorder/base/nearest_word.h"
 #include "recorder/sources/devices/camera/camera_device.h"
-#include "recorder/sources/devices/combined_device.h"
 #include "recorder/sources/devices/force/force_device.h"
 #include "recorder/sources/devices/force/haply_device.h"
 #include "recorder/sources/devices/gamepad_device.h"
 #include "recorder/sources/devices/mouse_device.h"
-#include "recorder/sources/devices/null_device.h"
 #include "recorder/sources/devices/openigtlink_device.h"
 #include "recorder/sources/devices/scripted_device.h"
 #include "recorder/sources/devices/space_mouse.h"
@@ -76,6 +76,190 @@ std::vector<ListedDevice> listDevices() {
     out.insert(out.end(), std::make_move_iterator(those.begin()), std::make_move_iterator(those.end()));
   }
   return out;
+}
+
+namespace {
+constexpr std::int64_t period = 1'000'000;  // ns
+constexpr std::int64_t maxAtOnce = 1000;    // samples; a poll after a long pause does not make up for all of it
+}  // namespace
+
+NullDevice::NullDevice(DeviceClock clock) : clock_(std::move(clock)), next_(clock_()) {
+  info_.name = nullKind.name;
+  info_.identity = "null";
+  info_.detail = nullKind.help;
+  info_.operatorKind = OperatorKind::performer;
+  info_.capabilities.hands = handCount;
+  info_.capabilities.sensesGripper = true;
+  info_.capabilities.rate = 1000.0;
+  info_.capabilities.realTime = false;
+}
+
+void NullDevice::poll(std::chrono::nanoseconds, DeviceInput& out) {
+  if (!open_) return;
+  const std::int64_t now = clock_();
+  if (sequence_ == 0) out.events.push_back({DeviceEvent::Kind::connected, now, "null: there"});
+  next_ = std::max(next_, now - maxAtOnce * period);
+  for (; next_ <= now; next_ += period, ++sequence_) {
+    for (const Hand hand : {Hand::left, Hand::right}) {
+      DeviceSample sample;
+      sample.deviceTime = sample.hostTime = next_;
+      sample.sequence = sequence_;
+      sample.hand = hand;
+      out.samples.push_back(sample);
+    }
+  }
+}
+
+constinit const DeviceKind nullKind{
+    .name = "null",
+    .usage = "null",
+    .help = "never moves",
+    .list =
+        [] {
+          return std::vector<ListedDevice>{{"null", nullKind.help, true, "2", "none", "1000"}};
+        },
+    .open =
+        [](const DeviceRequest& request) {
+          if (!request.argument.empty()) request.refuse("nothing stands behind its name");
+          auto ticks = std::make_shared<TickClock>();
+          return OpenedDevice{std::make_unique<NullDevice>([ticks] { return ticks->now; }), ticks};
+        },
+};
+
+namespace {
+
+constexpr std::chrono::microseconds breath{500};  // between two rounds where nothing came
+
+/// "left=A,right=B" or the other way round; a name may have commas of its own.
+std::array<std::string, handCount> partsOf(const DeviceRequest& request) {
+  std::array<std::string, handCount> out;
+  std::string rest = request.name;
+  while (!rest.empty()) {
+    std::size_t hand = handCount;
+    for (std::size_t h = 0; h < handCount; ++h) {
+      if (rest.starts_with(std::string(handNames[h]) + "=")) hand = h;
+    }
+    if (hand == handCount) request.refuse("two devices are asked for by left=DEVICE,right=DEVICE");
+    rest = rest.substr(std::string(handNames[hand]).size() + 1);
+    const std::size_t end = std::min(rest.find(",left="), rest.find(",right="));
+    if (!out[hand].empty()) request.refuse(fmt::format("the {} hand has two devices", handNames[hand]));
+    out[hand] = rest.substr(0, end);
+    if (out[hand].empty()) request.refuse(fmt::format("the {} hand's device is missing", handNames[hand]));
+    rest = end == std::string::npos ? "" : rest.substr(end + 1);
+  }
+  for (std::size_t h = 0; h < handCount; ++h) {
+    if (out[h].empty())
+      request.refuse(
+          fmt::format("the {} hand has no device; one alone is asked for without left= and right=", handNames[h]));
+  }
+  return out;
+}
+
+OperatorKind operatorOf(OperatorKind a, OperatorKind b) {
+  for (const OperatorKind kind : {OperatorKind::human, OperatorKind::kinematics}) {
+    if (a == kind || b == kind) return kind;
+  }
+  return a;
+}
+
+}  // namespace
+
+CombinedDevice::CombinedDevice(std::array<OpenedDevice, handCount> device, std::shared_ptr<TickClock> tickClock)
+    : device_(std::move(device)), tickClock_(std::move(tickClock)) {
+  const DeviceInfo& left = device_[0].device->info();
+  const DeviceInfo& right = device_[1].device->info();
+  info_.name = fmt::format("{}+{}", left.name, right.name);
+  info_.identity = fmt::format("left={},right={}", left.identity, right.identity);
+  info_.detail = fmt::format("left: {}; right: {}", left.detail, right.detail);
+  info_.operatorKind = operatorOf(left.operatorKind, right.operatorKind);
+  const DeviceInfo& file = left.sourceFile.empty() ? right : left;
+  info_.sourceFile = file.sourceFile;
+  info_.sourceSha256 = file.sourceSha256;
+  const DeviceCapabilities& a = left.capabilities;
+  const DeviceCapabilities& b = right.capabilities;
+  DeviceCapabilities& c = info_.capabilities;
+  c.hands = handCount;
+  c.sensedRotations = std::min(a.sensedRotations, b.sensedRotations);
+  c.sensesGripper = a.sensesGripper && b.sensesGripper;
+  c.actuated = std::max(a.actuated, b.actuated);
+  c.maxForce = std::max(a.maxForce, b.maxForce);
+  c.maxTorque = std::max(a.maxTorque, b.maxTorque);
+  c.rate = std::max(a.rate, b.rate);
+  c.realTime = !tickClock_;
+  c.absolute = a.absolute && b.absolute;
+}
+
+bool CombinedDevice::pollOne(std::size_t hand, DeviceInput& out) {
+  OpenedDevice& one = device_[hand];
+  if (tickClock_) *one.tickClock = *tickClock_;
+  DeviceInput input;
+  one.device->poll(std::chrono::nanoseconds(0), input);
+  for (DeviceEvent& event : input.events) {
+    event.text = fmt::format("{}: {}", handNames[hand], event.text);
+    if (event.kind == DeviceEvent::Kind::disconnected) there_[hand] = false;
+    if (event.kind == DeviceEvent::Kind::connected) {
+      there_[hand] = true;
+      // The combination is there once both are.
+      if (!there_[1 - hand]) event.kind = DeviceEvent::Kind::status;
+    }
+    out.events.push_back(std::move(event));
+  }
+  const auto wanted = static_cast<Hand>(hand);
+  std::copy_if(input.samples.begin(), input.samples.end(), std::back_inserter(out.samples),
+               [wanted](const DeviceSample& s) { return s.hand == wanted; });
+  return !input.samples.empty() || !input.events.empty();
+}
+
+void CombinedDevice::poll(std::chrono::nanoseconds wait, DeviceInput& out) {
+  const auto until = std::chrono::steady_clock::now() + wait;
+  for (;;) {
+    bool any = false;
+    for (std::size_t h = 0; h < handCount; ++h) any = pollOne(h, out) || any;
+    if (any || std::chrono::steady_clock::now() + breath > until) return;
+    std::this_thread::sleep_for(breath);
+  }
+}
+
+bool CombinedDevice::connected() const { return device_[0].device->connected() && device_[1].device->connected(); }
+
+bool CombinedDevice::ended() const { return device_[0].device->ended() && device_[1].device->ended(); }
+
+void CombinedDevice::setWrench(Hand hand, const Wrench& wrench) {
+  device_[static_cast<std::size_t>(hand)].device->setWrench(hand, wrench);
+}
+
+void CombinedDevice::close() {
+  for (OpenedDevice& one : device_) one.device->close();
+}
+
+std::vector<std::string> CombinedDevice::report() const {
+  std::vector<std::string> out = device_[0].device->report();
+  const std::vector<std::string> more = device_[1].device->report();
+  out.insert(out.end(), more.begin(), more.end());
+  return out;
+}
+
+bool isCombination(const std::string& name) { return name.starts_with("left=") || name.starts_with("right="); }
+
+OpenedDevice openCombination(const std::string& name, const std::array<std::string, handCount>& tools) {
+  const DeviceRequest request{name, "", tools};
+  const std::array<std::string, handCount> part = partsOf(request);
+  std::array<OpenedDevice, handCount> device;
+  for (std::size_t h = 0; h < handCount; ++h) {
+    if (isCombination(part[h])) request.refuse("a combination has no combinations in it");
+    std::array<std::string, handCount> own;
+    own[h] = tools[h];
+    device[h] = openDevice(part[h], own, nullptr, static_cast<Hand>(h));
+  }
+  const bool ticks = device[0].tickClock != nullptr;
+  if (ticks != (device[1].tickClock != nullptr))
+    request.refuse("one of them lives in real time and the other on the tick clock; they cannot run together");
+  const DeviceInfo& left = device[0].device->info();
+  const DeviceInfo& right = device[1].device->info();
+  if (!left.sourceFile.empty() && !right.sourceFile.empty() && left.sourceSha256 != right.sourceSha256)
+    request.refuse("two different files; put both hands into one script");
+  auto clock = ticks ? std::make_shared<TickClock>() : nullptr;
+  return {std::make_unique<CombinedDevice>(std::move(device), clock), clock};
 }
 
 }  // namespace calot::recorder

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "recorder/sources/devices/scope_device.h"
 
 #include <chrono>
@@ -81,6 +82,24 @@ ScopeJoints ScopeDevice::wish(double /*time*/, const ScopeJoints& /*present*/, c
 void ScopeDevice::rest() {
   gather();
   setOut(aim_);
+}
+
+void ScopeKeys::setOut(const ScopeJoints& joints) {
+  aim_ = joints;
+  static_cast<void>(input_->take());
+}
+
+ScopeJoints ScopeKeys::wish(double /*time*/, const ScopeJoints& /*present*/, const TickSamples& /*hands*/) {
+  const ScopeInput::Wish wish = input_->take();
+  const double swing = tickLength * swingSpeed, rotate = tickLength * rotateSpeed;
+  aim_.pan += swing * wish.between(ScopeControl::right, ScopeControl::left) + pixelSwing * wish.right;
+  aim_.tilt += swing * wish.between(ScopeControl::up, ScopeControl::down) - pixelSwing * wish.down;
+  aim_.insertion +=
+      tickLength * insertSpeed * wish.between(ScopeControl::in, ScopeControl::out) + notchInsert * wish.notches;
+  aim_.cable += rotate * wish.between(ScopeControl::cableRight, ScopeControl::cableLeft);
+  aim_.head += rotate * wish.between(ScopeControl::headRight, ScopeControl::headLeft);
+  aim_ = Endoscope::withinLimits(aim_);
+  return aim_;
 }
 
 }  // namespace calot::recorder

@@ -2,11 +2,31 @@
 #pragma once
 
 #include "recorder/sources/devices/device.h"
-#include "recorder/sources/devices/device_kind.h"
 #include "recorder/sources/devices/device_script.h"
-#include "recorder/sources/devices/wrench_gate.h"
 
 namespace calot::recorder {
+
+/// Safety gate before a motor: limits wrenches to the motor's range, rejects values that are not finite, and times out.
+/// A loop that hangs must not leave a hand under force.
+class WrenchGate {
+ public:
+  static constexpr std::int64_t watchdog = 50'000'000;  ///< ns without a command after which the wrench is zero
+
+  /// @param maxForce N; @param maxTorque N m; both at least 0.
+  WrenchGate(double maxForce, double maxTorque) : force_(maxForce), torque_(maxTorque) {}
+
+  /// Force and torque are shortened to their largest length, keeping their direction; what is not finite becomes zero.
+  void command(const Wrench& wrench, std::int64_t now);
+
+  /// Current wrench for the motors.
+  [[nodiscard]] Wrench output(std::int64_t now) const;
+
+ private:
+  double force_, torque_;
+  Wrench wrench_;
+  std::int64_t commanded_ = 0;
+  bool any_ = false;
+};
 
 /// Plays a script on the clock that it is given: the same motion, the same unplugging, at the same ticks every time.
 /// While it is unplugged its script pauses, as an operator would.

@@ -5,7 +5,6 @@
 #include <string>
 
 #include "recorder/sources/devices/device.h"
-#include "recorder/sources/devices/device_kind.h"
 
 namespace calot::recorder {
 

@@ -6,6 +6,7 @@
 
 #include "recorder/sources/scope/picture_geometry.h"
 #include "sim/scene/description.h"
+#include "sim/scene/samples.h"
 
 namespace calot::recorder {
 
@@ -66,6 +67,50 @@ class Endoscope {
   Vec3 port_;
   double workingDistance_;
   ScopeJoints start_;
+};
+
+/// Who holds the endoscope: keys, a device, or an assistant who follows the instruments.
+class ScopeDriver {
+ public:
+  ScopeDriver() = default;
+  ScopeDriver(const ScopeDriver&) = delete;
+  ScopeDriver& operator=(const ScopeDriver&) = delete;
+  virtual ~ScopeDriver() = default;
+
+  /// The endoscope stands so: before the first tick.
+  virtual void setOut(const ScopeJoints& joints) = 0;
+
+  /// Where the endoscope is to go; it follows within its limits and speeds. Called once for each tick, in order.
+  /// @param time of the attempt (s) @param present joints now @param hands both instruments in this tick
+  [[nodiscard]] virtual ScopeJoints wish(double time, const ScopeJoints& present, const TickSamples& hands) = 0;
+
+  /// Called while the run is paused: motion in the meantime moves nothing.
+  virtual void rest() {}
+
+  /// Does it live in real time, so that the run must keep its pace?
+  [[nodiscard]] virtual bool realTime() const { return false; }
+};
+
+/// Moves an endoscope towards where it is wished: each joint as a critically damped spring would, no faster than its
+/// greatest speed, within its limits.
+class ScopeMotion {
+ public:
+  static constexpr double frequency = 8.0;        ///< of the springs (rad/s): a step is over in 0.7 s
+  static constexpr double maxSwingSpeed = 0.6;    ///< pan and tilt (rad/s)
+  static constexpr double maxInsertSpeed = 0.08;  ///< m/s
+  static constexpr double maxRotateSpeed = 1.5;   ///< light cable and camera head (rad/s)
+
+  void setOut(const ScopeJoints& joints) {
+    joints_ = joints;
+    speed_ = {};
+  }
+  /// Advances by one tick.
+  void advance(const ScopeJoints& wish);
+  [[nodiscard]] const ScopeJoints& joints() const { return joints_; }
+
+ private:
+  ScopeJoints joints_;
+  ScopeJoints speed_;  ///< 1/s
 };
 
 }  // namespace calot::recorder

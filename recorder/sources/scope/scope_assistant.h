@@ -4,7 +4,7 @@
 #include <array>
 #include <cstdint>
 
-#include "recorder/sources/scope/scope_driver.h"
+#include "recorder/sources/scope/endoscope.h"
 #include "recorder/sources/scope/scope_skill.h"
 #include "recorder/sources/unsteadiness.h"
 

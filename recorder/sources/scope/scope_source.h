@@ -5,8 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "recorder/sources/scope/scope_driver.h"
-#include "recorder/sources/scope/scope_motion.h"
+#include "recorder/sources/scope/endoscope.h"
 #include "recorder/sources/source.h"
 
 namespace calot::recorder {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "analytics/checkpoints/checkpoint.h"
-#include "recorder/sources/devices/device_kind.h"
+#include "recorder/sources/devices/device.h"
 #include "sim/instruments/instruments.h"
 
 namespace calot {

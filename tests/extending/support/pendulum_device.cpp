@@ -4,7 +4,7 @@
 #include <cmath>
 #include <memory>
 
-#include "recorder/sources/devices/device_kind.h"
+#include "recorder/sources/devices/device.h"
 #include "tests/extending/support/examples.h"
 
 namespace calot::recorder {

@@ -20,7 +20,7 @@
 #include "gui/trainer/run_panel.h"
 #include "recorder/base/errors.h"
 #include "recorder/recording/reader.h"
-#include "recorder/sources/devices/scope_keys.h"
+#include "recorder/sources/devices/scope_device.h"
 #include "recorder/sources/scope/scope_source.h"
 #include "tests/gui/trainer/support/spoken.h"
 #include "tests/gui/trainer/support/trainer_rig.h"

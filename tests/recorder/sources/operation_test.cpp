@@ -14,9 +14,7 @@
 
 #include "recorder/engine/session.h"
 #include "recorder/formats/scene_file.h"
-#include "recorder/sources/operation_source.h"
 #include "recorder/sources/performer.h"
-#include "recorder/sources/performer_source.h"
 #include "sim/judgement/judge.h"
 #include "sim/math/executor.h"
 #include "tests/recorder/sources/support/test_scene.h"

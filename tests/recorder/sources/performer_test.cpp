@@ -8,7 +8,7 @@
 #include <set>
 
 #include "recorder/base/errors.h"
-#include "recorder/sources/performer_source.h"
+#include "recorder/sources/performer.h"
 #include "recorder/sources/pointing.h"
 #include "tests/recorder/sources/support/test_scene.h"
 

@@ -8,7 +8,7 @@
 
 #include "recorder/formats/scene_file.h"
 #include "recorder/sources/kinematics_source.h"
-#include "recorder/sources/performer_source.h"
+#include "recorder/sources/performer.h"
 #include "recorder/sources/scene_surfaces.h"
 
 namespace calot::recorder {

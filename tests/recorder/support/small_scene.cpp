@@ -5,7 +5,7 @@
 
 #include <stdexcept>
 
-#include "recorder/sources/performer_source.h"
+#include "recorder/sources/performer.h"
 
 namespace calot::recorder::test {
 

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <optional>
 
-#include "recorder/sources/devices/camera/handle_geometry.h"
 #include "recorder/sources/devices/camera/lens_calibration.h"
+#include "recorder/sources/devices/camera/marker_sheets.h"
 
 namespace calot::recorder {
 namespace {

@@ -3,11 +3,10 @@
 #pragma once
 
 #include <array>
+#include <Eigen/Core>
 #include <optional>
 #include <string>
 #include <vector>
-
-#include <Eigen/Core>
 
 #include "recorder/base/json_reader.h"
 #include "sim/math/linear.h"

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "recorder/sources/devices/camera/handle_fit.h"
 
 #include <algorithm>
@@ -8,7 +9,6 @@
 #include <Eigen/LU>
 #include <limits>
 
-#include "recorder/sources/devices/camera/plane_rotation.h"
 #include "recorder/sources/pointing.h"
 
 namespace calot::recorder {
@@ -167,6 +167,18 @@ std::vector<Pose> posesOfSquare(const CameraRig& rig, std::span<const CornerSigh
   const Mat3 axis = crossMatrix(normal.cross(mirrored));    // of the smallest rotation of one onto the other
   const Mat3 turn = Mat3::Identity() + axis + axis * axis / (1.0 + cosine);
   return {inDevice(rotation), inDevice(turn * rotation)};
+}
+
+Mat3 planeRotation(const Vec3& across, const Vec3& up) {
+  // The square root of a positive 2x2 matrix S is (S + d I) / sqrt(tr S + 2 d) with d = sqrt(det S).
+  const double aa = across.squaredNorm(), uu = up.squaredNorm(), au = across.dot(up);
+  const double d = std::sqrt(aa * uu - au * au);
+  const double scale = 1.0 / (d * std::sqrt(aa + uu + 2.0 * d));
+  Mat3 rotation;
+  rotation.col(0) = scale * ((uu + d) * across - au * up);
+  rotation.col(1) = scale * ((aa + d) * up - au * across);
+  rotation.col(2) = rotation.col(0).cross(rotation.col(1));
+  return rotation;
 }
 
 }  // namespace calot::recorder

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "recorder/sources/devices/camera/camera_rig.h"
+#include "sim/math/linear.h"
 
 namespace calot::recorder {
 
@@ -53,5 +54,10 @@ std::vector<Pose> posesOfSquare(const CameraRig& rig, std::span<const CornerSigh
 
 /// exp of a rotation vector.
 Quat rotationBy(const Vec3& vector);
+
+/// Rotation of a plane from the images of its two axes: its first columns are the orthonormal pair closest to both
+/// (least squares), M (M^T M)^(-1/2) of M = [across up], the third is their cross product. Not finite where they are
+/// parallel.
+Mat3 planeRotation(const Vec3& across, const Vec3& up);
 
 }  // namespace calot::recorder

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "recorder/sources/devices/camera/handle_geometry.h"
+#include "recorder/sources/devices/camera/marker_sheets.h"
 
 namespace calot::recorder {
 namespace {

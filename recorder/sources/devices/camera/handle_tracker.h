@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "recorder/sources/devices/camera/camera_rig.h"
+#include "recorder/sources/devices/camera/frame_source.h"
 #include "recorder/sources/devices/camera/handle_fit.h"
-#include "recorder/sources/devices/camera/tag_detector.h"
 
 namespace calot::recorder {
 

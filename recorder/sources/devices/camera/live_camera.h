@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "recorder/sources/devices/camera/frame_source.h"
-#include "recorder/sources/devices/camera/grey_decoder.h"
+#include "recorder/sources/devices/camera/video_file.h"
 
 namespace calot::recorder {
 

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "recorder/sources/devices/device.h"
-#include "recorder/sources/devices/device_kind.h"
 #include "recorder/sources/devices/force/force_output.h"
 #include "recorder/sources/devices/force/force_wire.h"
 #include "recorder/sources/devices/tcp.h"

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "recorder/sources/devices/device.h"
-#include "recorder/sources/devices/device_kind.h"
 #include "recorder/sources/devices/force/force_output.h"
 #include "recorder/sources/devices/force/websocket_stream.h"
 

@@ -11,7 +11,6 @@
 #include "recorder/base/dates.h"
 #include "recorder/base/errors.h"
 #include "recorder/sources/devices/calibration_fit.h"
-#include "recorder/sources/devices/declared_calibration.h"
 #include "recorder/sources/devices/mouse_device.h"
 #include "tests/recorder/sources/devices/support/calibration_streams.h"
 

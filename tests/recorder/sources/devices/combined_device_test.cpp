@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Two devices, one for each hand.
-#include "recorder/sources/devices/combined_device.h"
+#include "recorder/sources/devices/open_device.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -10,7 +10,6 @@
 
 #include "recorder/base/errors.h"
 #include "recorder/sources/devices/device_source.h"
-#include "recorder/sources/devices/open_device.h"
 #include "recorder/sources/devices/scripted_device.h"
 #include "tests/recorder/sources/devices/support/device_support.h"
 

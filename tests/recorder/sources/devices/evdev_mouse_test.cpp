@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Events as the kernel writes them, through a named pipe in place of a mouse.
-#include "recorder/sources/devices/evdev_mouse.h"
+#include "recorder/sources/devices/mouse_device.h"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>

@@ -14,7 +14,6 @@
 
 #include "recorder/sources/devices/device_source.h"
 #include "recorder/sources/devices/openigtlink_device.h"
-#include "recorder/sources/devices/openigtlink_server.h"
 #include "tests/recorder/sources/devices/support/device_support.h"
 #include "tests/recorder/sources/devices/support/openigtlink_loopback.h"
 

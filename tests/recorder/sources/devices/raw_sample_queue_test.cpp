@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "recorder/sources/devices/raw_sample_queue.h"
+#include "recorder/sources/devices/device_source.h"
 
 #include <gtest/gtest.h>
 

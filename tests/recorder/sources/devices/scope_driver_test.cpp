@@ -5,7 +5,6 @@
 #include <memory>
 
 #include "recorder/sources/devices/scope_device.h"
-#include "recorder/sources/devices/scope_keys.h"
 #include "recorder/sources/devices/scripted_device.h"
 #include "tests/recorder/sources/devices/support/device_support.h"
 

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "recorder/sources/devices/wrench_gate.h"
+#include "recorder/sources/devices/scripted_device.h"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 
-#include "recorder/sources/devices/scripted_device.h"
 #include "tests/recorder/sources/devices/support/device_support.h"
 
 namespace calot::recorder {

@@ -9,7 +9,7 @@
 #include <limits>
 
 #include "recorder/sources/devices/force/force_output.h"
-#include "recorder/sources/devices/force/simulated_hand.h"
+#include "recorder/sources/devices/force/force_server.h"
 
 namespace calot::test {
 

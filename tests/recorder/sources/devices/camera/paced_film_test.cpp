@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Films in real time.
-#include "recorder/sources/devices/camera/paced_film.h"
+#include "recorder/sources/devices/camera/open_camera.h"
 
 #include <gtest/gtest.h>
 
 #include "recorder/base/errors.h"
 #include "recorder/sources/devices/camera/camera_device.h"
-#include "recorder/sources/devices/camera/camera_request.h"
 
 namespace calot::recorder {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "recorder/sources/devices/force/energy_tank.h"
+#include "recorder/sources/devices/force/force_output.h"
 
 #include <gtest/gtest.h>
 

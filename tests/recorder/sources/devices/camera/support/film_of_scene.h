@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "recorder/sources/devices/camera/tag_detector.h"
+#include "recorder/sources/devices/camera/frame_source.h"
 
 namespace calot::recorder::cameratest {
 

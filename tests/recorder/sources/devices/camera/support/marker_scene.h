@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "recorder/sources/devices/camera/camera_rig.h"
-#include "recorder/sources/devices/camera/handle_geometry.h"
-#include "recorder/sources/devices/camera/tag_detector.h"
+#include "recorder/sources/devices/camera/frame_source.h"
+#include "recorder/sources/devices/camera/marker_sheets.h"
 #include "sim/math/random.h"
 
 namespace calot::recorder::cameratest {

@@ -14,7 +14,7 @@
 #include <thread>
 #include <vector>
 
-#include "recorder/sources/devices/force/simulated_hand.h"
+#include "recorder/sources/devices/force/force_server.h"
 
 namespace calot::recorder::devicetest {
 

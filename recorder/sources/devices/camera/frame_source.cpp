@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "recorder/sources/devices/camera/tag_detector.h"
+
+#include "recorder/sources/devices/camera/frame_source.h"
 
 #include <algorithm>
 #include <cassert>
 
-#include "recorder/sources/devices/camera/handle_geometry.h"
+#include "recorder/sources/devices/camera/marker_sheets.h"
 
 extern "C" {
 #include <apriltag/apriltag.h>
