@@ -84,7 +84,7 @@ bool standsAlone(std::string_view text, std::size_t at, std::size_t size) {
   return closes && (end + 1 == text.size() || separates(text[end + 1]));
 }
 
-/// What is searched for in a file's bytes.
+/// Search terms for a file's bytes.
 struct Wanted {
   const std::vector<std::string>& uuids;  ///< anywhere: none of them is there by chance
   std::string pseudonym;                  ///< in text, as a value; empty: not searched for

@@ -25,7 +25,7 @@ class RecordingsFound {
 
   /// Nothing where none is there.
   [[nodiscard]] std::optional<std::filesystem::path> of(const AttemptRow& attempt) const;
-  /// Of files that are no recordings, or damaged.
+  /// Errors of files that are damaged or not recordings.
   [[nodiscard]] const std::vector<Error>& notRead() const { return notRead_; }
 
  private:

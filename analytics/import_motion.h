@@ -14,7 +14,7 @@
 
 namespace calot::analytics {
 
-/// What the caller says of motion files: they don't say it themselves.
+/// Facts about motion files supplied by the caller.
 struct MotionDeclaration {
   std::string task = "unnamed-task";  ///< what was done; attempts of different tasks are never compared
   std::string participant;            ///< pseudonym, or empty
@@ -40,7 +40,7 @@ struct StoredMotion {
 StoredMotion storeMotion(CohortDatabase& database, const recorder::TrackedMotion& motion,
                          const MotionDeclaration& declaration);
 
-/// What external metrics make of the motion.
+/// Values of external metrics for the motion.
 MetricOutcomes externalOf(const recorder::TrackedMotion& motion, const MotionDeclaration& declaration,
                           const std::vector<MetricScript>& metrics);
 

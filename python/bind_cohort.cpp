@@ -93,7 +93,7 @@ py::dict participantDict(const analytics::Participant& p) {
   return row;
 }
 
-/// What the cohort gives, read without Python's lock, as a list of dicts.
+/// Rows of the cohort, read without Python's lock, as a list of dicts.
 template <class Row>
 auto listOf(std::vector<Row> (CohortReader::*read)(), py::dict (*dictOf)(const Row&)) {
   return [read, dictOf](CohortReader& cohort) {

@@ -16,7 +16,7 @@ namespace calot::python {
 
 namespace {
 
-/// What `calot record` does with a performer. @returns outcome, seconds
+/// Records a performer, as `calot record`. @returns outcome, seconds
 std::pair<std::string, double> record(const std::filesystem::path& path, const std::string& scene,
                                       const std::string& performer, std::uint64_t seed, double seconds,
                                       const std::string& participant, const std::string& purpose,

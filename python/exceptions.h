@@ -23,7 +23,7 @@ class ReplayFault : public Error {
 /// Throws what a verdict amounts to; returns where it is exact. @throws ReplayFault; Error (damaged, undecided)
 void throwUnlessExact(const recorder::ReplayReport& report);
 
-/// What would resolve an error, in words for users of the module.
+/// Advice on an error, in words for users of the module.
 std::string advice(const std::vector<Remedy>& remedies);
 
 /// Makes C++ errors Python's from here on.

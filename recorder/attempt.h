@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a new attempt is called and says of itself.
+// Identity and header of a new attempt.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace calot::recorder {
 
-/// What the caller knows of an attempt that the source and the scene do not.
+/// Facts about an attempt supplied by the caller, beyond source and scene.
 struct AttemptSettings {
   std::string participant;
   std::string station;

@@ -96,7 +96,7 @@ class ComplianceCache {
 
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
 
-  /// Of all entries together (bytes): some twenty scenes.
+  /// Total size of all entries (bytes): some twenty scenes.
   static constexpr std::uint64_t maxBytes = std::uint64_t{1} << 30U;
 
  private:

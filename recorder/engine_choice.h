@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which engine decides a recording.
+// Choice of the engine that decides a recording.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@
 
 namespace calot::recorder {
 
-/// What is asked of an engine. At first: the one of the recording's version, in this program where it is its own.
+/// Request for an engine. Default: the one of the recording's version, in this program where it is its own.
 struct EngineWish {
   bool apart = false;               ///< as a program of its own, confined: for recordings that are not trusted
   bool anyway = false;              ///< this program's own, whatever the recording's version

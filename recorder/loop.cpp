@@ -19,7 +19,7 @@ namespace {
 
 double seconds(Nanoseconds t) { return std::chrono::duration<double>(t).count(); }
 
-/// What ends an attempt before a step, apart from its source.
+/// Conditions that end an attempt before a step, apart from its source.
 class Gate {
  public:
   Gate(const Model& model, const RunSettings& settings)

@@ -57,7 +57,7 @@ struct ReplayReport {
   std::string message;               ///< one line for people; does not name the recording
   std::vector<Remedy> remedies;      ///< of what stands in the way
 
-  /// What kind of error a verdict other than exact is.
+  /// Kind of error of a verdict other than exact.
   [[nodiscard]] std::optional<ErrorKind> fault() const;
 };
 
@@ -109,7 +109,7 @@ class Seeker {
 
   /// Steps done. @pre seek()
   [[nodiscard]] std::uint64_t steps() const { return engine_->steps(); }
-  /// What is to be drawn after that step, and the State as bytes.
+  /// Scene view after that step, and the State as bytes.
   [[nodiscard]] SceneView view() { return engine_->view(); }
   [[nodiscard]] Keyframe keyframe() { return engine_->keyframe(); }
   /// First step since the keyframe that it began at whose State has another digest than the recorded one: from there on

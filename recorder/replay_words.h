@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What people read for the verdict of a replay.
+// Words for the verdict of a replay.
 #pragma once
 
 #include "recorder/replay.h"

@@ -31,7 +31,7 @@ struct Segment {
 /// All steps of a recording, in order, without gap or overlap.
 std::vector<Segment> segmentsOf(const Recording& recording);
 
-/// What re-simulating and comparing a recording's segments gave.
+/// Result of re-simulating and comparing a recording's segments.
 struct SegmentsVerdict {
   std::optional<Divergence> divergence;  ///< the first, as a run from the start would find it
   std::optional<bool> reproducible;      ///< its segment, run once more, differed in the same way

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What protocols and forms have in common: named, versioned JSON texts that are known again by their hash.
+// Common part of protocols and forms: named, versioned JSON texts identified by their hash.
 #pragma once
 
 #include <cstddef>

@@ -146,7 +146,7 @@ std::vector<NormFigure> collectValues(Norm& norm, const std::vector<AttemptValue
   return figures;
 }
 
-/// Whether a figure can be in the rule, if it has a mark.
+/// True if a figure can be in the rule, given a mark.
 bool isCandidate(const std::string& checkpoint, const std::string& subject, const NormRequest& request) {
   const auto fixed = [&](const FixedCut& cut) {
     return cut.figure == checkpoint || cut.figure == figureName(checkpoint, subject);

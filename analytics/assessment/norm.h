@@ -56,7 +56,7 @@ inline constexpr std::size_t minNormMembers = 3;
 Norm makeNorm(const std::vector<AttemptRow>& attempts, const std::vector<AttemptValue>& values,
               const std::vector<Rating>& ratings, const NormRequest& request, const std::string& name);
 
-/// Whether a value is on the passing side of a mark; at the cut one passes. @pre there is a cut.
+/// True if a value is on the passing side of a mark; a value at the cut passes. @pre there is a cut.
 bool passes(const NormCheckpoint& mark, double value);
 
 /// How many of the norm's own members would pass by its rule: what the rule asks for, and what it lets through.
@@ -72,7 +72,7 @@ std::string ownFailureWarning(const Norm& norm);
 /// What a report says of the pass marks' intervals where their published coverage is low at the norm's size; or empty.
 std::string passMarkWarning(const Norm& norm);
 
-/// Whether the pass marks are of borderline regression.
+/// True if the pass marks come from borderline regression.
 bool isByBorderline(const Norm& norm);
 
 /// How many of the rule's figures must be passed: leastPassed, or all of them.

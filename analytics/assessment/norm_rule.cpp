@@ -15,7 +15,7 @@
 namespace calot::analytics {
 namespace {
 
-/// What harms the patient.
+/// Events that harm the patient.
 constexpr std::array<std::string_view, 4> harms{"critical-view", "clip-errors", "organ-perforations", "organ-burned"};
 /// How long it took, and how far the tips went.
 constexpr std::array<std::string_view, 2> efforts{"elapsed-time", "path-length"};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which figures count in a norm's rule, and pass marks set by people: fixed ones and judges' (Angoff).
+// Figures that count in a norm's rule, and pass marks set by people: fixed ones and judges' (Angoff).
 #pragma once
 
 #include <string>
@@ -34,7 +34,7 @@ void setFixedCuts(Norm& norm, const std::vector<FixedCut>& fixed);
 /// Was the mark set by a person? Such a figure has to be passed whatever number of others is.
 bool isFixed(const NormCheckpoint& mark);
 
-/// Whether the rule is kept: by enough of its figures, and by each that is fixed.
+/// True if the rule is met: by enough of its figures, and by each that is fixed.
 /// @param passed by Norm::checkpoints
 bool keepsRule(const Norm& norm, const std::vector<bool>& passed);
 
@@ -49,7 +49,7 @@ struct AngoffJudgement {
   std::size_t needed = 0;  ///< least whole number of items at or above the cut
 };
 
-/// Of a table with a column "judge" and a column for each item.
+/// Reads a table with a column "judge" and a column for each item.
 /// @throws Error (invalid) without such a column; Error (damaged), naming line and column, for a judge without a name
 /// or named twice, and a cell that is no probability; Error (refused) where there is no cut.
 AngoffJudgement readAngoff(const CsvTable& table);

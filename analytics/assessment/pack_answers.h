@@ -13,7 +13,7 @@
 
 namespace calot::analytics {
 
-/// What a rater's page saved, with the films' names resolved.
+/// Answers saved by a rater's page, with the films' names resolved.
 struct PackAnswers {
   RatingPack pack;
   RatingForm form;

@@ -52,7 +52,7 @@ struct CheckpointValue {
   bool operator==(const CheckpointValue&) const = default;
 };
 
-/// What is known before the first step.
+/// Facts known before the first step.
 struct AttemptContext {
   double tickSeconds = tickLength;
   std::uint32_t ticksPerStep = 10;
@@ -99,7 +99,7 @@ struct PhaseMotion;
 class ForceTrack;
 class PhaseForceTrack;
 
-/// What is known after the last step (or, for provisional values, after the newest one).
+/// Facts known after the last step (or, for provisional values, after the newest one).
 struct AttemptEnd {
   std::uint64_t steps = 0;
   double stretched = 0.0;  ///< by how much lag stretched the tick clock (s): more wall time passed than ticks say
@@ -194,7 +194,7 @@ struct CheckpointPlace {
   std::string_view summaryTitle = {};
 };
 
-/// What an attempt must have for a figure, and the reason that is given where it has not.
+/// Precondition of a figure, and the reason given where it does not hold.
 struct Requirement {
   bool (*met)(const AttemptContext& context);
   const char* otherwise;

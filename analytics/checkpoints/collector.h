@@ -51,7 +51,7 @@ class CheckpointCollector final : public recorder::Observer {
 std::vector<CheckpointValue> valuesFromObservables(recorder::Recording& recording, double cutoff = 6.0,
                                                    recorder::Observer* also = nullptr);
 
-/// What a file of motion doesn't say of itself.
+/// Facts about a motion file that the file does not hold.
 struct SamplesContext {
   recorder::Outcome outcome = recorder::Outcome::stopped;
   std::string handedness = "unknown";

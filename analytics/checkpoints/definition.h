@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a checkpoint declares, and what a script declares of its own metric (docs/how-to/own-metrics.md).
+// Declaration of a checkpoint, and of a script's own metric (docs/how-to/own-metrics.md).
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace calot::analytics {
 
-/// Which way is better. `none`: the figure describes, it doesn't judge.
+/// Better direction. `none`: the figure describes, it does not judge.
 enum class Direction : std::uint8_t { none, lower, higher };
 
 /// Where a value comes from (section 6 of the design). Numbers are stored and never reused.
@@ -32,7 +32,7 @@ std::string nameOf(Origin origin);            ///< "re-simulated", "observables"
 std::string nameOf(Aggregation aggregation);  ///< "attempt", "hand", "organ", "phase", "hand and phase"
 std::string nameOf(Finality finality);        ///< "running", "final"
 
-/// What a checkpoint declares of itself.
+/// Declaration of a checkpoint.
 struct CheckpointDefinition {
   std::string name = {};         ///< "path-length": key in the database, never reused for another meaning
   std::string title = {};        ///< "Path length of the instrument's tip"
@@ -54,7 +54,7 @@ struct CheckpointDefinition {
   std::string notOutcome = {};
 };
 
-/// What a script declares of its metric, and which script it is.
+/// Declaration of a script's metric, and the script's identity.
 struct ExternalMetric {
   /// Name, title, unit, direction and version are the script's; `unit` is displayed as it is.
   CheckpointDefinition definition;

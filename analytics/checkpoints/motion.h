@@ -107,7 +107,7 @@ TimeSpans unionOf(const TimeSpans& a, const TimeSpans& b);
 /// Seconds that all spans last.
 double lengthOf(const TimeSpans& spans);
 
-/// What a tracker's samples cover of a hand's work.
+/// Coverage of a hand's work by a tracker's samples.
 struct MotionCoverage {
   TimeSpans mounted;  ///< with an instrument
   TimeSpans lost;     ///< of these, without measurement
@@ -116,7 +116,7 @@ struct MotionCoverage {
   [[nodiscard]] std::optional<double> share() const;
 };
 
-/// Of a part of the attempt.
+/// Coverage of a part of the attempt.
 MotionCoverage within(const MotionCoverage& coverage, const TimeSpans& window);
 /// While both hands have an instrument; lost is what either hand lost.
 MotionCoverage ofBoth(const MotionCoverage& left, const MotionCoverage& right);
@@ -154,7 +154,7 @@ struct Motion {
   [[nodiscard]] std::uint64_t points() const;  ///< of all segments
 };
 
-/// What a hand's samples were before they are resampled at once.
+/// A hand's samples before resampling.
 struct MotionSamples {
   SampleGrid grid;           ///< samples up to 0.1 s apart joined; those farther apart begin a run
   SampleRate rate;           ///< intervals

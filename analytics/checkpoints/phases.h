@@ -25,7 +25,7 @@ std::size_t windowOf(Phase phase);
 CheckpointDefinition phaseDefinition(const CheckpointDefinition& whole, const char* pieces, std::uint32_t version = 1);
 /// "left clipping"
 std::string handAndPhase(std::size_t hand, Phase phase);
-/// Why a phase of no steps has no figure.
+/// Reason why a phase without steps has no figure.
 inline constexpr const char* noSuchPhase = "the attempt has no such phase";
 
 /// One phase of an attempt, as often as it recurred.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What checkpoints must know of a scene: sizes at rest, and which structure plays which part in the operation.
+// Facts about a scene that checkpoints use: reference sizes, and the structures' roles in the operation.
 #pragma once
 
 #include <cstdint>

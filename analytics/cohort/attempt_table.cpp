@@ -15,7 +15,7 @@
 namespace calot::analytics::tables {
 namespace {
 
-/// What a row of attempt as a has in the tables beside it.
+/// Rows beside a row of attempt (alias a).
 std::string selectAttempts(const std::string& clause) {
   return fmt::format(
       "SELECT {}, {}, coalesce(p.pseudonym, ''), coalesce(p.study_group, ''), coalesce(p.arm, ''), coalesce(p.site, "

@@ -44,7 +44,7 @@ void setStation(const std::string& path, const std::string& name, const std::opt
 void setCohort(const std::string& path, const std::string& name, const std::optional<std::string>& note,
                const std::vector<std::string>& add, const std::vector<std::string>& remove);
 
-/// What the database says of the key that signed a recording of a station.
+/// Status of the key that signed a station's recording, according to the database.
 enum class KeyStanding : std::uint8_t {
   unsignedAndUnknown,   ///< no signature; the station has no key here, either
   unsignedButExpected,  ///< no signature, though the station has a key

@@ -125,7 +125,7 @@ MetricById metricsById(SQLite::Database& db) {
   return metrics;
 }
 
-/// Of the rows of external_value as e with metric m.
+/// Selects rows of external_value (alias e) with metric m.
 constexpr const char* newest =
     "NOT EXISTS (SELECT 1 FROM external_value l JOIN external_metric n ON n.id = l.metric WHERE l.attempt = e.attempt "
     "AND n.name = m.name AND n.version > m.version)";

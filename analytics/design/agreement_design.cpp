@@ -94,7 +94,7 @@ DesignJson agreementJson(const Comparison& c, const BlandAltman& r, const Expect
   return json;
 }
 
-/// Whether the scatter of the differences grows with what is measured.
+/// Tests whether the scatter of the differences grows with the measured quantity.
 std::optional<Spearman> scatterOf(const FigurePairs& pairs) {
   std::vector<double> size, apart;
   for (std::size_t i = 0; i < pairs.first.size(); ++i) {

@@ -13,7 +13,7 @@ struct FigurePairs {
   std::vector<double> first, second;
 };
 
-/// Of participants who have both. @pre one value each
+/// Pairs of participants who have both values. @pre one value each
 FigurePairs pairsOf(const DesignFigure& first, const DesignFigure& second);
 
 /// The figure that others are held against, by its name or its checkpoint's.

@@ -12,7 +12,7 @@
 
 namespace calot::analytics {
 
-/// What a design knows of an attempt that is analysed.
+/// Facts about an analysed attempt that a design uses.
 struct Placed {
   std::size_t person = 0, occasion = 0;
   double order = 1.0;

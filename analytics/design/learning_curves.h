@@ -18,7 +18,7 @@ struct GroupCurve {
   std::vector<double> attempt, mean;  ///< attempts that at least half of the participants made
   std::size_t participants = 0, attempts = 0;
   Expected<LearningCurve> curve = Expected<LearningCurve>::none("not computed");
-  /// Of the plateau: percentile bootstrap over participants, each with all attempts.
+  /// Interval of the plateau: percentile bootstrap over participants, each with all attempts.
   Expected<Interval> plateau = Expected<Interval>::none("not computed");
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What external metrics read of an attempt: a folder of arrays (schemas/metric-input.md).
+// Input of external metrics: a folder of arrays (schemas/metric-input.md).
 #pragma once
 
 #include <filesystem>

@@ -52,7 +52,7 @@ void passOn(const ScriptPrint& print, const std::string& file, const std::string
   while (!rest.empty()) print(file, shortened(std::string(recorder::takeLine(rest)), maxPrinted));
 }
 
-/// What the script answered. @throws Error (damaged) where it failed.
+/// Parses the script's output. @throws Error (damaged) where it failed.
 ScriptJson run(const std::string& file, const std::vector<std::byte>& text, const ScriptLimits& limits,
                const ScriptPrint& print, const std::filesystem::path* input) {
   const TemporaryFolder folder;

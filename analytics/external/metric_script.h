@@ -47,7 +47,7 @@ class MetricScript {
 std::vector<MetricScript> readMetricScripts(const std::vector<std::string>& files, const ScriptLimits& limits,
                                             const ScriptPrint& print = {});
 
-/// What scripts made of one attempt: values, and the errors of those that failed.
+/// Results of scripts for one attempt: values, and the errors of those that failed.
 struct MetricOutcomes {
   std::vector<CheckpointValue> values;
   std::vector<Error> failures;

@@ -9,7 +9,7 @@
 
 namespace calot::analytics {
 
-/// What a script may take.
+/// Resource limits of a script.
 struct ScriptLimits {
   unsigned seconds = 60;         ///< of wall time
   std::size_t mebibytes = 2048;  ///< of address space beyond that of its input
@@ -23,7 +23,7 @@ struct ScriptEnd {
   std::string printed;  ///< to standard output and error, at most maxPrinted bytes
 };
 
-/// What a script may print; beyond it, it is ended.
+/// Output limit of a script; it is killed beyond it.
 inline constexpr std::size_t maxPrinted = 65536;
 
 /// The Python that runs scripts: CALOT_PYTHON, or the system's, or the first in PATH.

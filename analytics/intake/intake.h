@@ -41,7 +41,7 @@ enum class TakenIn : std::uint8_t {
   failed,     ///< the machine stands in the way; tried again later
 };
 
-/// What came of one file.
+/// Result for one file.
 struct IntakeItem {
   std::string file;
   TakenIn how = TakenIn::added;
@@ -51,7 +51,7 @@ struct IntakeItem {
   std::int64_t retryIn = 0;    ///< s, where it failed
 };
 
-/// What is left after a look at the folders.
+/// Remaining work after a pass over the folders.
 struct IntakeRest {
   std::uint64_t settling = 0;  ///< finished, and changed a moment ago
   std::uint64_t growing = 0;   ///< not finished

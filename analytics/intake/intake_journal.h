@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What has come of each file of a watched folder, kept over restarts (docs/how-to/cluster.md, "Watching a folder").
+// Result for each file of a watched folder, kept over restarts (docs/how-to/cluster.md, "Watching a folder").
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace calot::analytics {
 
-/// What shows that a file is another than it was.
+/// State of a file, to detect changes.
 struct FileState {
   std::uint64_t bytes = 0;
   std::int64_t modified = 0;  ///< ns since 1970

@@ -35,7 +35,7 @@ class ManifestTable {
   CsvTable table_;
 };
 
-/// Whether a name holds a line break or another control character, which could forge output.
+/// True if a name holds a line break or another control character, which could forge output.
 bool holdsControl(const std::string& name);
 
 }  // namespace calot::analytics

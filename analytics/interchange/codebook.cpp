@@ -18,7 +18,7 @@ std::string typeWord(const std::string& type) {
   return type.rfind("BLOB", 0) == 0 ? "bytes in hexadecimal" : "text";
 }
 
-/// What is said alike of checkpoints and of external metrics.
+/// Entries shared by checkpoints and external metrics.
 CodebookEntry entryOf(const CheckpointDefinition& d) {
   CodebookEntry e;
   e.table = "checkpoint";

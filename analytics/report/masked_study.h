@@ -23,7 +23,7 @@ std::string analysisOptions(const StudyOptions& options);
 /// SHA-256 over every attempt with its participant, group and exclusion, every value, and every rating.
 std::string analysisDigest(const CohortDatabase& database, const AssessmentDatabase& assessment);
 
-/// What a lock of this study's analysis fixes, without time and name. @pre options have a protocol
+/// Content fixed by a lock of this study's analysis, without time and name. @pre options have a protocol
 AnalysisLock presentAnalysis(const CohortDatabase& database, const AssessmentDatabase& assessment,
                              const StudyOptions& options);
 

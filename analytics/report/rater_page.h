@@ -8,7 +8,7 @@
 
 namespace calot::analytics {
 
-/// What a rater's page knows: neither attempt nor participant, group or figures.
+/// Content of a rater's page: neither attempt nor participant, group or figures.
 struct RatingPage {
   std::string pack, rater;
   RatingForm form;

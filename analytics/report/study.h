@@ -27,7 +27,7 @@
 
 namespace calot::analytics {
 
-/// Of a row of a study, in its display unit.
+/// Statistics of a row of a study, in its display unit.
 struct SimulationRange {
   std::uint64_t known = 0, values = 0;  ///< attempts' values that have an interval, and all of them
   double halfWidth = 0.0;               ///< median over the intervals
@@ -199,7 +199,7 @@ struct StudyRow {
 /// The smallest adjusted p that the row's groups can give is above the level.
 inline bool isOutOfReach(const StudyRow& row, double level) { return row.attainableP && *row.attainableP > level; }
 
-/// What samples cover of the attempts, for figures of one subject.
+/// Coverage of the attempts by samples, for figures of one subject.
 struct CoverageRow {
   std::string subject;                       ///< as of the figures: a hand, "" both, "left clipping"
   std::array<std::vector<double>, 2> share;  ///< in [0, 1], one per participant, the mean of several attempts
@@ -242,7 +242,7 @@ struct Study {
   std::vector<StudyRow> rows;
   std::vector<CoverageRow> coverage;  ///< of figures of samples, by subject
   std::string publishedSource;        ///< of the paper's means
-  /// Of a cohort: the group of every participant and attempt (uuid) that is analysed.
+  /// In a cohort: group of every analysed participant and attempt (uuid).
   std::map<std::string, std::string> groupOf;
   std::map<std::string, AttemptOf> attemptOf;  ///< of a cohort: of every analysed attempt, by uuid
   std::vector<FormReport> ratings;             ///< addRatings()

@@ -25,7 +25,7 @@ bool isWhole(const CoverageRow& row) {
                      [](const std::vector<double>& g) { return g.empty() || lowest(g) == 1.0; });
 }
 
-/// Of a subject that the study has a figure of.
+/// Coverage of a subject for which the study has a figure.
 bool isShown(const Study& study, const CoverageRow& row) {
   return std::any_of(study.rows.begin(), study.rows.end(),
                      [&](const StudyRow& r) { return coverageOf(study, r) == &row; });

@@ -62,7 +62,7 @@ std::string whyMissing(const GroupSummary& s) {
   return fmt::format("{}; most: {}", kinds, s.missingReason);
 }
 
-/// Why a row has no value at all or an outcome no test; empty where it has one.
+/// Reason why a row has no value or an outcome no test; empty if there is one.
 std::string untested(const StudyRow& row) {
   if (!hasNoValue(row)) return row.test || !row.notOutcome.empty() ? std::string() : "no test, " + row.test.reason();
   std::string why = row.group[0].missingReason;
@@ -83,7 +83,7 @@ void addTo(UntestedRows& untestedRows, const std::string& reason, const std::str
   }
 }
 
-/// What is missing of one row, a line a fact.
+/// Missing parts of one row, one line each.
 void explainMissingOf(const Study& study, const StudyRow& row, std::vector<std::string>& notes) {
   const std::string name = rowName(row);
   if (const std::string reason = untested(row); !reason.empty()) notes.push_back(fmt::format("{}: {}", name, reason));
@@ -237,7 +237,7 @@ std::string missing(const Study& study) {
                                        worst));
 }
 
-/// Which scripts the figures of external metrics are of.
+/// Scripts that computed the external metrics.
 std::string externalMetrics(const Study& study) {
   std::string list;
   for (const StudyRow& row : study.rows) {
@@ -312,7 +312,7 @@ std::string datesOf(const StudySetting& setting) {
   return first == last ? fmt::format("Attempts of {}.", first) : fmt::format("Attempts from {} to {}.", first, last);
 }
 
-/// What was compared, and that nothing else counts as an observation.
+/// States what was compared and that nothing else counts as an observation.
 std::string unitLine(const Study& study) {
   return fmt::format("Unit of analysis: the participant ({}); {} {} and {} {}.", study.attemptRule,
                      study.participants[0], study.groups[0], study.participants[1], study.groups[1]);

@@ -25,7 +25,7 @@ struct StudyValue {
   double halfWidth = 0.0;           ///< of the interval
 };
 
-/// Why an attempt has no value.
+/// Reason why an attempt has no value.
 struct MissingValue {
   Availability kind = Availability::notAvailable;
   std::string reason;
@@ -50,7 +50,7 @@ void fillRow(StudyRow& row, const StudySample& sample);
 /// @param duration participants' durations by group, empty where they are not known
 void compareGroups(StudyRow& row, const Study& study, const std::array<std::map<std::string, double>, 2>& duration);
 
-/// What the simulation's intervals say of the row, where values have any.
+/// Summary of the simulation's intervals for the row, where values have them.
 void addSimulationRange(StudyRow& row, const StudySample& sample);
 
 /// Adjusts over the family of the protocol, or without one of the choices, says which it is, decides which rows lead,

@@ -20,7 +20,7 @@ std::string figureOfRow(const StudyRow& row);  ///< the same without the mark
 bool hasNoValue(const StudyRow& row);          ///< nobody of either group has one
 /// The protocol, when it was registered, why the study is exploratory all the same; or empty.
 std::vector<std::string> protocolLines(const Study& study);
-/// Whether the protocol's analysis is locked, by whom, and what has changed since: one sentence.
+/// States whether the protocol's analysis is locked, by whom, and what has changed since: one sentence.
 std::string lockText(const StudyProtocol& protocol);
 /// Under the title: the protocol, task, device and versions in words, dates, and the unit of analysis.
 std::vector<std::string> studyHead(const Study& study);
@@ -45,7 +45,7 @@ std::vector<std::string> primaryNotes(const Study& study);
 /// Everything else: secondary hypotheses, values and comparison of every row by the checkpoints' families, figures that
 /// are no outcomes, coverage, correlation, forms. A row without any value is in none of them, nor is an empty table.
 std::vector<ReportTable> appendixTables(const Study& study);
-/// What the appendix's columns mean, published figures, and what the other rows lack.
+/// Meaning of the appendix's columns, published figures, and gaps of the other rows.
 std::vector<std::string> appendixNotes(const Study& study);
 /// Intervals whose published coverage is low at these sizes, and how many of the rows that lead, or of the others, have
 /// them.

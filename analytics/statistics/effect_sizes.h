@@ -23,7 +23,7 @@ struct HedgesG {
 /// No answer for fewer than two values in a group or when there is no spread within both. @pre 0 < level < 1.
 Expected<HedgesG> hedgesG(std::span<const double> x, std::span<const double> y, double level = 0.95);
 
-/// What was expected before the data were seen. An area below one half speaks against the hypothesis and stays below.
+/// Hypothesis stated before the data were seen. An area below one half speaks against the hypothesis and stays below.
 enum class Hypothesis : std::uint8_t { firstLarger, firstSmaller };
 
 struct SuperiorityEstimate {

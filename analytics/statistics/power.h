@@ -19,7 +19,7 @@ enum class PowerShape : std::uint8_t {
   lognormal  ///< exp of such a normal: times
 };
 
-/// What both groups' values of one checkpoint are like; of the lognormal their logarithms.
+/// Distribution of both groups' values of one checkpoint; of the lognormal, of their logarithms.
 struct PlannedCheckpoint {
   NormalCurve x, y;
   [[nodiscard]] bool effect() const { return x.mean != y.mean; }

@@ -68,7 +68,7 @@ struct IntraclassCorrelation {
 /// objection(table), and where the denominator is not positive. No interval where the raters agree but for leniency.
 Expected<IntraclassCorrelation> intraclassCorrelation(const RatingTable& table, IccForm form, double level = 0.95);
 
-/// What a decision on the mean of k raters (occasions) is worth.
+/// Reliability of a decision on the mean of k raters (occasions).
 struct DecisionStudy {
   double g = 0.0;              ///< relative: p / (p + e / k), ranks people
   double phi = 0.0;            ///< absolute: p / (p + (f + e) / k), holds them against a mark

@@ -13,7 +13,7 @@
 
 namespace calot::analytics {
 
-/// What an attempt's hands do in a scene.
+/// Motion of an attempt's hands in a scene.
 struct OpenLoopRun {
   std::vector<CheckpointValue> values;
   std::uint64_t tetrahedra = 0;  ///< of all organs

@@ -18,7 +18,7 @@ inline constexpr std::uint32_t intervalMethod = 1;
 /// effects add up.
 inline constexpr double coverageFactor = 2.0;
 
-/// Of one value, in its SI unit. @invariant lower <= value <= upper, or there is no interval and a reason.
+/// Interval of one value, in its SI unit. @invariant lower <= value <= upper, or there is no interval and a reason.
 struct ValueInterval {
   std::string name, subject;     ///< of the checkpoint value
   std::uint32_t version = 1;     ///< of its definition

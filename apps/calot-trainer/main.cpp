@@ -94,7 +94,7 @@ void add(CLI::App& app, Options& o) {
   app.add_option("--pictures", o.pictures, "Write a PNG of each page into this folder, and end");
 }
 
-/// Of mouse and keyboard.
+/// Options for mouse and keyboard.
 recorder::DeviceSourceSettings mouseSettings(const Options& o, recorder::Mode mode) {
   const std::string& file = o.source.device.calibration;
   recorder::DeviceSourceSettings settings;

@@ -51,7 +51,7 @@ std::vector<std::string> filesOf(const AssessOptions& o) {
   return {files.begin(), files.end()};
 }
 
-/// What one file gave, beside the replay's report.
+/// Result for one file, besides the replay's report.
 struct Stored {
   std::string keyFault;
   std::string how = "not stored";
@@ -102,7 +102,7 @@ void storeJudged(const std::string& file, const AssessOptions& o, analytics::Coh
   }
 }
 
-/// What is printed of each recording, and the table at the end.
+/// Output for each recording, and the closing table.
 class AssessOutput {
  public:
   AssessOutput(const AssessOptions& options, bool everyValue) : options_(options), everyValue_(everyValue) {}

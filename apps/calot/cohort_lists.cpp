@@ -34,7 +34,7 @@ struct ListOptions {
   bool all = false, json = false;
 };
 
-/// Which of the rows are asked for.
+/// Filter of the rows.
 bool isAsked(const AttemptRow& a, const ListOptions& o) {
   return (o.participant.empty() || a.participant == o.participant) && (o.group.empty() || a.group == o.group) &&
          (o.scene.empty() || a.scene == o.scene) &&

@@ -30,7 +30,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What is kept beside an engine: its transcript and its golden recordings.
+/// Files kept beside an engine: its transcript and its golden recordings.
 std::vector<fs::path> keptBeside(std::uint32_t version, const std::string& ending) {
   std::vector<fs::path> files;
   for (const fs::path& root : assetFolders()) {

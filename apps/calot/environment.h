@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What commands share: where assets are, progress on a terminal, reading a time.
+// Shared by commands: location of assets, progress on a terminal, parsing of times.
 // Ending a run in good order: what SIGINT and SIGTERM ask for.
 #pragma once
 

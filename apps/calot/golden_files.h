@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // assets/golden/golden.json: which golden recordings there are, how each is made, and what its checkpoints gave when it
 // was made. docs/how-to/golden.md says how to review a change of it.
-// What the checkpoints of golden recordings give, held against the list.
+// Checkpoint values of golden recordings, compared with the list.
 // Making golden recordings anew.
 #pragma once
 

@@ -69,7 +69,7 @@ void describeSteps(recorder::Recording& recording, ordered_json& out) {
   out["steps_held_back"] = misses.heldBack;
 }
 
-/// What the device measured, by hand.
+/// Measurements of the device, by hand.
 ordered_json describeDevice(recorder::Recording& recording) {
   ordered_json out;
   for (const Hand hand : {Hand::left, Hand::right}) {

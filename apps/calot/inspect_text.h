@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What `calot inspect` prints: the members of its JSON, under headings.
+// Output of `calot inspect`: the members of its JSON, under headings.
 #pragma once
 
 #include <nlohmann/json.hpp>

@@ -33,7 +33,7 @@ struct CoarseSurface {
 /// @param surface closed, outward, manifold
 [[nodiscard]] CoarseSurface coarseSurface(const TriangleMesh& surface, int triangles);
 
-/// Of the number that was asked for.
+/// Share of the requested number.
 constexpr double goodEnough = 0.1, acceptable = 0.3;
 constexpr int searches = 8;
 
@@ -115,7 +115,7 @@ void checkUnit(const MeshOptions& o, const SurfaceReport& found) {
                                               o.unit, fitting.empty() ? std::string() : ": " + fitting + " would fit"));
 }
 
-/// Why a surface has no inside. Empty: it has one.
+/// Explains why a surface has no interior; empty if it has one.
 std::string openFault(const MeshOptions& o, const recorder::MeshReport& report, const SurfaceReport& now) {
   if (now.openEdges > 0) {
     std::string holes;

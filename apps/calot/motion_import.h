@@ -42,7 +42,7 @@ ExitCode reportFailures(const analytics::MetricOutcomes& outcomes, const std::st
 /// The same as texts.
 nlohmann::ordered_json failuresJson(const analytics::MetricOutcomes& outcomes);
 
-/// What came of one file.
+/// Result for one file.
 struct ImportedFile {
   ExitCode code = ExitCode::yes;
   std::string how = "not stored", error;

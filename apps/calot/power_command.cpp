@@ -33,7 +33,7 @@ namespace {
 
 inline constexpr std::size_t maxPeople = 500;  ///< in a group
 
-/// What the command line says.
+/// Options of the command line.
 struct PowerOptions {
   StudySource source;
   std::vector<std::string> checkpoints;

@@ -52,7 +52,7 @@ std::vector<FilmOrigin> findFilms(const analytics::CohortDatabase& cohort, const
 namespace fs = std::filesystem;
 using analytics::AttemptRow;
 
-/// Whether a file is a recording of this attempt.
+/// True if a file is a recording of this attempt.
 bool isRecordingOf(const fs::path& file, const std::string& attempt) {
   std::error_code ignored;
   if (file.extension() != ".h5" || !fs::is_regular_file(file, ignored)) return false;

@@ -50,7 +50,7 @@ std::string shown(const std::optional<analytics::CheckpointValue>& v) {
          (definition != nullptr ? definition->displayUnit : v->unit);
 }
 
-/// What beside the figure is another.
+/// Differences besides the figure.
 std::string otherwise(const analytics::ValueChange& c) {
   if (!c.before) return "new";
   if (!c.now) return "no longer computed";

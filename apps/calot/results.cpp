@@ -12,7 +12,7 @@
 namespace calot::apps {
 namespace {
 
-/// Of every result. A command whose members change gets a version of its own here.
+/// Version of every result. A command whose members change gets its own version here.
 constexpr int resultVersion = 1;
 
 void print(const std::string& text) {

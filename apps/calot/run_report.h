@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What `record` and `branch` say when they are done.
+// Final report of `record` and `branch`.
 #pragma once
 
 #include <string>

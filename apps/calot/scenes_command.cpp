@@ -43,7 +43,7 @@ void printTable(const std::vector<recorder::LoadedScene>& scenes) {
   table.print(std::cout, terminalColumns());
 }
 
-/// What a step of the scene computes with.
+/// Numerical settings of a scene's step.
 void addCounts(const Model& model, json& row) {
   json organs = json::array();
   for (const OrganModel& organ : model.organs()) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What commands that compute checkpoints share: whether values are stored or only shown, and the values as JSON.
+// Shared by commands that compute checkpoints: storing or showing values, and values as JSON.
 #pragma once
 
 #include <CLI/CLI.hpp>

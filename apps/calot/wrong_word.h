@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a command line that cannot be read should have said.
+// Suggestions for a command line that cannot be parsed.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the command line says to do about an error: commands and options.
+// Advice of the command line on an error: commands and options.
 #pragma once
 
 #include <string>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How a window looks: light or dark, how large its letters are, and how large it is.
-// What a program with a window checks before it has one, so that it can say so in one line.
+// Checks made by a windowed program before it opens a window, to report faults in one line.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -52,7 +52,7 @@ class Link {
     const std::lock_guard lock(mutex_);
     if (object_ != nullptr) call(*object_);
   }
-  /// Of the object's thread: whether the link still stands.
+  /// True while the link stands. Object's thread only.
   [[nodiscard]] bool stands() const { return object_ != nullptr; }
 
  private:

@@ -18,7 +18,7 @@ namespace calot::gui {
 class LongWork : public QObject {
   Q_OBJECT
  public:
-  /// What the work sees of this; any thread.
+  /// The worker's view of this object; any thread.
   class Control {
    public:
     /// May be called as often as the work likes: the interface hears of each percent once, and of every new text.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a replay shows next: pure decisions, apart from the thread that carries them out.
+// Decides what a replay shows next, apart from the thread that carries it out.
 #pragma once
 
 #include <chrono>
@@ -18,7 +18,7 @@
 
 namespace calot::gui {
 
-/// What a replay shows.
+/// State shown by a replay.
 struct PlayerPosition {
   std::uint64_t step = 0;   ///< the last step done
   std::uint64_t steps = 0;  ///< of the recording

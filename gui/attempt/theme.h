@@ -30,7 +30,7 @@ inline constexpr double leastContrast = 4.5;
 /// (L1 + 0.05) / (L2 + 0.05) of the relative luminances, the lighter above (WCAG 2.1, 1.4.3): 1 to 21.
 [[nodiscard]] double contrast(const QColor& a, const QColor& b);
 
-/// Whether text is lighter than what is behind it.
+/// True if text is lighter than its background.
 [[nodiscard]] bool dark();
 /// A length that was chosen for letters of the usual size, for those that there are.
 [[nodiscard]] int inType(int pixels);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What pages, panels and dialogs are made of.
+// Building blocks of pages, panels and dialogs.
 #pragma once
 
 #include <QBoxLayout>

@@ -13,7 +13,7 @@ struct AssessProgram {
   std::function<QStringList(const QString& file, const QString& database, int threads)> arguments;
   /// Whether an exit code says that the recording is at fault: damaged, or in conflict with the cohort.
   std::function<bool(int exitCode)> refused;
-  /// What people type to assess a recording into this database.
+  /// Command line that assesses a recording into this database.
   std::function<QString(const QString& database)> typed;
 };
 

@@ -36,7 +36,7 @@ struct SheetRequest {
 
 /// The attempt on one page: verdict, critical view, errors, key figures, what went wrong and when.
 [[nodiscard]] analytics::ReportDocument attemptDocument(const SheetRequest& request);
-/// What the scene looked like at these moments. @throws Error, LongWork::Broken
+/// Pictures of the scene at these moments. @throws Error, LongWork::Broken
 [[nodiscard]] std::vector<Image> picturesAt(const std::filesystem::path& recording, const std::string& attempt,
                                             const std::vector<WorstMoment>& moments, LongWork::Control& control);
 /// Work for LongWork: one page with pictures, as PDF.

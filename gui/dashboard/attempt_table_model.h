@@ -43,7 +43,7 @@ class AttemptTableModel : public QAbstractTableModel {
   std::shared_ptr<const AttemptLines> lines_;
 };
 
-/// Which attempts the table shows, and in which order.
+/// Filter and order of the attempts in the table.
 class AttemptFilter : public QSortFilterProxyModel {
   Q_OBJECT
  public:

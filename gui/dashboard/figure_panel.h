@@ -59,7 +59,7 @@ class FigurePanel : public QWidget {
   /// Moments worth a picture: of figures that fall short of the norm, then of those that count, apart in time.
   [[nodiscard]] std::vector<WorstMoment> worstMoments() const;
   [[nodiscard]] const std::vector<TrackEvent>& events() const { return trackEvents_; }
-  /// What it is held against; null where there is none, or the attempt is not judged.
+  /// Norm used; null if none is selected or the attempt is not judged.
   [[nodiscard]] const analytics::Norm* norm() const;
   [[nodiscard]] const CheckpointTableModel& figures() const { return figures_; }
   /// Goes to the moments of a figure as soon as they are known.

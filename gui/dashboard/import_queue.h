@@ -10,7 +10,7 @@
 
 namespace calot::gui {
 
-/// What became of one recording.
+/// Result for one recording.
 struct ImportResult {
   enum class Kind {
     stored,   ///< it is an attempt of the cohort, whatever its verdict
@@ -22,7 +22,7 @@ struct ImportResult {
   QString text;  ///< "✓ verified, new in the cohort"; or why not
 };
 
-/// What the program said of one file, in JSON. @param crashed it did not end by itself
+/// Parses the program's JSON result for one file. @param crashed true if it did not end by itself
 ImportResult importResultOf(const AssessProgram& program, const QString& file, int exitCode, bool crashed,
                             const QByteArray& output, const QByteArray& errors);
 
@@ -38,7 +38,7 @@ class ImportQueue : public QObject {
   explicit ImportQueue(AssessProgram how, QObject* parent = nullptr);
   ~ImportQueue() override;
 
-  /// Which program and which database the next recordings go through. @pre not busy()
+  /// Sets program and database for the next recordings. @pre not busy()
   void configure(const QString& program, const QString& database, int threads);
   /// Puts recordings behind those that wait; starts.
   void add(const QStringList& files);

@@ -32,7 +32,7 @@ class PairPage : public QWidget {
   /// Where a side is still free: puts the newest attempts on both.
   void chooseTwo();
   void showMiddle();  ///< the middle of what both show, where both are open
-  /// Whether both stand where they were sent to, with their timelines.
+  /// True if both are at their targets, with their timelines.
   [[nodiscard]] bool settled() const;
   [[nodiscard]] Replay& replay(std::size_t side) { return sides_[side]->replay(); }
 

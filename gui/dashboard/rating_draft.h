@@ -49,7 +49,7 @@ std::optional<analytics::Rating> earlierRating(const std::vector<analytics::Rati
                                                const analytics::RatingForm& form, const std::string& attempt,
                                                const std::string& rater, const std::string& participant);
 
-/// What a draft is of.
+/// Identity of a draft.
 struct DraftSubject {
   std::string database, form;
   std::uint32_t formVersion = 1;

@@ -67,7 +67,7 @@ QImage forestPicture(const analytics::Study& study, const QFont& font, double ra
   return image;
 }
 
-/// What the study's text looks like on the page that asked for it.
+/// Layout of the study's text on the page that requested it.
 struct TextLook {
   QFont font;
   QTextOption option;

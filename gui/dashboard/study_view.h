@@ -11,7 +11,7 @@
 
 namespace calot::gui {
 
-/// What a person chooses on the study page.
+/// Choices made on the study page.
 struct StudyRequest {
   GroupBy groupBy = GroupBy::group;  ///< group or profile
   bool includeSynthetic = false;
@@ -40,7 +40,7 @@ std::vector<std::string> groupsOf(const std::vector<analytics::AttemptRow>& atte
 /// Address under which a page shows the forest plot of studyText().
 inline constexpr const char* forestAddress = "study:forest";
 
-/// Whether a protocol was registered before the first attempt, in one line.
+/// States in one line whether a protocol was registered before the first attempt.
 std::string registrationText(const analytics::Study& study);
 
 /// Title, registration, first result with its forest plot (forestAddress, where there is one), coverage by group, then

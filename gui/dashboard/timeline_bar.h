@@ -22,7 +22,7 @@ class TimelineBar : public QWidget {
  public:
   explicit TimelineBar(QWidget* parent = nullptr);
   void setTrack(AttemptTrack track);
-  /// What stands there without a track.
+  /// Text shown without a track.
   void setText(const QString& text);
   void setPosition(double time);
   /// Windows to be marked: a figure's moments.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is done to the attempts that are selected.
-// What the dashboard asks the user for.
+// Actions on the selected attempts.
+// Dialogs of the dashboard.
 
 #include <filesystem>
 #include <QFileDialog>

@@ -50,7 +50,7 @@ Function extension(const char* name) {
   return reinterpret_cast<Function>(eglGetProcAddress(name));
 }
 
-/// Whether a list of words, one space between two, has this one.
+/// True if a space-separated list contains this word.
 bool names(const char* list, const std::string& word) {
   return list != nullptr && fmt::format(" {} ", list).find(fmt::format(" {} ", word)) != std::string::npos;
 }
@@ -122,7 +122,7 @@ class EglContext final : public GraphicsContext {
   Function function(const char* name) const override { return eglGetProcAddress(name); }
   const char* way() const override { return "EGL"; }
 
-  /// Why there is no context; empty where there is one.
+  /// Reason why there is no context; empty if there is one.
   [[nodiscard]] const std::string& fault() const { return fault_; }
 
  private:

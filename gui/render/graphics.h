@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which OpenGL draws the pictures.
+// Choice of the OpenGL implementation.
 #pragma once
 
 #include <memory>

@@ -14,7 +14,7 @@ class GraphicsContext {
   /// Address of an OpenGL function, or null.
   using Function = void (*)();
   [[nodiscard]] virtual Function function(const char* name) const = 0;
-  /// What it was made by: "OSMesa".
+  /// Name of the context: "OSMesa".
   [[nodiscard]] virtual const char* way() const = 0;
 };
 

@@ -17,7 +17,7 @@ namespace calot::gui {
 /// interactive: one sample a pixel, coarse occlusion; film: four samples a pixel, fine occlusion, soft shadow.
 enum class Quality { interactive, film };
 
-/// What is drawn around the scene.
+/// Surroundings drawn around the scene.
 struct RenderSettings {
   Quality quality = Quality::film;
   bool endoscopeMask = true;  ///< the round field of an endoscope with its vignetting, black outside
@@ -55,7 +55,7 @@ class Renderer {
     settings.quality = quality;
     return render(view, width, height, settings);
   }
-  /// What draws, in words: "OSMesa, llvmpipe (LLVM 15.0.6, 256 bits)".
+  /// Description of the renderer: "OSMesa, llvmpipe (LLVM 15.0.6, 256 bits)".
   [[nodiscard]] const std::string& graphics() const;
 
  private:

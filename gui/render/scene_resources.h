@@ -53,7 +53,7 @@ class ScenePrograms {
   ScenePrograms(const GlFunctions& gl, const char* choices);
 };
 
-/// What each texture unit is for.
+/// Use of each texture unit.
 enum TextureUnit : int {
   noiseUnit = 0,
   occlusionUnit = 1,
@@ -91,7 +91,7 @@ class SceneTextures {
   GLuint veins_ = 0;
 };
 
-/// What the passes of a picture of one size and quality draw on.
+/// Render targets of a picture of one size and quality.
 struct PictureTargets {
   /// @throws calot::Error (failure) if there is no memory for them.
   PictureTargets(const GlFunctions& gl, int width, int height, Quality quality);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What lies around a scene without being of it: decoration, which stands still and touches nothing.
+// Decoration around a scene: static, without contact.
 #pragma once
 
 #include <span>

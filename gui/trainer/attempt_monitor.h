@@ -22,7 +22,7 @@ namespace calot::gui {
 /// So long before a mistake a branch sets out (s).
 inline constexpr double goBackBy = 2.0;
 
-/// What went wrong in one step with one structure, or again and again within a second.
+/// An error in one step with one structure, or repeated within a second.
 struct Mistake {
   double time = 0.0;      ///< of the attempt, when it first happened (s)
   bool critical = false;  ///< fails an assessment
@@ -49,7 +49,7 @@ class MistakeList {
   std::vector<double> last_;  ///< per mistake, when it last happened (s)
 };
 
-/// What an attempt is at, for the window.
+/// State of an attempt, for the window.
 struct AttemptFigures {
   struct Hand {
     InstrumentKind instrument = InstrumentKind::none;

@@ -16,7 +16,7 @@ constexpr std::array<std::size_t, handCount> each{0, 1};
 
 using Hands = std::array<AttemptFigures::Hand, handCount>;
 
-/// Whether some hand did it.
+/// True if either hand did it.
 template <class Did>
 bool anyHand(const Hands& before, const Hands& now, Did did) {
   return std::any_of(each.begin(), each.end(), [&](std::size_t h) { return did(before[h], now[h]); });

@@ -28,7 +28,7 @@ class ControlsTutorial {
   [[nodiscard]] QString text() const;
 
  private:
-  /// What an attempt looked like when a control was asked for.
+  /// State of the attempt when a control was requested.
   struct Begin {
     AttemptFigures figures;
     std::optional<Hand> driven;

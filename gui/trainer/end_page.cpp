@@ -39,7 +39,7 @@ QString figureWords(const FigureReport& figure) {
   return text;
 }
 
-/// What is stored, or why nothing is.
+/// Where the recording is stored, or why it is not.
 QString putIntoCohort(const std::filesystem::path& file, const std::filesystem::path& cohort, unsigned threads,
                       LongWork::Control& control) {
   analytics::AssessSettings settings;

@@ -50,7 +50,7 @@ constexpr std::array<std::pair<int, int>, 5> instrumentKeys{{{Qt::Key_1, Qt::Key
                                                              {Qt::Key_4, Qt::Key_8},
                                                              {Qt::Key_9, Qt::Key_0}}};
 
-/// What a key mounts, if it does.
+/// Instrument that a key mounts, if any.
 std::optional<KeyAction> mountOf(int key) {
   for (std::size_t i = 0; i < std::min(instruments().size(), instrumentKeys.size()); ++i) {
     const auto& [driven, other] = instrumentKeys[i];

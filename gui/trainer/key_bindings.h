@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which key does what in the picture of the operation.
+// Key bindings in the picture of the operation.
 #pragma once
 
 #include <optional>

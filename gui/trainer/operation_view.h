@@ -48,7 +48,7 @@ class OperationView : public ScenePictureWidget {
                          std::shared_ptr<recorder::ScopeInput> scope = nullptr, QWidget* parent = nullptr);
   ~OperationView() override;
 
-  /// Whether a run is there to take what is done.
+  /// True if a run accepts input.
   void setActive(bool active);
   /// Does the picture hold the pointer?
   [[nodiscard]] bool holdsPointer() const { return holds_; }

@@ -68,7 +68,7 @@ class PictureRate {
  public:
   using Time = std::chrono::steady_clock::time_point;
 
-  /// Whether the operation moves from now on.
+  /// Sets whether the operation moves from now on.
   void setRunning(bool running);
   /// A picture came on the screen. @param side its share of the size that it is shown in. @param delay since the last
   /// motion that is in it (s); none where that is not known

@@ -159,7 +159,7 @@ bool acts(const AttemptFigures::Hand& hand, InstrumentAction action) {
   return instrumentOf(hand.instrument).action == action;
 }
 
-/// What to mount first, or nothing where a hand has an instrument that does this.
+/// Instrument to mount first; empty if a hand holds one that does this.
 std::string take(const AttemptFigures& figures, InstrumentAction action) {
   if (std::any_of(figures.hand.begin(), figures.hand.end(), [action](const auto& h) { return acts(h, action); }))
     return "";
@@ -194,7 +194,7 @@ std::string vesselHint(const SceneDescription& scene, const AttemptFigures& figu
   return {};
 }
 
-/// What the critical view still lacks, or nothing where it is satisfactory.
+/// Missing criteria of the critical view; empty if it is satisfactory.
 std::string viewHint(const SceneDescription& scene, const AttemptFigures& figures) {
   const ProcedureStatus& p = figures.procedure;
   if (p.criticalViewFrozen || p.criticalView() >= JudgementRules().satisfactory) return {};

@@ -29,7 +29,7 @@ class RunPanel;
 class ScenesPage;
 class Voice;
 
-/// What a window is made for, whatever the scene.
+/// Settings of a window, independent of the scene.
 struct TrainerSetup {
   TrainingSettings settings;                    ///< its scene is left empty
   std::shared_ptr<AttemptInput> input;          ///< not null
@@ -45,7 +45,7 @@ struct TrainerSetup {
 class TrainerWindow : public QMainWindow {
   Q_OBJECT
  public:
-  /// What an attempt is for.
+  /// Purpose of an attempt.
   enum class Purpose {
     own,            ///< the trainee's
     controls,       ///< the trainee's, who is asked for one control after the other; in practice

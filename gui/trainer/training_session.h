@@ -37,7 +37,7 @@ struct TrainingSettings {
   std::chrono::milliseconds exchange{3000};   ///< an exchange of instruments takes so long of the attempt
 };
 
-/// What the session is at.
+/// State of the session.
 enum class Stage : std::uint8_t {
   preparing,     ///< a scene is built, a device waited for
   takingParent,  ///< going back: the parent's steps are simulated again

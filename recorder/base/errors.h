@@ -10,7 +10,7 @@
 
 namespace calot {
 
-/// What went wrong.
+/// Kinds of errors.
 enum class ErrorKind : std::uint8_t {
   failure,    ///< the machine: disk full, no memory, a device that is gone, another program in the way
   invalid,    ///< the request: a name, a value or an output that cannot be
@@ -19,7 +19,7 @@ enum class ErrorKind : std::uint8_t {
   undecided,  ///< this build cannot decide: the input is of another version
 };
 
-/// What would resolve an error. Programs put it into words of their own: a flag, a command, a control of a window.
+/// Remedies of an error. Programs phrase them: a flag, a command, a control of a window.
 enum class Remedy : std::uint8_t {
   replaceExisting,        ///< ask for what is there to be replaced
   recover,                ///< save what a recording that is cut off still holds

@@ -20,7 +20,7 @@ enum class Mode : std::uint8_t { practice = 0, assessment = 1 };
 inline constexpr std::uint32_t formatVersion = 2;
 inline constexpr std::uint32_t oldestFormatVersion = 1;
 
-/// What a source says of itself; copied into every recording that it feeds.
+/// A source's description of itself; copied into every recording that it feeds.
 struct Provenance {
   OperatorKind kind = OperatorKind::performer;
   std::string profile;  ///< performer's profile name, or empty

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What somebody may have meant who mistyped a word.
+// Suggestions for a mistyped word.
 #pragma once
 
 #include <cstddef>

@@ -14,7 +14,7 @@ class ProgramFiles {
  public:
   /// @param programs the folder of the programs
   explicit ProgramFiles(std::filesystem::path programs);
-  /// Of the program that runs.
+  /// Folder of the running program.
   static ProgramFiles ofThisProgram();
 
   /// Where the programs are.

@@ -28,7 +28,7 @@ struct RecordedProcedure {
   bool operator==(const RecordedProcedure&) const = default;
 };
 
-/// What a program that is an engine has given up. Numbers are of schemas/engine.md.
+/// Failure of an engine program. Numbers are those of schemas/engine.md.
 enum class Confinement : std::uint8_t {
   none = 0,
   own = 1,     ///< everything but reading, writing, computing and ending
@@ -49,7 +49,7 @@ struct StepInput {
   float lateness = 0.0F;
 };
 
-/// What a step came to. Valid until the engine's next call.
+/// Result of a step. Valid until the engine's next call.
 struct EngineStep {
   std::uint64_t step = 0;
   std::span<const TickOutcome> ticks;
@@ -94,7 +94,7 @@ class Engine {
   virtual void announce(const StepInput& /*input*/) {}
   /// Of the last step. @pre steps() > 0
   [[nodiscard]] virtual Keyframe keyframe() = 0;
-  /// What is to be drawn now.
+  /// Scene view of the present state.
   [[nodiscard]] virtual SceneView view() = 0;
   /// How a keyframe differs from the engine's own after the last step.
   [[nodiscard]] virtual std::optional<KeyframeDifference> explain(const Keyframe& recorded) = 0;

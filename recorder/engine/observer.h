@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What watches the loop: the recording's writer, the divergence check, checkpoints, a view. Live, scripted and replayed
+// Observers of the loop: the recording's writer, the divergence check, checkpoints, a view. Live, scripted and replayed
 // runs feed the same observers.
 #pragma once
 
@@ -18,7 +18,7 @@
 
 namespace calot::recorder {
 
-/// What the haptic tick did for one hand.
+/// Result of a haptic tick for one hand.
 struct HandTick {
   Vec3 force = Vec3::Zero();     ///< f_W on the operator's hand (N)
   Vec3 torque = Vec3::Zero();    ///< about the instrument's tip, in W (N m)

@@ -85,7 +85,7 @@ class Session {
   [[nodiscard]] const HapticStates& haptics() const { return haptic_; }
   [[nodiscard]] const ContactSets& contactSets() const { return setsOf(newest_); }
 
-  /// What is to be drawn now.
+  /// Scene view of the present state.
   [[nodiscard]] SceneView view();
 
  private:

@@ -58,7 +58,7 @@ nlohmann::ordered_json holesJson(const MeshReport& report) {
   return holes;
 }
 
-/// What stuffToCount() found; of a mesh that nobody asked for, nothing.
+/// Result of stuffToCount(); empty for a mesh that was not requested.
 void addStuffed(nlohmann::ordered_json& json, const StuffedMesh& stuffed) {
   const StuffingReport& r = stuffed.report;
   if (r.requested == 0) return;

@@ -11,7 +11,7 @@
 
 namespace calot::recorder {
 
-/// What an organ's surface costs, as far as its resolution decides.
+/// Cost of an organ's surface, as far as its resolution decides.
 struct ContactCost {
   std::string organ;
   std::size_t triangles = 0;

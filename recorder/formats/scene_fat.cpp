@@ -78,7 +78,7 @@ FatAttachmentDescription readAttachment(const JsonPlace& place, const std::vecto
   return attachment;
 }
 
-/// What is to be cleared.
+/// Region to be cleared.
 void readTriangle(const JsonPlace& place, FatDescription& fat) {
   const JsonObject object = place.object(sceneRule("fatTriangle"));
   static const KeyRule bounds = sceneCoordinate();

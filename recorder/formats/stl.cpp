@@ -41,7 +41,7 @@ bool beginsWithSolid(std::span<const std::byte> bytes) {
   return word == "solid";
 }
 
-/// Why a coordinate in metres is none; empty: it is one.
+/// Explains why the unit cannot be metres; empty if it can.
 std::string coordinateFault(double value) {
   if (std::abs(value) <= farthestCoordinate) return {};
   return fmt::format("a coordinate of {} m: is the unit right?", value);

@@ -35,11 +35,11 @@ const EnginePlaces& enginePlaces();
 /// Every engine in the folders, by version, in the order in which it would be taken.
 std::vector<KeptEngine> listEngines();
 
-/// What starts an engine's file. @throws Error (damaged) where there is no such file; (failure) where nothing here runs
-/// a module
+/// Command that starts an engine's file. @throws Error (damaged) where there is no such file; (failure) where nothing
+/// here runs a module
 std::vector<std::string> commandOf(const std::filesystem::path& file);
 
-/// What starts the engine of a version that decides: empty where there is none.
+/// Command that starts the engine of a version; empty if there is no such engine.
 std::vector<std::string> commandOfEngine(std::uint32_t version);
 
 /// The places of an installed or built program: CALOT_ENGINES (folders, a colon between two) where it is set, else the

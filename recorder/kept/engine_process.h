@@ -23,7 +23,7 @@ class ResultReader {
  public:
   explicit ResultReader(const AttemptHeader& header);
 
-  /// What is wrong with the columns that an engine declares for these recordings; empty: nothing.
+  /// Describes faults of the columns that an engine declares for these recordings; empty if there are none.
   [[nodiscard]] std::string fault(const std::vector<wire::Column>& declared) const;
   /// Reads a row. @param procedure of version 3 alone
   /// @return what of it no engine makes, or nothing @pre fault() had nothing to say

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What one flush writes: rows of every column, as bytes. Internal to this folder.
+// Rows written by one flush, as bytes of every column. Internal to this folder.
 // The content chain (schemas/recording.md, "Content chain") has one link a flush: BLAKE2b-256 over decoded values.
 #pragma once
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a device measured, and how it gets into the recording. Frame D is the device's own.
+// Measurements of a device, and their way into the recording. Frame D is the device's own.
 #pragma once
 
 #include <array>

@@ -47,7 +47,7 @@ class CodedKeyframe {
   /// @param index of the keyframe
   CodedKeyframe(std::span<const std::uint64_t> words, std::uint64_t index);
 
-  /// What is wrong with them, as far as can be seen without the base; empty: nothing.
+  /// Describes faults that are visible without the base; empty if there are none.
   [[nodiscard]] const std::string& fault() const { return fault_; }
   [[nodiscard]] const std::optional<std::uint64_t>& base() const { return base_; }
 

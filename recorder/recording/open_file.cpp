@@ -93,7 +93,7 @@ constexpr std::size_t maxLinkName = 255;
 constexpr std::uint64_t mostUnfolding = 1040;
 constexpr unsigned externalFiles = 7;  ///< type of the message that names them (HDF5 File Format Specification 3.0)
 
-/// What stands in a group.
+/// Members of a group.
 struct Links {
   std::vector<std::string> names;
   const char* fault = nullptr;  ///< of the one that comes next; its name is `at`

@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::uint64_t mebibyte = std::uint64_t{1} << 20U;
 
-/// What a task came to, as it is sent: its result or the error that it threw.
+/// Outcome of a task, as sent: its result or the error that it threw.
 struct Answer {
   std::uint8_t failed = 0;
   std::string result;
@@ -92,7 +92,7 @@ void limitMemory(std::size_t bytes) {
   ::setrlimit(RLIMIT_AS, &limit);
 }
 
-/// What a guarding process is asked.
+/// Request to a guarding process.
 struct Request {
   std::int64_t seconds = 0;
   std::uint64_t memory = 0;
@@ -104,7 +104,7 @@ struct Request {
   }
 };
 
-/// What a guarding process does until its parent closes the connection.
+/// Main loop of a guarding process, until its parent closes the connection.
 void serve(const Channel& parent, const GuardProcesses::Task& task) {
   // What this process holds open (a pipe to another program, a file's lock) is not to stay open by a copy of it.
   const auto own = static_cast<unsigned>(parent.descriptor());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a recording holds, data set by data set: for readers of whole columns, such as the Python module.
+// Data sets of a recording, for readers of whole columns such as the Python module.
 #pragma once
 
 #include <cstddef>

@@ -41,7 +41,7 @@ bool looksLikeHdf5(const std::filesystem::path& path);
 /// @throws Error damaged: a folder or file is not there or cannot be read.
 std::vector<std::filesystem::path> filesUnder(const std::vector<std::filesystem::path>& places);
 
-/// What one group at a recording's root takes in its file.
+/// Size of one group at a recording's root in its file.
 struct StoredBytes {
   std::string group;  ///< "keyframes"; "structure": object headers, indexes of chunks, and what is unused
   std::uint64_t bytes = 0;

@@ -7,7 +7,7 @@
 
 namespace calot::recorder {
 
-/// What recover() saved.
+/// Result of recover().
 struct Recovered {
   std::uint64_t steps = 0;  ///< saved
   std::uint64_t ticks = 0;  ///< saved

@@ -28,7 +28,7 @@ class ControllerSamples {
  public:
   explicit ControllerSamples(const SceneDescription& scene);
 
-  /// What the hands were last commanded to; at first at home, with the scene's instruments, jaws closed.
+  /// Last commanded pose of the hands; at first at home, with the scene's instruments, jaws closed.
   [[nodiscard]] const HandCommands& hands() const { return hand_; }
 
   /// From the next step on the endoscope is here.

@@ -73,7 +73,7 @@ struct PerformerProfile {
     double patience = 0.0;         ///< after which the attempt is given up (s)
   } operation;
 
-  /// Of the assistant who holds the endoscope, where it moves (ScopeAssistant).
+  /// Profile of the assistant who holds the endoscope, where it moves (ScopeAssistant).
   ScopeSkill scope;
 };
 

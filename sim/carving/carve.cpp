@@ -195,7 +195,7 @@ NodeBox nodesWithin(const BrickLattice& lattice, const Box& bounds) {
 
 namespace {
 
-/// What a node's field can rise to in this step.
+/// Upper bound of a node's field in this step.
 double risen(std::span<const SweptCapsule> tool, const NodeLanes& lanes, int lane, double value, double rise) {
   const MovingPoint node{{lanes.before[0][lane], lanes.before[1][lane], lanes.before[2][lane]},
                          {lanes.now[0][lane], lanes.now[1][lane], lanes.now[2][lane]}};

@@ -82,7 +82,7 @@ void surfaceContacts(const SurfacePair& pair, const ContactSurface& a, std::span
   }
 }
 
-// What the reference configuration says about two surfaces.
+// Facts about two surfaces in the reference configuration.
 
 SurfacePair::SurfacePair(const ContactSurface& vertices, std::span<const Vec3> vertexRest,
                          const ContactSurface& triangles, std::span<const Vec3> triangleRest)

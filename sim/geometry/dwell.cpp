@@ -19,7 +19,7 @@ StepInterval both(const StepInterval& a, const StepInterval& b) {
   return {std::max(a.from, b.from), std::min(a.to, b.to)};
 }
 
-/// Of two parts of one convex region.
+/// Union of two parts of one convex region.
 StepInterval hull(const StepInterval& a, const StepInterval& b) {
   if (a.empty()) return b;
   if (b.empty()) return a;

@@ -144,7 +144,7 @@ bool WeightSystem::solve(WeightMotion& out) {
   return true;
 }
 
-/// Of each body in K.
+/// Index of each body in K.
 std::vector<double> stiffeningOf(const Model& model) {
   std::vector<double> out;
   for (const OrganModel& organ : model.organs()) {

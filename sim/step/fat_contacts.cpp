@@ -109,7 +109,7 @@ FatContacts::FatContacts(const Model& model, const TissueTravel& travel) : model
   invalidate();
 }
 
-/// Which of its ties hold which cube to what.
+/// Ties of each cube.
 void FatContacts::tie(Fat& fat) {
   const FatModel& fixed = *model_.fat()[fat.index];
   const std::size_t cubes = fixed.solid().cubes().size();
@@ -203,7 +203,7 @@ FatContacts::Nearest FatContacts::nearestOn(Surfaces& surfaces, const TissueTrav
   return out;
 }
 
-/// Of a cube's middle from a target's surface or axis, both at rest (m).
+/// Distance of a cube's centre from a target's surface or axis, both in the reference configuration (m).
 double FatContacts::restDistance(const TissueTravel& travel, const Target& target, const Fat& fat, std::size_t cube,
                                  Pair& pair) {
   double& distance = pair.restDistance[cube];

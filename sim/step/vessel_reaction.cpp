@@ -141,7 +141,7 @@ void VesselReaction::addTo(ConjugateGradient& organ, ConjugateGradient& fat) {
   }
 }
 
-/// What the organ does to it.
+/// Contribution of the organ.
 void VesselReaction::addGrown(ConjugateGradient& organ) {
   heldResponse_.assign(held_.size(), Vec3::Zero());
   for (std::size_t i = 0; i < held_.size(); ++i) {

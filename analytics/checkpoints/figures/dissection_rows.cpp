@@ -47,7 +47,7 @@ class GrowthInPhase {
   double growth_ = 0.0;
 };
 
-/// Of all organs' skins, so far (m^2, in the reference configuration).
+/// Area over all organs' skins, so far (m^2, in the reference configuration).
 double charredArea(const StepResult& result) {
   double area = 0.0;
   for (const OrganResult& organ : result.organ) area += organ.charredArea;
@@ -77,7 +77,7 @@ struct GallbladderBed {
     torn = tornSum / beds;
     any = true;
   }
-  /// Of all the beds (m^2).
+  /// Area of all beds (m^2).
   [[nodiscard]] double area() const {
     double sum = 0.0;
     for (const SceneFacts::Connective& tissue : context.scene.connective)
@@ -111,7 +111,7 @@ struct ConnectiveTorn {
   [[nodiscard]] Measured figure() const { return Measured::of(bed.torn); }
 };
 
-/// What was charred for each part of the bed that came free.
+/// Charred area for each part of the bed that came free.
 struct BurnPerBed {
   const AttemptContext& context;
   GallbladderBed bed{context};

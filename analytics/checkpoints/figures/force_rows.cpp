@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What each hand felt, and what each organ, vessel and body of fat had to bear.
+// Forces on each hand, and on each organ, vessel and body of fat.
 #include "analytics/checkpoints/force.h"
 
 #include <algorithm>

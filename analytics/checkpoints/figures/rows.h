@@ -20,7 +20,7 @@ std::vector<CheckpointEntry> contactRows();     ///< times that instruments touc
 std::vector<CheckpointEntry> dissectionRows();  ///< fat, bed and burns
 std::vector<CheckpointEntry> safetyRows();      ///< clips, cautery in the air, injuries, critical view
 
-/// What a scene must have for a figure.
+/// Precondition on the scene for a figure.
 inline constexpr Requirement hasProcedure{[](const AttemptContext& context) { return context.procedure; },
                                           "the scene has no procedure"};
 inline constexpr Requirement hasVessels{[](const AttemptContext& context) { return !context.scene.vessel.empty(); },

@@ -75,7 +75,7 @@ class CurrentInTheAir {
     counted_ += counts(stretch_);
     stretch_ = 0;
   }
-  /// Of all stretches that are long enough, the present one among them.
+  /// Sum over all stretches that are long enough, including the present one.
   [[nodiscard]] Measured figure(const AttemptEnd& end) const {
     if (!hook_) return Measured::notApplicable("no hook in this hand");
     return Measured::of(context_.seconds(counted_ + counts(stretch_)), stretchNote(end));

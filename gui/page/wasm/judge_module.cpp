@@ -22,7 +22,7 @@ namespace {
 using namespace calot;
 namespace wire = recorder::wire;
 
-/// What an attempt is judged by.
+/// State of the judge for one attempt.
 struct Begin {
   std::vector<wire::File> files;      ///< the scene file first
   std::vector<wire::Column> columns;  ///< of a row of results

@@ -33,7 +33,7 @@ __attribute__((export_name("calot_place"))) std::byte* calot_place(std::uint32_t
   return calot::page::placed().data();
 }
 
-/// What was thrown, as text that ends with a zero byte; empty: nothing.
+/// Message of the exception, zero-terminated; empty if there was none.
 __attribute__((export_name("calot_thrown"))) const char* calot_thrown() { return text().c_str(); }
 
 void* __cxa_allocate_exception(std::size_t bytes) noexcept { return std::malloc(bytes); }

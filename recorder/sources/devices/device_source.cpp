@@ -132,7 +132,7 @@ void DeviceSource::gather() {
   if (begun_) fresh_.insert(fresh_.end(), input_.samples.begin(), input_.samples.end());
 }
 
-/// What came before the attempt is no part of it, but for what its first tick finds.
+/// Drops samples from before the attempt, except the one that its first tick uses.
 void DeviceSource::beginAttempt() {
   gather();
   begun_ = true;

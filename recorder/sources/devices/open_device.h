@@ -33,7 +33,7 @@ std::string deviceUsage(std::string_view last = "or");
 OpenedDevice openDevice(const std::string& name, const std::array<std::string, handCount>& tools,
                         const Calibration* calibration = nullptr, std::optional<Hand> hand = std::nullopt);
 
-/// What could be opened, of all kinds.
+/// Devices that can be opened, of all kinds.
 std::vector<ListedDevice> listDevices();
 
 /// A device that never moves: both hands stay at D's origin, with one sample per millisecond of the tick clock. For

@@ -58,7 +58,7 @@ class MouseInput {
   /// there.
   void setEyes(const std::array<Vec3, handCount>& eyes);
 
-  /// What the device takes at each of its samples.
+  /// Input of the device at each of its samples.
   struct Wish {
     Hand hand = Hand::right;
     std::array<double, 2> pixels{};  ///< right and down, since the last one
@@ -78,7 +78,7 @@ class MouseInput {
   Wish wish_;
 };
 
-/// What the endoscope does while a key is pressed.
+/// Motion of the endoscope while a key is pressed.
 enum class ScopeControl : std::uint8_t {
   right,  ///< looks to the right, ...
   left,

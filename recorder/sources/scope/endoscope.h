@@ -10,7 +10,8 @@
 
 namespace calot::recorder {
 
-/// What an assistant moves: the shaft about its port, in and out and about itself, and the camera head on it.
+/// Degrees of freedom of the endoscope: the shaft about its port, in and out and about itself, and the camera head on
+/// it.
 struct ScopeJoints {
   double pan = 0.0;        ///< of the shaft to the right, about the vertical of the scene's camera (rad)
   double tilt = 0.0;       ///< of the shaft upwards, about its level axis (rad)

@@ -71,7 +71,7 @@ class FrameSource {
   [[nodiscard]] virtual int height() const = 0;
   [[nodiscard]] virtual double rate() const = 0;  ///< nominal (1/s)
   [[nodiscard]] virtual std::string name() const = 0;
-  /// Why it was lost, or how the file ended; one line.
+  /// Reason of the loss, or how the file ended; one line.
   [[nodiscard]] virtual std::string reason() const { return {}; }
 };
 

@@ -21,7 +21,7 @@ struct SeenFrame {
   std::vector<SeenTag> tags;
 };
 
-/// Why a handle has no pose.
+/// Reason why a handle has no pose.
 enum class PoseFault : std::uint8_t {
   none,
   unseen,        ///< too few of its tags

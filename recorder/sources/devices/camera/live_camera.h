@@ -25,7 +25,7 @@ class LiveCamera final : public FrameSource {
   [[nodiscard]] double rate() const override { return rate_; }
   [[nodiscard]] std::string name() const override { return file_; }
   [[nodiscard]] std::string reason() const override { return reason_; }
-  /// What the driver calls it, and where it is plugged in.
+  /// The driver's name for it, and its connection.
   [[nodiscard]] const std::string& card() const { return card_; }
 
   /// /dev/videoN that capture pictures, with the driver's name of them. Does not throw.

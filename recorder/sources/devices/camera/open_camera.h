@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What behind "camera:" is asked for.
+// Request behind "camera:".
 #pragma once
 
 #include <memory>

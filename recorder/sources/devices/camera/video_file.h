@@ -52,9 +52,9 @@ using HeldAv = std::unique_ptr<T, FreeAv>;
 /// A decoder on one thread, and the conversion of what it gives. Luminance is passed on as the picture holds it.
 class GreyDecoder {
  public:
-  /// Of a stream of a file. @returns false where libav has no decoder for it
+  /// Opens a stream of a file. @returns false where libav has no decoder for it
   bool open(const AVCodecParameters& parameters);
-  /// Of motion JPEG, which cameras send.
+  /// Opens motion JPEG, which cameras send.
   bool openMotionJpeg();
 
   [[nodiscard]] AVCodecContext* context() const { return context_.get(); }

@@ -76,13 +76,13 @@ class EnergyTank {
   std::size_t first_ = 0, count_ = 0;
 };
 
-/// What a device states of one of its handles.
+/// Capabilities of one of a device's handles.
 struct HandleModel {
   TankModel force;   ///< N, m
   TankModel torque;  ///< N m, rad
 };
 
-/// What a device measured of a handle since the last measurement, and what its motors did meanwhile.
+/// Measurement of a handle since the last one, and the work of its motors meanwhile.
 struct HandleMeasurement {
   Vec3 position = Vec3::Zero();  ///< m, in D
   Quat orientation = Quat::Identity();
@@ -105,7 +105,7 @@ struct ForceStatistics {
 /// A line for people: "force on the left hand: ...".
 std::string forceReport(const char* hand, const ForceStatistics& statistics);
 
-/// What both hands' outputs did, for a thread that asks while another one drives the device.
+/// State of both hands' outputs, for a thread that reads while another one drives the device.
 class ForceReports {
  public:
   void note(std::size_t hand, const ForceStatistics& statistics);

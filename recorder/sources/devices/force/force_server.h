@@ -73,7 +73,7 @@ struct ForceServerSettings {
   bool once = false;  ///< end when the first client has gone
 };
 
-/// What the hand intends: its path, roll, jaw and buttons.
+/// Intention of the hand: its path, roll, jaw and buttons.
 struct Intention {
   Vec3 position = Vec3::Zero();
   Quat orientation = Quat::Identity();
@@ -102,7 +102,7 @@ class ForceServer {
   ForceServer(const DeviceScript* motion, const ForceServerSettings& settings);
 
   [[nodiscard]] int port() const { return listener_.port(); }
-  /// What it says of itself.
+  /// Its description.
   [[nodiscard]] const forcewire::Hello& hello() const { return hello_; }
 
   /// Runs until `stop`, or with `once` until the first client has gone.

@@ -19,7 +19,7 @@ inline constexpr std::uint16_t version = 1;
 inline constexpr int defaultPort = 18950;
 inline constexpr std::size_t maxText = 200;
 
-/// What a device is: its first frame.
+/// Description of a device: its first frame.
 struct Hello {
   std::uint16_t version = forcewire::version;
   std::uint8_t hands = 2;         ///< bit 0 left, bit 1 right
