@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a step came to, kept beyond the step as plain bytes: arrays of numpy look at them.
+// Result of a step, kept beyond the step as plain bytes: arrays of numpy look at them.
 #pragma once
 
 #include <array>

@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <functional>
 
-#include "recorder/loop.h"
 #include "recorder/engine/session.h"
+#include "recorder/loop.h"
 #include "recorder/recording/reader.h"
 #include "recorder/sources/source.h"
 

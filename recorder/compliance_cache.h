@@ -53,7 +53,7 @@ class SharedCompliances final : public ComplianceStore {
   bool refuted_ = false;
 };
 
-/// What the compliances of a scene depend on, as a name: SHA-256 over the simulation version and the names and bytes of
+/// Key of a scene's compliances, as a name: SHA-256 over the simulation version and the names and bytes of
 /// its files.
 std::string complianceKey(const std::vector<Asset>& assets);
 

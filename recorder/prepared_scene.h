@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What all runs of a scene share, worked out once: its Model, and compliances as they come to be needed.
+// Shared by all runs of a scene: its Model, and compliances as they are needed.
 #pragma once
 
 #include <filesystem>

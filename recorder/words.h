@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What people read for the recording's enumerations. What files store is spelled in recording/header.h.
+// Words for the recording's enumerations. Stored spellings are those of recording/layout.h.
 #pragma once
 
 #include "recorder/base/identity.h"

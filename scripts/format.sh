@@ -6,5 +6,5 @@ source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 mode=(-i)
 if [[ ${1:-} == --check ]]; then mode=(--dry-run -Werror); fi
-find "$root"/{sim,recorder,analytics,gui,apps,assets,tests} \( -name '*.h' -o -name '*.cpp' \) -print0 |
+find "$root"/{sim,recorder,analytics,gui,apps,python,tests} \( -name '*.h' -o -name '*.cpp' \) -print0 |
   xargs -0 --no-run-if-empty --max-args=20 --max-procs="$jobs" clang-format "${mode[@]}"

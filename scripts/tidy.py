@@ -15,7 +15,7 @@ import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-ROOMS = ("sim", "recorder", "analytics", "gui", "apps", "assets", "python")
+ROOMS = ("sim", "recorder", "analytics", "gui", "apps", "python")
 
 
 def headers_digest():

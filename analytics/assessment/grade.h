@@ -93,7 +93,7 @@ struct AttemptSummary {
 /// @param grade of the attempt; null: it was not held against a norm
 AttemptSummary summaryOf(const AttemptRow& attempt, const std::vector<CheckpointValue>& values, const Grade* grade);
 
-/// Whether a value is missing because the scene has nothing that it could be of ("the scene has no fat"): true of
+/// True if a value is missing because the scene lacks its subject ("the scene has no fat"): true of
 /// every attempt on this scene.
 bool sceneLacks(const CheckpointValue& value);
 

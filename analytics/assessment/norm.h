@@ -69,7 +69,7 @@ std::pair<PassRate, PassRate> passRates(const Norm& norm);
 /// Warning where competent members of the norm would fail by its own rule, with their number; or empty.
 std::string ownFailureWarning(const Norm& norm);
 
-/// What a report says of the pass marks' intervals where their published coverage is low at the norm's size; or empty.
+/// Warning about the pass marks' intervals if their published coverage is low at the norm's size; or empty.
 std::string passMarkWarning(const Norm& norm);
 
 /// True if the pass marks come from borderline regression.

@@ -68,7 +68,7 @@ const std::vector<recorder::ObjectRule>& protocolRules();
 Protocol readProtocol(const std::filesystem::path& file);
 Protocol parseProtocol(std::span<const std::byte> bytes, const std::string& file);
 
-/// Why a participant with this experience is not of the population: "laparoscopies 12, at least 100 wanted",
+/// Reason why a participant with this experience is outside the population: "laparoscopies 12, at least 100 wanted",
 /// "laparoscopies not recorded"; empty where all criteria are met.
 std::string whyOutside(const Population& population, const std::map<std::string, std::string>& experience);
 

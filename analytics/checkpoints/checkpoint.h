@@ -23,7 +23,7 @@
 
 namespace calot::analytics {
 
-/// Whether there is a number, and what kind of missing it is. Numbers are stored and never reused.
+/// Availability of a number, and the kind of missing value. Numbers are stored and never reused.
 enum class Availability : std::uint8_t {
   value = 0,              ///< there is a number
   notApplicable = 1,      ///< the question has no answer for this attempt ("no movement of 5 mm/s for 0.2 s")
@@ -112,7 +112,7 @@ struct AttemptEnd {
   const PhaseForceTrack* phaseForce = nullptr;  ///< the same of each phase, never null
 };
 
-/// What a figure is computed in, step by step. Deterministic contract: IEEE + - * / sqrt in source-fixed order, so that
+/// Accumulator of a figure, step by step. Deterministic contract: IEEE + - * / sqrt in source-fixed order, so that
 /// a replay gives the bits that the live run gave. accumulating() makes one of a plain struct.
 class Accumulator {
  public:
@@ -244,7 +244,7 @@ class Checkpoint {
   std::unique_ptr<Accumulator> accumulator_;  ///< null where it is not applicable
 };
 
-/// What a reader of a time must know where the tick clock was stretched ("tick clock stretched by 0.340 s"), or empty.
+/// Remark on a time where the tick clock was stretched ("tick clock stretched by 0.340 s"), or empty.
 std::string stretchNote(const AttemptEnd& end);
 
 /// Builders of values, with name, version, unit and filter taken from the definition.

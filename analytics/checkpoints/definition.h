@@ -20,7 +20,7 @@ enum class Origin : std::uint8_t {
   external = 3,     ///< a user's own script (external_metric.h)
 };
 
-/// What the figure is given for: once for the attempt, for each hand, organ of the scene, phase of the procedure, or
+/// Subjects of the figure: once for the attempt, for each hand, organ of the scene, phase of the procedure, or
 /// hand and phase.
 enum class Aggregation : std::uint8_t { attempt, hand, organ, phase, handAndPhase };
 
@@ -50,7 +50,8 @@ struct CheckpointDefinition {
   std::uint32_t version = 1;      ///< changes whenever a value may change
   std::string definition = {};    ///< the formula in words and symbols, one line
   std::string paperReading = {};  ///< which figure of the paper's Table 2 it answers to and how it reads it; or empty
-  /// Why a study shows the figure apart and doesn't test it ("it describes the tracker"); empty: it is an outcome.
+  /// Reason why a study shows the figure apart and does not test it ("it describes the tracker"); empty: it is an
+  /// outcome.
   std::string notOutcome = {};
 };
 

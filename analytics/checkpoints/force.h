@@ -21,7 +21,7 @@ class ForceTrack {
   explicit ForceTrack(double tickSeconds) : tickSeconds_(tickSeconds) {}
 
   void add(const recorder::StepRecord& record);
-  /// What comes next does not follow on what came before: no rate of change is taken across.
+  /// Marks a discontinuity: no rate of change is taken across.
   void interrupt();
   /// There was an instrument at any tick.
   [[nodiscard]] bool mounted(int hand) const { return mounted_[static_cast<std::size_t>(hand)]; }

@@ -184,7 +184,7 @@ class GapRule {
   /// Longest time between two samples that is no gap (s).
   [[nodiscard]] double longestEven() const { return gapIntervals * interval_; }
   [[nodiscard]] bool isGap(double seconds) const { return seconds > longestEven(); }
-  /// Of a gap: what no sample covers, each covering one interval.
+  /// Part of a gap that no sample covers, each covering one interval.
   [[nodiscard]] double lost(double seconds) const { return seconds - interval_; }
   /// Joined by a straight line.
   [[nodiscard]] bool isStraight(double seconds) const { return seconds <= straightBridge || !isGap(seconds); }

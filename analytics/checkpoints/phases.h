@@ -16,7 +16,7 @@ namespace calot::analytics {
 inline constexpr std::array<Phase, 4> windowPhases{Phase::identification, Phase::clipping, Phase::cutting,
                                                    Phase::dissection};
 const char* nameOf(Phase phase);  ///< "identification", ...
-/// Which of windowPhases it is; windowPhases.size(): none of them.
+/// Index in windowPhases; windowPhases.size() if none.
 std::size_t windowOf(Phase phase);
 /// The declaration of a figure of the whole attempt in each of its phases: "phase-NAME", of hands or the attempt as it
 /// was. Where a phase begins and ends is the simulation's to say, so its origin is that of the steps.

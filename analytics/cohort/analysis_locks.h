@@ -17,7 +17,7 @@ struct AnalysisLock {
   std::string lockedUtc, by;
 };
 
-/// Whether the protocol's second population is "group 1"; none: never masked. @throws Error as CohortDatabase
+/// True if the protocol's second population is "group 1"; none: never masked. @throws Error as CohortDatabase
 std::optional<bool> readGroupMask(const std::string& path, const std::string& protocolSha256);
 /// The same, drawn from the system's source of randomness and stored where there is none yet; audited.
 bool drawGroupMask(const std::string& path, const std::string& protocolSha256);

@@ -40,7 +40,8 @@ const std::vector<DeclaredTable>& furtherTables() {
       {"site", {{"name", sqlText, "name of the site"}, {"note", sqlText, "a word on it", {}, "", "", "empty"}}},
       {"arm", {{"name", sqlText, "name of the study arm"}, {"note", sqlText, "a word on it", {}, "", "", "empty"}}},
       {"cohort", {{"name", sqlText, "name of the cohort"}, {"note", sqlText, "a word on it", {}, "", "", "empty"}}},
-      {"cohort_participant", {{"cohort", sqlText, "name of the cohort"}, {"participant", sqlInteger, "row of participant"}}},
+      {"cohort_participant",
+       {{"cohort", sqlText, "name of the cohort"}, {"participant", sqlInteger, "row of participant"}}},
       {"export",
        {{"id", integerOrNull, "number of the row"},
         {"at_utc", sqlText, "when", {}, "", utc},
@@ -233,7 +234,8 @@ const TableOf<CheckpointValue>& externalValueTable() {
       {"external_value",
        {{"attempt", sqlInteger, "row of attempt"},
         {"metric", sqlInteger, "row of external_metric"},
-        {"availability", sqlInteger, "whether there is a value", at<R, &R::availability>, "", "0 value, 2 not available"},
+        {"availability", sqlInteger, "whether there is a value", at<R, &R::availability>, "",
+         "0 value, 2 not available"},
         {"value", realOrNull, "the value, in the metric's unit", at<R, &R::value>, "", "finite",
          "empty where availability is not 0"},
         {"reason", sqlText, "why there is no value", at<R, &R::reason>, "", "", "empty where availability is 0"},
@@ -276,14 +278,15 @@ const TableOf<Station>& stationTable() {
 
 const TableOf<RegisteredProtocol>& protocolTable() {
   using R = RegisteredProtocol;
-  static const TableOf<R> table{{"protocol",
-                                 {{"id", integerOrNull, "number of the row"},
-                                  {"name", sqlText, "name of the protocol", at<R, &R::name>},
-                                  {"version", sqlInteger, "its version", at<R, &R::version>},
-                                  {"sha256", sqlText, "SHA-256 of the text", at<R, &R::sha256>},
-                                  {"text", sqlText, "the protocol, byte for byte", at<R, &R::text>},
-                                  {"registered_utc", sqlText, "when it was registered", at<R, &R::registeredUtc>, "", utc},
-                                  {"registered_by", sqlText, "by whom", at<R, &R::by>}}}};
+  static const TableOf<R> table{
+      {"protocol",
+       {{"id", integerOrNull, "number of the row"},
+        {"name", sqlText, "name of the protocol", at<R, &R::name>},
+        {"version", sqlInteger, "its version", at<R, &R::version>},
+        {"sha256", sqlText, "SHA-256 of the text", at<R, &R::sha256>},
+        {"text", sqlText, "the protocol, byte for byte", at<R, &R::text>},
+        {"registered_utc", sqlText, "when it was registered", at<R, &R::registeredUtc>, "", utc},
+        {"registered_by", sqlText, "by whom", at<R, &R::by>}}}};
   return table;
 }
 

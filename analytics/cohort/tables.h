@@ -69,7 +69,8 @@ bool isWithdrawn(SQLite::Database& db, const std::string& uuid);
 std::vector<CheckpointValue> readValues(SQLite::Database& db, std::int64_t attempt);
 void readAllValues(SQLite::Database& db, const std::vector<std::string>& without,
                    const std::function<void(const AttemptValue&)>& take);
-/// Whether the row of value_interval as i is of the value in the row of checkpoint_value as c, by the present method.
+/// SQL: true if the interval (row i of value_interval) is of the value (row c of checkpoint_value), by the present
+/// method.
 std::string intervalIsOfValue();
 /// Intervals of present values, in the values' order.
 std::vector<ValueInterval> readIntervals(SQLite::Database& db, std::int64_t attempt);
@@ -84,7 +85,7 @@ void checkExternalMetric(SQLite::Database& db, const std::string& path, const Ex
 /// CohortDatabase::storeExternal() without its transaction. @returns how many rows are new.
 std::size_t writeExternalValues(SQLite::Database& db, const std::string& path, std::int64_t attempt,
                                 const std::vector<CheckpointValue>& values);
-/// Of an attempt whose content is another one now. @returns whether there were any.
+/// Removes external values of an attempt whose content has changed. @returns whether there were any.
 bool removeExternalValues(SQLite::Database& db, std::int64_t attempt);
 /// @returns whether anything changed.
 bool replaceValues(SQLite::Database& db, std::int64_t attempt, const std::vector<CheckpointValue>& values);

@@ -60,10 +60,10 @@ struct DesignData {
   std::vector<std::string> attempts;  ///< uuids of a cohort's
 };
 
-/// Of a cohort: attempts as a study takes them (makeStudy()), numbered by start; the stratum is the participant's site
-/// or arm, the occasion the attempt's number, of an agreement without `against` the device class. A form's rating is
-/// the mean of its items and of its raters, without incomplete forms. @throws Error as makeStudy(), and (refused) where
-/// the groups are not those that the design needs.
+/// Data of a cohort: attempts as a study takes them (makeStudy()), numbered by start; the stratum is the participant's
+/// site or arm, the occasion the attempt's number, of an agreement without `against` the device class. A form's rating
+/// is the mean of its items and of its raters, without incomplete forms. @throws Error as makeStudy(), and (refused)
+/// where the groups are not those that the design needs.
 DesignData cohortDesignData(const CohortDatabase& database, const AssessmentDatabase& assessment,
                             const StudyOptions& options, const DesignChoices& choices);
 
@@ -71,8 +71,8 @@ DesignData cohortDesignData(const CohortDatabase& database, const AssessmentData
 DesignData cohortDesignData(const std::vector<AttemptRow>& attempts, const std::vector<AttemptValue>& values,
                             const StudyOptions& options, const DesignChoices& choices, const std::string& name);
 
-/// Of a table: as makeTableStudy(); the group's column may be missing where the design compares none, and the stratum
-/// and whether an attempt was finished are columns. @throws Error as makeTableStudy().
+/// Data of a table: as makeTableStudy(); the group's column may be missing where the design compares none, and the
+/// stratum and whether an attempt was finished are columns. @throws Error as makeTableStudy().
 DesignData tableDesignData(const CsvTable& table, const TableStudyOptions& options, const DesignChoices& choices);
 
 /// Groups of the design among those present: the named ones, or all. @param left what the error says of those excluded

@@ -46,7 +46,7 @@ class TextTable {
 /// The beginning of a text of more than `width` letters and three points: `width` in all. @pre width > 3.
 std::string cutTo(const std::string& text, std::size_t width);
 
-/// What sums of rounding leave where there was nothing, in any unit that figures are shown in: an instrument that
+/// Bound on accumulated rounding of a zero, in any unit that figures are shown in: an instrument that
 /// nobody moved has a path of 1e-11 mm.
 inline constexpr double arithmeticDust = 1e-9;
 

@@ -260,7 +260,7 @@ using StudyProgress = std::function<void(double share, const char* doing)>;
 /// comparability keys or checkpoint versions would mix; Error (invalid) for a name that is none, of a cohort too.
 Study makeStudy(const CohortDatabase& database, const StudyOptions& options, const StudyProgress& progress = {});
 
-/// What makeStudy() of a database adds to the options: the named cohort's participants, recorded experience.
+/// Additions of makeStudy() of a database to the options: the named cohort's participants, recorded experience.
 /// @throws Error (invalid) where there is no such cohort
 StudyOptions withCohortData(const CohortDatabase& database, StudyOptions options);
 

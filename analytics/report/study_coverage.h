@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What samples cover of the attempts that a study compares. Where one group's tracker lost more than the other's, a
+// Coverage by samples of the attempts that a study compares. Where one group's tracker lost more than the other's, a
 // difference in figures of motion may be one of measurement.
 #pragma once
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which attempts of a cohort a study includes, why others are excluded, which two groups it compares, and where and
+// Population of a study: included attempts, reasons for exclusion, the two groups compared, and where and
 // when the attempts were made.
 #pragma once
 

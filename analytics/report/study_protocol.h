@@ -12,7 +12,7 @@ namespace calot::analytics {
 /// Replaces the study's choices by those of the protocol. @pre there is a protocol.
 StudyOptions byProtocol(const StudyOptions& options);
 
-/// Why the protocol excludes an attempt, one of protocolReasons(): another scene, an outcome that it excludes, a
+/// Reason why the protocol excludes an attempt, one of protocolReasons(): another scene, an outcome that it excludes, a
 /// participant who is not of the population of `group`; or empty.
 std::string whyOutByProtocol(const AttemptRow& attempt, const std::string& group, const ProtocolInUse& protocol);
 /// In the order in which they are asked, for the flow.
@@ -24,7 +24,7 @@ void chooseByProtocol(StudyChoices& choices, const Protocol& protocol);
 /// The figure of a hypothesis as figureOfRow() has it: "path-length left".
 std::string figureOf(const DirectedHypothesis& hypothesis);
 
-/// Of a table: `study.protocol`, the reason why it is exploratory, and what of the protocol a table cannot answer, as
+/// For a table: `study.protocol`, the reason why it is exploratory, and what of the protocol a table cannot answer, as
 /// deviations.
 void describeProtocolOfTable(Study& study, const Protocol& protocol);
 

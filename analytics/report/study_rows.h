@@ -44,7 +44,7 @@ struct StudySample {
 /// meant to have their mean.
 void fillRow(StudyRow& row, const StudySample& sample);
 
-/// Of a figure that isn't an outcome nothing is compared. Tests, effects and intervals of the available values, in the
+/// Compares nothing for a figure that is not an outcome. Tests, effects and intervals of the available values, in the
 /// direction of the row's hypothesis or, without one, of the row. Participants ranked behind all enter test, A and
 /// delta; shift and g use values only.
 /// @param duration participants' durations by group, empty where they are not known

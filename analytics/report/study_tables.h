@@ -38,7 +38,7 @@ ReportTable secondaryTable(const Study& study);
 std::optional<Drawing> forestOf(const Study& study);
 /// A row's values in both groups; marks are participants. None where it has no values.
 std::optional<Drawing> boxPlotOf(const Study& study, const StudyRow& row, const PlotFrame& frame = {});
-/// What belongs to the first result: its columns, whether the groups can reach the level at all, warnings, remarks,
+/// Notes to the first result: its columns, whether the groups can reach the level at all, warnings, remarks,
 /// deviations from the protocol, and what its rows lack.
 std::vector<std::string> primaryNotes(const Study& study);
 
@@ -50,8 +50,8 @@ std::vector<std::string> appendixNotes(const Study& study);
 /// Intervals whose published coverage is low at these sizes, and how many of the rows that lead, or of the others, have
 /// them.
 std::vector<std::string> intervalWarnings(const Study& study, bool leading);
-/// Why rows have no test, and who has no value of them: sentences for `notes`. @param leading of the rows that lead, or
-/// of the others
+/// Reasons why rows have no test, and who has no value of them: sentences for `notes`. @param leading of the rows that
+/// lead, or of the others
 void explainMissing(const Study& study, bool leading, std::vector<std::string>& notes);
 
 }  // namespace calot::analytics

@@ -32,7 +32,7 @@ Expected<double> median(std::span<const double> values);
 /// Neither NaN nor infinite.
 bool allFinite(std::span<const double> values);
 
-/// Why two groups can't be compared at all, or empty: a group is empty, a value is not finite.
+/// Reason why two groups cannot be compared, or empty: a group is empty, a value is not finite.
 std::string twoGroupObjection(std::span<const double> x, std::span<const double> y);
 
 /// The values of x, then those of y.

@@ -22,7 +22,8 @@ struct RatingTable {
   [[nodiscard]] double at(std::size_t subject, std::size_t rater) const { return values[subject * raters + rater]; }
 };
 
-/// Why such a table has no agreement, or empty: size, fewer than two rows or columns, a value not finite, all equal.
+/// Reason why such a table has no agreement, or empty: size, fewer than two rows or columns, a value not finite, all
+/// equal.
 std::string objection(const RatingTable& table);
 
 /// Mean squares of the two-way analysis of variance without replication.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The fat over Calot's triangle, in W (docs" "/organs.md): a lobulated pad around cystic duct and cystic artery, between
-// the gallbladder's neck, the hepatic duct and the underside of the liver.
+// The fat over Calot's triangle, in W (docs" "/organs.md): a lobulated pad around cystic duct and cystic artery,
+// between the gallbladder's neck, the hepatic duct and the underside of the liver.
 #pragma once
 
 #include <cstdint>
@@ -55,7 +55,7 @@ inline double fat(const Vec3& p) {
                                  {{-0.0300, -0.0390, -0.0125}, 0.0036},
                                  {{-0.0230, -0.0340, -0.0125}, 0.0038},
                                  {{-0.0180, -0.0302, -0.0110}, 0.0042}});
-  // What fills the triangle between them, along the hepatic duct, and up into the corner of gallbladder and liver.
+  // Fat that fills the triangle between them, along the hepatic duct, and up into the corner of gallbladder and liver.
   static const SweptBall window({{{-0.0405, -0.0412, -0.0205}, 0.0040},
                                  {{-0.0345, -0.0378, -0.0205}, 0.0042},
                                  {{-0.0280, -0.0340, -0.0195}, 0.0042}});
@@ -80,7 +80,8 @@ inline TriangleMesh makeFat() {
 }
 
 inline constexpr const char* fatHead =
-    "Fat over Calot's triangle, made by calot-organs from implicit shapes (docs" "/organs.md).\n"
+    "Fat over Calot's triangle, made by calot-organs from implicit shapes (docs"
+    "/organs.md).\n"
     "Metres; +x patient's right, +y anterior, +z cranial; origin in the middle of the gallbladder bed.";
 
 }  // namespace calot::organs

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Liver and gallbladder of an adult in supine position, in W (docs" "/organs.md): origin in the middle of the gallbladder
-// bed, +x to the patient's right, +y anterior, +z cranial (right-handed); metres. Sizes and their sources stand in
-// docs/organs.md.
+// Liver and gallbladder of an adult in supine position, in W (docs" "/organs.md): origin in the middle of the
+// gallbladder bed, +x to the patient's right, +y anterior, +z cranial (right-handed); metres. Sizes and their sources
+// stand in docs/organs.md.
 #pragma once
 
 #include "apps/calot-organs/implicit.h"
@@ -69,10 +69,12 @@ inline TriangleMesh makeLiver() {
 inline TriangleMesh makeGallbladder() { return polygonize(gallbladder, gallbladderBox(), 0.0032); }
 
 inline constexpr const char* liverHead =
-    "Liver of an adult, made by calot-organs from implicit shapes (docs" "/organs.md).\n"
+    "Liver of an adult, made by calot-organs from implicit shapes (docs"
+    "/organs.md).\n"
     "Metres; +x patient's right, +y anterior, +z cranial; origin in the middle of the gallbladder bed.";
 inline constexpr const char* gallbladderHead =
-    "Gallbladder of an adult, made by calot-organs from implicit shapes (docs" "/organs.md).\n"
+    "Gallbladder of an adult, made by calot-organs from implicit shapes (docs"
+    "/organs.md).\n"
     "Metres; +x patient's right, +y anterior, +z cranial; origin in the middle of the gallbladder bed.";
 
 }  // namespace calot::organs

@@ -28,7 +28,7 @@ void requireTerminal();
 /// Tells what to do, and waits until the person is ready. @throws Error (failure) where the person breaks off
 void promptStep(const std::string& text);
 
-/// What the device gave while the person did the steps that its kind needs. @throws Error as above, and (failure) where
+/// Measurements of the device while the person did the steps of its kind. @throws Error as above, and (failure) where
 /// no sample came
 recorder::DeviceScript guidedSteps(recorder::Device& device, double strokeMillimetres);
 

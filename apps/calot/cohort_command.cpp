@@ -153,8 +153,8 @@ void addMerge(CLI::App& parent, Run& run) {
         printResult("cohort-merge",
                     results.size() == 1 ? results.front() : nlohmann::ordered_json{{"databases", results}});
       if (refused.empty()) return static_cast<int>(ExitCode::yes);
-      throw Error(ErrorKind::refused,
-                  fmt::format("{}: {}; nothing of it was merged", o->into, fmt::join(refused, ", ")));
+      throw Error(ErrorKind::refused, fmt::format("{}: {}; nothing was merged{}", o->into, fmt::join(refused, ", "),
+                                                  o->from.size() > 1 ? " of these" : ""));
     };
   });
 }

@@ -39,7 +39,7 @@ class Progress {
   Progress& operator=(const Progress&) = delete;
   /// @param of 0: no end is known
   void show(std::uint64_t done, std::uint64_t of);
-  /// Of work whose parts are no number: the share of it that is done, from 0 to 1.
+  /// For work without countable parts: the share done, from 0 to 1.
   void showShare(double share);
   /// Takes the line away, whichever Progress drew it: before anything else is printed, so that results never stand
   /// behind it. The next show() draws it again.

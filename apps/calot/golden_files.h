@@ -63,15 +63,15 @@ struct GoldenReplay {
 
 GoldenReplay replayGolden(const std::filesystem::path& file, const GoldenEntry& entry, unsigned threads);
 
-/// Whether the list may take over a recording's values: each that changed has a definition of a higher version, each
-/// that is gone belongs to a checkpoint that there is no longer, new ones are welcome.
+/// Decides whether the list may take over a recording's values: each that changed has a definition of a higher version,
+/// each that is gone belongs to a checkpoint that there is no longer, new ones are welcome.
 /// @throws Error (refused) naming the first value that changed without its definition.
 void refuseValues(const GoldenEntry& entry, const std::vector<GoldenValue>& now);
 
 /// The reason given. @throws Error (invalid) where it says nothing.
 const std::string& requiredReason(const std::string& reason);
 
-/// What may stand in the way of an update. @throws Error (invalid): the reason is empty; or all recordings are there
+/// Checks the preconditions of an update. @throws Error (invalid): the reason is empty; or all recordings are there
 /// and of this build's simulation version; or the work tree that holds `folder` has changes outside of it, or is none.
 void refuseUpdate(const std::filesystem::path& folder, const GoldenList& list, const std::string& reason);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What `calot import` does with each motion file, named on the command line or by a manifest.
+// Import of each motion file, named on the command line or by a manifest.
 // Users' own metrics on the command line: options, and what is said of scripts that failed.
 #pragma once
 

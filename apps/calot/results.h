@@ -7,7 +7,7 @@
 
 namespace calot::apps {
 
-/// What every result begins with: {"schema": "calot-<what>", "version": N}. The version is raised when a member
+/// Head of every result: {"schema": "calot-<what>", "version": N}. The version is raised when a member
 /// changes its meaning or goes; new members alone do not raise it.
 /// @param body an object without these two members
 [[nodiscard]] nlohmann::ordered_json resultOf(std::string_view what, const nlohmann::ordered_json& body);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What commands share that begin with two groups' values: of a cohort, or of a table from elsewhere.
+// Shared by commands over two groups' values: of a cohort, or of a table from elsewhere.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -22,7 +22,7 @@ nlohmann::ordered_json jsonOf(const std::vector<analytics::CheckpointValue>& val
 /// Adds --cohort, where values are stored, and --cutoff, with which they are only shown.
 /// @param[out] cutoff Hz; 0: not given
 void addStoring(CLI::App& command, std::string& cohort, double& cutoff);
-/// What is stored has one filter: one of both options is wanted. @throws Error (invalid)
+/// Stored values have one filter: one of both options is needed. @throws Error (invalid)
 void checkStored(const std::string& cohort, double cutoff);
 
 }  // namespace calot::apps

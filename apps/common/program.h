@@ -11,7 +11,7 @@ namespace calot::apps {
 /// One line on stderr, "calot: message". @return the code, for main()
 int endWith(ExitCode code, const std::string& program, const std::string& message);
 
-/// What main() does: runs the body; an error that it throws is a line on stderr and an exit code.
+/// Body of main(): runs the body; an error that it throws is a line on stderr and an exit code.
 int runProgram(const std::string& program, const std::function<int()>& body);
 
 }  // namespace calot::apps

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a recording says of itself over time: phases, events, forces and speeds. Knows no window.
+// Course of a recording over time: phases, events, forces and speeds. Knows no window.
 // The recording behind an attempt of a cohort database, which knows its file's name and not its folder.
 #pragma once
 

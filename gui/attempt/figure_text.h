@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the tables say for stored values. Numbers are shown in the user's locale (a German sees a decimal comma);
+// Texts of tables for stored values. Numbers are shown in the user's locale (a German sees a decimal comma);
 // nothing is ever read back from such a text.
 #pragma once
 

@@ -9,7 +9,7 @@ class QLabel;
 
 namespace calot::gui {
 
-/// What an instructor wants to know first, in words: verdict, critical view, errors, and the figures that count.
+/// Summary for an instructor, in words: verdict, critical view, errors, and the figures that count.
 class SummaryPanel : public QWidget {
   Q_OBJECT
  public:

@@ -52,7 +52,7 @@ inline constexpr double leastContrast = 4.5;
 /// A label that stands out on a ground of its own, with this text on it.
 void setGround(QLabel& label, const QColor& ground, const QColor& ink);
 
-/// What a window begins with on a screen that leaves it so much: most of it; all of a small one.
+/// Initial size of a window for the available screen: most of it; all of a small one.
 [[nodiscard]] QSize windowSizeFor(const QSize& available);
 
 }  // namespace calot::gui::theme

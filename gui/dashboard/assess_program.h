@@ -9,9 +9,9 @@ namespace calot::gui {
 
 /// How the program that assesses recordings is called, and how it answers. The application knows its command line.
 struct AssessProgram {
-  /// What it is started with for one recording, so that it prints its report as JSON. @param file an absolute path
+  /// Arguments for one recording, with its report as JSON. @param file an absolute path
   std::function<QStringList(const QString& file, const QString& database, int threads)> arguments;
-  /// Whether an exit code says that the recording is at fault: damaged, or in conflict with the cohort.
+  /// True if an exit code blames the recording: damaged, or in conflict with the cohort.
   std::function<bool(int exitCode)> refused;
   /// Command line that assesses a recording into this database.
   std::function<QString(const QString& database)> typed;

@@ -36,7 +36,7 @@ class AttemptPage : public QWidget {
   void setAttempt(std::shared_ptr<const CohortDocument> document, const analytics::AttemptRow& attempt);
   void clear();
   [[nodiscard]] FigurePanel& figures() { return *figures_; }
-  /// Whether all that can be read of the attempt was read, and the replay stands where it was sent to.
+  /// True if everything readable of the attempt was read, and the replay is at its target.
   [[nodiscard]] bool settled() const;
   [[nodiscard]] Replay& replay() { return *replay_; }
   /// Writes the attempt on one page, or against its norm, on a thread of its own. @pre an attempt is shown

@@ -41,7 +41,7 @@ class CheckpointTableModel : public QAbstractTableModel {
   [[nodiscard]] bool hasIntervals() const { return !intervals_.empty(); }
   void setStandings(std::vector<FigureStanding> standings);
   void setMoments(std::vector<analytics::FigureMoments> moments);
-  /// What the momentColumn says while moments are being looked for, or why there are none at all.
+  /// Text of momentColumn while moments are searched for, or the reason why there are none.
   void setMomentsText(const QString& text);
 
   /// @pre 0 <= row < rowCount()

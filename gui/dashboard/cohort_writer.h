@@ -41,7 +41,7 @@ class CohortWriter : public QObject {
   QThreadPool thread_;  // last: it uses what is above
 };
 
-/// What a person decides about attempts, and how it is taken back; the database notes both.
+/// Decisions of a person about attempts, and their reversal; the database notes both.
 class DecisionCommand : public QUndoCommand {
  public:
   /// @param writer outlives this

@@ -10,7 +10,7 @@ class QPushButton;
 
 namespace calot::gui {
 
-/// What is seen when there is nothing to see: no database open, or an empty one. Greets and says what to do.
+/// Page shown without a database, or with an empty one. Greets and says what to do.
 class GreetingPage : public QWidget {
   Q_OBJECT
  public:

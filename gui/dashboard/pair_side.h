@@ -81,7 +81,7 @@ class PairAlignment {
   /// A recording's own time, clamped: where one has ended its last picture stands.
   [[nodiscard]] double own(std::size_t which, double common) const;
   [[nodiscard]] double common(std::size_t which, double own) const { return own - offsets_[which]; }
-  /// Whether a recording runs at a common time, rather than waiting for its begin or standing at its end.
+  /// True if a recording runs at a common time, rather than waiting for its begin or standing at its end.
   [[nodiscard]] bool runs(std::size_t which, double common) const;
 
  private:

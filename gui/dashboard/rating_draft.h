@@ -44,7 +44,7 @@ class RatingDraft {
   std::map<std::string, std::optional<int>> answers_;
 };
 
-/// What this rater (participant) gave before, to be changed; none where there is nothing.
+/// Earlier answers of this rater (participant), to be changed; none if there are none.
 std::optional<analytics::Rating> earlierRating(const std::vector<analytics::Rating>& ratings,
                                                const analytics::RatingForm& form, const std::string& attempt,
                                                const std::string& rater, const std::string& participant);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the dashboard remembers for its user, from run to run. Nothing of it changes a figure.
+// Settings of the dashboard, kept from run to run. None changes a figure.
 #pragma once
 
 #include <filesystem>

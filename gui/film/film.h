@@ -36,7 +36,7 @@ struct FilmSettings {
   std::string doubt;  ///< a mark for every frame, where what is recorded is in doubt itself
 };
 
-/// What the functions below would refuse of their arguments, before anything is done.
+/// Checks the arguments of the functions below, before anything is done.
 /// @throws calot::Error: invalid for settings out of range; damaged where a recording cannot be read or holds no step;
 /// undecided where no engine of a recording's simulation version is here, if not `anyway`
 void checkFilm(const std::filesystem::path& recording, const std::filesystem::path& output,

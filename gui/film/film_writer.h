@@ -27,7 +27,7 @@ class FilmWriter {
   FilmWriter(const FilmWriter&) = delete;
   FilmWriter& operator=(const FilmWriter&) = delete;
 
-  /// What the constructor would say of its arguments, before long work. @throws calot::Error (invalid)
+  /// Checks the constructor's arguments before long work. @throws calot::Error (invalid)
   static void check(const std::filesystem::path& file, int width, int height, int fps);
 
   /// Appends a frame; its alpha is ignored. @pre of the film's size @throws calot::Error (failure)

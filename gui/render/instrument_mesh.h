@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the drawings of instruments have in common, and the drawings: one per instrument, in a file of its own here.
+// Common parts of the drawings of instruments, and the drawings: one per instrument, in a file of its own here.
 // Sizes are those of the contact shapes (sim/instruments). Internal to this folder and instrument_mesh.cpp.
 #pragma once
 
@@ -36,7 +36,7 @@ class InstrumentParts {
   void add(Appearance appearance, Mesh mesh);
   /// The insulated shaft, from outside the port to `end` (z).
   void addShaft(double end);
-  /// What all instruments with jaws share: shaft, fork, pin. @param jawLength from the hinge to the tips
+  /// Parts shared by all instruments with jaws: shaft, fork, pin. @param jawLength from the hinge to the tips
   /// @param forkLength from the shaft's end to the hinge
   void addHinged(double jawLength, double forkLength);
   /// Both jaws, opened. @param upper, lower from the hinge at z = 0 along z, inner faces at y = 0 when closed

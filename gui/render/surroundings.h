@@ -22,7 +22,7 @@ struct CavityShape {
 /// The abdominal wall under pneumoperitoneum: the dome, gently uneven, seen from inside (normals point inward).
 [[nodiscard]] Mesh makeCavity(const CavityShape& shape);
 
-/// What lies below the liver in the field: the greater omentum, a fatty apron, and on it the hepatic flexure of the
+/// Tissue below the liver in the field: the greater omentum, a fatty apron, and on it the hepatic flexure of the
 /// colon and the duodenum. Decoration: it stands still, and instruments pass through it.
 struct Viscera {
   Mesh omentum;  ///< open, seen from above (normals point up)
@@ -35,7 +35,7 @@ struct Viscera {
 [[nodiscard]] Viscera makeViscera(std::span<const Vec3> vessels, double lowest);
 
 /// Abdominal wall, and where the scene has bile duct or hepatic artery, and y is up, their ligament, omentum and bowel.
-/// What was made for one view is kept as long as its organs at rest are the same.
+/// Caches the surroundings of one view while its organs at rest are the same.
 class Surroundings {
  public:
   void update(const SceneView& view);

@@ -28,10 +28,10 @@ class AttemptInput {
   /// Before the first tick of a branch: its hands set out from here.
   virtual void setOut(recorder::SampleSource& source, const SceneDescription& scene, const TickSamples& start) = 0;
 
-  /// What the source wants of its run: feedback to motors.
+  /// Requirements of the source on its run: feedback to motors.
   virtual void drive(recorder::SampleSource& source, recorder::RunSettings& run) = 0;
 
-  /// What of the source goes into the recording beside its ticks: raw samples. @param firstTick of the attempt, at
+  /// Raw samples of the source for the recording. @param firstTick of the attempt, at
   /// which the source's tick 0 lies
   virtual void record(recorder::SampleSource& source, recorder::RecordingWriter& writer, std::uint64_t firstTick) = 0;
 };

@@ -21,7 +21,7 @@ struct Course {
   std::vector<CourseTask> tasks;  ///< the easiest first
 };
 
-/// What the reader takes: schemas/course.schema.json says the same.
+/// Limits of the reader, as in schemas/course.schema.json.
 const std::vector<recorder::ObjectRule>& courseRules();
 
 /// @throws Error (damaged), naming file and JSON pointer, where anything is unknown, missing or out of its range.

@@ -82,7 +82,7 @@ class PictureRate {
 
   /// Mean share of the size that they are shown in; 1 before there were two.
   [[nodiscard]] double side() const { return pictures_ > 0 ? sides_ / static_cast<double>(pictures_) : 1.0; }
-  /// Of that share of the pictures the delay was at most this (s); none where it was never known.
+  /// Delay (s) not exceeded by that share of the pictures; none if it was never known.
   [[nodiscard]] std::optional<double> delay(double share) const;
 
   /// "25.3 pictures a second of 1280x720 in 25.0 s, ...": one line for a terminal.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a trainee has done so far, from the cohort. No window.
+// Progress of a trainee, from the cohort. No window.
 #pragma once
 
 #include <filesystem>
@@ -45,7 +45,7 @@ class QPushButton;
 
 namespace calot::gui {
 
-/// What is seen when no scene is given: greets, and offers the course's tasks and all other scenes with their pictures;
+/// Page shown when no scene is given: greets, and offers the course's tasks and all other scenes with their pictures;
 /// of the one that is chosen, what the trainee has done so far.
 class ScenesPage : public QWidget {
   Q_OBJECT

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the trainer's window says: from a session's status to words. Numbers follow the user's locale. No window.
+// Texts of the trainer's window, from a session's status. Numbers follow the user's locale. No window.
 #pragma once
 
 #include <array>
@@ -48,13 +48,13 @@ enum class Pointer {
 /// "0:41.2  cystic duct: clip half on", a critical one with "critical" before it.
 [[nodiscard]] QString mistakeText(const Mistake& mistake);
 
-/// What to do next in an attempt of this scene, in one or two sentences: from what the procedure asks for and what has
+/// Next instruction in an attempt of this scene, in one or two sentences: from what the procedure asks for and what has
 /// been done of it. For practice; an assessment has no hints.
 /// @param summary of the scene: what is said where it has no procedure
 [[nodiscard]] std::string hintFor(const SceneDescription& scene, const std::string& summary,
                                   const AttemptFigures& figures);
 
-/// What is still undone of what the scene asks for: "the procedure is at: clipping". Where it has no procedure, it is
+/// Remaining parts of the scene's procedure: "the procedure is at: clipping". Where it has no procedure, it is
 /// the trainee who says, but whoever touched nothing has done nothing. Empty: all is done.
 [[nodiscard]] std::string whatIsUndone(const SceneDescription& scene, const AttemptFigures& figures);
 

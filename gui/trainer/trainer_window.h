@@ -71,7 +71,7 @@ class TrainerWindow : public QMainWindow {
   /// in while it ran. Ends what runs.
   [[nodiscard]] std::vector<std::string> endAndReport();
 
-  /// Whether what the panel announces is read aloud, too. What stands against it is shown on the window.
+  /// Sets whether announcements are read aloud. A failure is shown on the window.
   void setAloud(bool on);
 
   /// Writes a PNG of what is seen. @throws calot::Error (failure)

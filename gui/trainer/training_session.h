@@ -59,7 +59,7 @@ struct TrainingStatus {
   recorder::OperatorKind operatorKind = recorder::OperatorKind::human;
   recorder::RunReport report;  ///< of the attempt that ended
   std::string undone;          ///< why an attempt that the trainee ended was abandoned; or empty
-  /// Of each hand: what it is given while it has nothing.
+  /// For each hand: the instrument given while it has none.
   std::array<std::optional<recorder::ControlledSource::Exchange>, handCount> exchange;
   AttemptFigures figures;
 };

@@ -30,10 +30,10 @@ class ScenePictureWidget : public QWidget {
 
   /// Number of pictures shown so far.
   [[nodiscard]] quint64 shown() const { return shown_; }
-  /// What all such widgets of the program draw with, from the next one made on; a graphics card where there is one, at
+  /// Sets the graphics of such widgets, from the next one made on; a graphics card where there is one, at
   /// first. GUI thread.
   static void drawBy(Graphics graphics);
-  /// What draws, in words (Renderer::graphics()); empty before the first picture.
+  /// Description of the renderer (Renderer::graphics()); empty before the first picture.
   [[nodiscard]] std::string drawnBy() const;
 
   /// The picture on the screen; null before the first one.

@@ -6,7 +6,7 @@
 
 namespace calot::gui {
 
-/// What a window says of an error: its message and, where a window's user can do something about it, what.
+/// Words of a window for an error: its message and, where a window's user can do something about it, what.
 std::string problemText(const std::exception& error);
 
 }  // namespace calot::gui

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What decides a recording: the simulation of one version, on one attempt. Replay, assessment, seeking and drawing all
-// go through this, whether the simulation is this program's own (LocalEngine) or another program's
+// The engine that decides a recording: the simulation of one version, on one attempt. Replay, assessment, seeking and
+// drawing all go through this, whether the simulation is this program's own (LocalEngine) or another program's
 // (recorder/kept/engine_process.h, schemas/engine.md).
 #pragma once
 
@@ -74,7 +74,7 @@ class Engine {
   Engine& operator=(const Engine&) = delete;
   virtual ~Engine() = default;
 
-  /// Of its digests.
+  /// Layout of its digests.
   [[nodiscard]] virtual const DigestLayout& layout() const = 0;
   /// Begins an attempt.
   virtual void start(std::uint64_t seed) = 0;
@@ -92,7 +92,7 @@ class Engine {
   /// before it asks. Until these steps are done nothing but step() may be called, if not to drop them.
   /// @pre fewer than takesAhead() are ahead
   virtual void announce(const StepInput& /*input*/) {}
-  /// Of the last step. @pre steps() > 0
+  /// Digest of the last step. @pre steps() > 0
   [[nodiscard]] virtual Keyframe keyframe() = 0;
   /// Scene view of the present state.
   [[nodiscard]] virtual SceneView view() = 0;

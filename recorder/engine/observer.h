@@ -39,7 +39,7 @@ struct TickOutcome {
   float lateness = 0.0F;
 };
 
-/// What of a keyframe's part follows from the rest of it, so that it need not be stored (schemas/recording.md). Numbers
+/// Redundancy in a part of a keyframe, which need not be stored (schemas/recording.md). Numbers
 /// are stored and never reused.
 enum class PartForm : std::uint64_t {
   plain = 0,

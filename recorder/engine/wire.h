@@ -22,7 +22,7 @@ using Bytes = std::vector<std::byte>;
 /// w, x, y, z.
 using Rotation = std::array<double, 4>;
 
-/// What a step is to come with.
+/// Parts that a step's result shall include.
 inline constexpr std::uint8_t wantKeyframe = 1U << 0U;
 inline constexpr std::uint8_t wantContactSets = 1U << 1U;
 inline constexpr std::uint8_t wantView = 1U << 2U;

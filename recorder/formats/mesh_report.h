@@ -35,7 +35,7 @@ std::string meshReportText(const MeshReport& report);
 /// Repairs of the surface, or empty: "12 vertices welded, 3 triangles turned".
 std::string repairSummary(const SurfaceRepair& repair);
 
-/// What the output lacks of the input, or has beyond it, each in a line: parts that were dropped or are too thin,
+/// Differences between output and input, one line each: parts that were dropped or are too thin,
 /// holes that were filled, a surface that crosses itself.
 std::vector<std::string> meshWarnings(const MeshReport& report);
 

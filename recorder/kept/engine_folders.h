@@ -14,7 +14,7 @@ namespace calot::recorder {
 struct EnginePlaces {
   /// In order: the first that holds an engine of a version gives it. A native engine goes before a module.
   std::vector<std::filesystem::path> folders;
-  /// Of this program's own version, for what is to be decided apart from it; empty: none.
+  /// Engine of this program's own version, for decisions in another process; empty: none.
   std::filesystem::path own;
   /// Runs a module: program and arguments that come before the module's path; empty: nothing here does.
   std::vector<std::string> runtime;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What was once asked of an engine, and what it answered: proof that a program is the engine that it says it is
+// Requests to an engine and its answers, recorded once: proof that a program is the engine that it says it is
 // (schemas/engine.md, "Transcripts").
 #pragma once
 

@@ -41,7 +41,7 @@ class PacedClock {
   /// @param backlog ticks since the simulation's next step became computable; 0 or less: it is not waited for
   bool mayBegin(std::uint64_t t, Nanoseconds now, std::int64_t backlog);
 
-  /// What is recorded as the lateness of tick t (s), given when its force was ready: TickOutcome::lateness. Ends the
+  /// Recorded lateness of tick t (s), given when its force was ready: TickOutcome::lateness. Ends the
   /// tick: the next mayBegin() is another's.
   float finish(std::uint64_t t, Nanoseconds ready);
 

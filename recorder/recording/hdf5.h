@@ -67,8 +67,8 @@ class Session {
 /// The process-wide lock under Session.
 std::mutex& processLock();
 
-/// Why the last HDF5 call of this thread failed: "bad checksum", the system's message ("No space left on device"), or
-/// the innermost description.
+/// Reason why the last HDF5 call of this thread failed: "bad checksum", the system's message ("No space left on
+/// device"), or the innermost description.
 std::string reason();
 
 /// Message of a damaged file: FILE: PLACE: WHAT.

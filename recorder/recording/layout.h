@@ -37,7 +37,7 @@ inline constexpr const char* publicKeyPath = "/signature/public_key";
 /// Stored types, all little-endian. The last five are packed compounds.
 enum class Element : std::uint8_t { u1, u2, u4, u8, i8, f4, f8, event, keyframe, status, rawSample, rawCounts };
 
-/// Which count of /status, or of /device/counts beside it, a data set's rows follow.
+/// The count of /status, or of /device/counts beside it, that a data set's rows follow.
 enum class Stream : std::uint8_t { ticks, steps, events, keyframes, keyframeWords, rawLeft, rawRight };
 inline constexpr std::size_t streamCount = 7;
 

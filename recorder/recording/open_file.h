@@ -35,7 +35,7 @@ inline constexpr std::uint64_t maxChunkBytes = std::uint64_t{4} << 20U;
 /// Looks at every link and every data set's description, and reads no data: links to other places, second names of an
 /// object, data kept in other files or made of other data sets, filters from elsewhere, values of variable length,
 /// chunks that unfold to more than maxChunkBytes, and extents that the file cannot hold.
-/// What cannot be described is left to whoever reads it. The caller holds the HDF5 session.
+/// Skips objects that it cannot describe; the reader reports them. The caller holds the HDF5 session.
 /// @throws Error damaged naming the object
 void checkShape(const std::filesystem::path& path, const hdf5::Id& file, std::uint64_t fileBytes);
 

@@ -32,7 +32,7 @@ struct StatusRow {
   Outcome outcome = Outcome::running;
   std::int64_t wallNanoseconds = 0;  ///< since 1970-01-01 UTC, when the row was written; outside the chain
   std::array<std::uint8_t, 32> chain{};
-  /// Of the row of /device/counts that belongs to it; 0 where there is no /device.
+  /// Count in its row of /device/counts; 0 where there is no /device.
   std::array<std::uint64_t, handCount> rawSamples{};
   std::array<std::uint64_t, handCount> rawDropped{};
 };

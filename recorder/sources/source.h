@@ -13,7 +13,7 @@ namespace calot::recorder {
 class DeviceSource;
 class ScopeSource;
 
-/// Whether a source can give ticks now. Only a source with a device behind it is ever other than ok.
+/// Readiness of a source. Only a source with a device behind it is ever other than ok.
 enum class SourceStatus : std::uint8_t {
   ok,
   paused,  ///< the device is gone and may come back

@@ -9,9 +9,9 @@
 // configuration that is free of stress lies at -x from the reference configuration (the first step of Sellier's fixed
 // point; the rest moves the configuration that is free of stress and leaves the equilibrium as it is).
 //
-// What grows on an organ that sags already bears its own weight and not the organ's. So in K what bears is stiffer than
-// what it bears, by `bearing` a rank: fat, then vessels and organs that nothing anchors, then anchored organs; a joint
-// counts as the softer of what it joins. Any such K balances the weight; without ranks, fat between liver and
+// Tissue that grows on a sagging organ bears its own weight and not the organ's. So in K the bearing part is stiffer
+// than what it bears, by `bearing` a rank: fat, then vessels and organs that nothing anchors, then anchored organs; a
+// joint counts as the softer of what it joins. Any such K balances the weight; without ranks, fat between liver and
 // gallbladder would hold up the liver, with strains above one.
 //
 // Strands count with their stiffness in all directions, not only along them: what holds a bed carries shear too.

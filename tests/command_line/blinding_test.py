@@ -145,7 +145,7 @@ class Packs(Blinded):
     def test_who_withdraws_leaves_the_answers(self):
         self.well(*self.make_pack())
         answers = self.answers("R2")
-        listed = self.well("participant", "withdraw", "P3", "--cohort", self.cohort, "--scope", "all", "--no-recordings", "--no-key").out
+        listed = self.well("participant", "withdraw", "P3", "--cohort", self.cohort, "--scope", "all", "--no-recordings").out
         self.assertIn(str(self.pack), listed)
         self.assertIn("7 ratings by R2 with goals version 2 stored, 1 films of withdrawn attempts left out", self.well(*self.take(answers)).out)
 

@@ -109,9 +109,9 @@ class Cohort(manifest_test.Manifest):
         self.assertEqual(said["participants"], 8)
 
     def test_one_value_of_each(self):
-        correlation = ("study", self.cohort, "--design", "correlation", "--against", "idle-time left")
+        correlation = ("study", self.cohort, "--design", "correlation", "--against", "path-length right")
         self.refused(3, *correlation, names=("P0", "--attempt-rule"))
-        said = json.loads(self.well(*correlation, "--attempt-rule", "mean", "--family", "path-length left,idle-time left", "--json").out)
+        said = json.loads(self.well(*correlation, "--attempt-rule", "mean", "--family", "path-length left,path-length right", "--json").out)
         self.assertEqual(said["attempt_rule"], "the mean of a participant's attempts")
         self.refused(2, "study", self.cohort, "--design", "repeated", "--masked", names=("--masked",))
         self.refused(2, "study", self.cohort, "--design", "reliability", "--family", "none", names=("none", "path-length left"))

@@ -214,7 +214,7 @@ class Withdraw(Cohort):
                                                                   f"WHERE pseudonym = '{WHO}')"))]
 
     def command(self, work):
-        return ("participant", "withdraw", WHO, "--cohort", work / "c.db", "--scope", "all", "--recordings", work / "data", "--no-key")
+        return ("participant", "withdraw", WHO, "--cohort", work / "c.db", "--scope", "all", "--recordings", work / "data")
 
     def killed(self, work):
         left = self.sound(work)

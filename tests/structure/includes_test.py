@@ -60,7 +60,6 @@ MAY_SEE = {
     "packaging/example": ("sim", "recorder", "analytics"),
     "apps/calot-bench": ("recorder", "apps/common", "tests/bench"),
     "tests/bench": ("sim", "recorder", "analytics", "gui/render"),
-    "assets": ("sim", "recorder", "apps/common"),
 }
 # Headers of a module that another one, which may see the module, may not: what is judged is StepResult.
 NEVER = {"sim/judgement": ("sim/scene/state.h", "sim/scene/model.h", "sim/scene/scene_view.h", "sim/scene/scene_viewer.h")}
@@ -84,7 +83,7 @@ ONLY = {
     "libsw": ("gui/film", "recorder/sources"),
     "apriltag/": ("recorder/sources",),
     "ft2build.h": ("gui/film",),
-    "CLI/": ("apps", "assets"),
+    "CLI/": ("apps",),
     "pybind11/": ("python",),
     "Python.h": ("python",),
     "thread": ("recorder", "analytics/cohort", "gui", "apps"),

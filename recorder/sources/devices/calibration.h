@@ -52,7 +52,7 @@ struct Calibration {
   std::string force = "not applicable";  ///< or the largest error with its unit
   CalibrationLimits limits;
   std::optional<CameraRig> camera;  ///< of cameras that watch printed handles
-  /// Of a mouse: how far the hand moves for a pixel (m), as whoever set it up says; nothing was measured then.
+  /// Mouse: motion of the hand per pixel (m), as declared; not measured.
   std::optional<double> declaredPixel;
 };
 
@@ -71,8 +71,8 @@ std::string calibrationText(const Calibration& calibration, bool compact);
 Calibration readCalibration(const std::filesystem::path& file);
 Calibration parseCalibration(std::span<const std::byte> bytes, const std::string& file);
 
-/// Whether an attempt may use it. Another device's is never used. Assessment mode also refuses one that fell short, is
-/// out of date or dated in the future, or lacks a hand that the device drives at the same time as others.
+/// Decides whether an attempt may use it. Another device's is never used. Assessment mode also refuses one that fell
+/// short, is out of date or dated in the future, or lacks a hand that the device drives at the same time as others.
 /// @throws Error (refused) naming the file and why.
 void checkCalibration(const Calibration& calibration, const DeviceInfo& device, Mode mode, const std::string& now,
                       const std::string& file);

@@ -48,7 +48,7 @@ Vec3 strokeOf(std::span<const DeviceSample> samples, const Vec3& tipOffset);
 /// phase "pivot" does not turn the tool enough or the strokes are not three axes.
 Calibration measureCalibration(const DeviceScript& stream, double strokeLength, const DeviceInfo& device);
 
-/// Of a mouse nothing can be measured: its counts are exact, and how far the hand moves for one is the system's
+/// Nothing is measured for a mouse: its counts are exact, and how far the hand moves for one is the system's
 /// setting. Whoever sets the station up says it. Rate and intervals are the device's by its making.
 /// @param pixel how far the hand moves for a pixel (m)
 /// @throws Error (invalid) for a device of another class, or a length that is none of a mouse

@@ -146,7 +146,7 @@ class DeviceSource final : public SampleSource {
   /// Sets forces on the hands, for devices with motors.
   void feedback(const std::array<Wrench, handCount>& inWorld);
 
-  /// What the device measured since the attempt began, in the order of arrival, for the recording: also those
+  /// Samples of the device since the attempt began, in the order of arrival, for the recording: also those
   /// that no tick used. It begins with what the first tick found. Another thread than the one that asks for
   /// ticks may take them.
   [[nodiscard]] RawSampleFeed& rawSamples() { return raw_; }

@@ -20,7 +20,7 @@ std::span<const DeviceKind* const> deviceKinds();
 /// The kind that a name asks for ("gamepad:left one": gamepad), or null.
 const DeviceKind* findDeviceKind(std::string_view name);
 
-/// What can be asked for without a window: "gamepad[:NAME], openigtlink[:HOST[:PORT]], scripted:FILE or null".
+/// Device names without a window: "gamepad[:NAME], openigtlink[:HOST[:PORT]], scripted:FILE or null".
 /// @param last joins the last two: "or", "and"
 std::string deviceUsage(std::string_view last = "or");
 

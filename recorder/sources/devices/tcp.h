@@ -25,7 +25,7 @@ class TcpStream {
   [[nodiscard]] bool open() const { return descriptor_ >= 0; }
   /// Waits for something to read. @returns false after `wait`.
   [[nodiscard]] bool readable(std::chrono::nanoseconds wait) const;
-  /// What is there, at most the buffer; 0: nothing now. Closes where the other side has.
+  /// Reads what has arrived, at most the buffer; 0: nothing now. Closes if the other side has closed.
   std::size_t receive(std::span<std::byte> buffer);
   /// All or nothing within a second; closes and returns false where that fails.
   bool send(std::span<const std::byte> bytes);

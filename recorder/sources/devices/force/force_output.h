@@ -17,7 +17,7 @@
 
 namespace calot::recorder {
 
-/// What is known of a motor and its mechanism, in one kind of effort: N, m, N s/m; or N m, rad, N m s/rad.
+/// Parameters of a motor and its mechanism, in one kind of effort: N, m, N s/m; or N m, rad, N m s/rad.
 struct TankModel {
   double maxEffort = 0.0;
   double damping = 0.0;   ///< b, the least viscous damping that the mechanism has at its handle
@@ -52,7 +52,7 @@ class EnergyTank {
   [[nodiscard]] double bound() const;
   /// This effort was sent as command `number`; numbers rise.
   void sent(std::uint32_t number, double effort);
-  /// What is not needed for this effort is given up, so that no store of energy is carried into what comes.
+  /// Discards energy that this effort does not need, so that none is carried over.
   void settle(double wanted);
   /// The motor is off and all that was under way is void.
   void reset();
