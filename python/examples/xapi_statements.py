@@ -61,7 +61,7 @@ def statement_of(attempt: dict, values: list[dict], home: str) -> dict:
 
 def rows(table: dict) -> list[dict]:
     """A table of columns as a list of rows of plain Python values."""
-    plain = {name: [v.item() if hasattr(v, "item") else v for v in column] for name, column in table.items()}
+    plain = {name: column.tolist() for name, column in table.items()}
     return [dict(zip(plain, row)) for row in zip(*plain.values())]
 
 

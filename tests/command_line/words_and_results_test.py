@@ -130,7 +130,7 @@ class Cohort(ProgramTest):
         asked = {"calot-replay": ["replay", r], "calot-inspect": ["inspect", r], "calot-scenes": ["scenes"], "calot-checkpoints": ["checkpoints"],
                  "calot-devices": ["devices"], "calot-engines": ["engine", "list"], "calot-cache": ["cache"],
                  "calot-diff": ["diff", self.path("s.h5"), self.path("s.h5")], "calot-assess": ["assess", r, "--cohort", self.cohort],
-                 "calot-regrade": ["regrade", self.cohort, r.parent], "calot-plan": ["regrade", self.cohort, "--plan", 2],
+                 "calot-regrade": ["regrade", self.cohort, r.parent],
                  "calot-norms": ["norm", "list", self.cohort], "calot-forms": ["rate", "--forms"], "calot-ratings": ["rate", self.cohort],
                  "calot-protocols": ["protocol", "list"], "calot-cohort-check": ["cohort", "check", self.cohort],
                  "calot-cohort-list": ["cohort", "list", self.cohort], "calot-cohort-merge": ["cohort", "merge", self.cohort, other],
