@@ -199,8 +199,8 @@ constinit const DeviceKind openIgtLinkKind{
 
 namespace {
 using Clock = std::chrono::steady_clock;
-constexpr std::chrono::milliseconds patience{50};  // between two looks at `stop`
-constexpr std::chrono::milliseconds rest{100};     // between two sendings of the last poses
+constexpr std::chrono::milliseconds lookPeriod{50};  // between two looks at `stop`
+constexpr std::chrono::milliseconds rest{100};       // between two sendings of the last poses
 }  // namespace
 
 OpenIgtLinkServer::OpenIgtLinkServer(const DeviceScript& motion, OpenIgtLinkServerSettings settings)
@@ -224,7 +224,7 @@ void OpenIgtLinkServer::serve(TcpStream client, const std::atomic<bool>& stop) {
   for (const DeviceSample& sample : motion_.samples) {
     const auto due = begin + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double, std::nano>(
                                  static_cast<double>(sample.hostTime) / settings_.speed));
-    while (Clock::now() < due && !stop) std::this_thread::sleep_until(std::min(due, Clock::now() + patience));
+    while (Clock::now() < due && !stop) std::this_thread::sleep_until(std::min(due, Clock::now() + lookPeriod));
     if (stop || !send(client, sample)) return;
     client.receive(unread);
     last[static_cast<std::size_t>(sample.hand)] = sample;
@@ -240,7 +240,7 @@ void OpenIgtLinkServer::serve(TcpStream client, const std::atomic<bool>& stop) {
 
 void OpenIgtLinkServer::run(const std::atomic<bool>& stop, const std::function<void(const std::string&)>& tell) {
   while (!stop) {
-    std::optional<TcpStream> client = listener_.accept(patience);
+    std::optional<TcpStream> client = listener_.accept(lookPeriod);
     if (!client) continue;
     tell("a client is there");
     serve(std::move(*client), stop);

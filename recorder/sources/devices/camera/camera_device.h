@@ -43,7 +43,7 @@ class PedalKeys {
 };
 
 /// Two printed handles that one or two cameras watch. D is the first camera's frame, I a handle's
-/// (handle_geometry.h). A frame gives a sample of each hand; it is invalid where no pose can be believed
+/// (marker_sheets.h). A frame gives a sample of each hand; it is invalid where no pose can be believed
 /// (HandleTracker). Missing frames are missing numbers.
 ///
 /// deviceTime is the exposure's time, on the clock of the frames; hostTime when the pose was there. With live cameras
