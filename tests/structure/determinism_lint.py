@@ -88,17 +88,22 @@ def look(text):
 def lint(root, report=print):
     """Reports every fault below root; returns (files seen, faults)."""
     seen = faults = 0
+    checked = False
     for path in cpp_text.files(root):
         if path.suffix not in (".h", ".cpp") or not any(path.is_relative_to(f) for f in FOLDERS):
             continue
         if path.is_relative_to(INPUT) and path.stem != INPUT_CHECKED:
             continue
+        checked = checked or path.is_relative_to(INPUT)
         seen += 1
         for number, name, why in look((root / path).read_text(encoding="utf-8")):
             if path.as_posix() == STRICTER and name == "relaxed arithmetic":
                 continue
             faults += 1
             report(f"{path}:{number}: forbidden ({name}): {why}")
+    if not checked:
+        faults += 1
+        report(f"{INPUT}: no file {INPUT_CHECKED}: name the one that maps a device's samples into the scene")
     return seen, faults
 
 
