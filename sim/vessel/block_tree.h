@@ -70,7 +70,7 @@ class TreeResponse {
   /// @param tree after BlockTree::factor() @param parent of its nodes @param touched ascending
   void precompute(const BlockTree& tree, std::span<const int> parent, std::span<const std::uint32_t> touched);
 
-  /// @param impulses in, response out: three numbers for each touched node @pre precompute()
+  /// @param push impulses in, response out: three numbers for each touched node @pre precompute()
   void solve(std::span<FourFloats> push);
 
  private:
