@@ -100,7 +100,7 @@ bool sceneLacks(const CheckpointValue& value);
 /// A goal for the next attempt: the first figure that counts and that this attempt did not pass, critical errors and
 /// fixed marks before others, then the one that fewest competent people fall behind.
 struct NextGoal {
-  std::string text;  ///< one sentence; why there is none
+  std::string text;  ///< one sentence, or the reason why there is no value
   std::string checkpoint, subject;
 };
 NextGoal nextGoal(const Grade& grade);

@@ -26,7 +26,7 @@ struct PackAnswers {
 /// Reads and checks the file that a rating page saved: {"format": "calot-answers", "formatVersion": 1, "pack", "rater",
 /// "films": [{"film", "scores": {ITEM: "SCORE" or "-"}}]}; a "seal", which earlier pages wrote, is not read.
 /// @param find the pack of that id, if there is one
-/// @throws Error (damaged) for a file that is none; (refused) for a pack or rater that is not known, a film that is
+/// @throws Error (damaged) for a malformed file; (refused) for a pack or rater that is not known, a film that is
 /// missing or there twice.
 PackAnswers readPackAnswers(const std::filesystem::path& file,
                             const std::function<std::optional<RatingPack>(const std::string& id)>& find);

@@ -62,14 +62,14 @@ struct AttemptContext {
   std::string handedness = "unknown";   ///< as recorded: "right", "left", "unknown"
   SceneFacts scene;
 
-  /// How long so many steps last (s).
+  /// Duration of a number of steps (s).
   [[nodiscard]] double seconds(std::uint64_t steps) const {
     return static_cast<double>(steps * ticksPerStep) * tickSeconds;
   }
   [[nodiscard]] double stepSeconds() const { return tickSeconds * static_cast<double>(ticksPerStep); }
 };
 
-/// A figure, or why there is none.
+/// A figure, or the reason why it is missing.
 struct Measured {
   std::optional<double> value = {};
   Availability missing = Availability::notApplicable;

@@ -34,7 +34,7 @@ struct GridRun {
   void append(const Vec3& p, const Quat& orientation);
 };
 
-/// Time of point k, in the unit of times of which there are so many a second; correctly rounded where that is a whole
+/// Time of point k, in a unit given by its number per second; correctly rounded where that is a whole
 /// number.
 double gridTime(std::int64_t k, double unitsPerSecond);
 
