@@ -36,7 +36,8 @@ Measured withCoverage(Measured measured, const MotionCoverage& coverage) {
   return measured;
 }
 
-/// The measure of one hand's motion, or the reason why it is missing: no instrument, too little coverage, nothing measured.
+/// The measure of one hand's motion, or the reason why it is missing: no instrument, too little coverage, nothing
+/// measured.
 Measured measureHand(double minCoverage, const Motion& motion, MotionMeasure measure) {
   if (!motion.coverage.share()) return Measured::none(Availability::absentHand, "no instrument in this hand");
   std::optional<Measured> refusal = refusalOf(minCoverage, motion.coverage, !motion.segments.empty());
