@@ -4,7 +4,7 @@
 #include <iterator>
 
 #include "analytics/assess.h"
-#include "analytics/checkpoints/registry.h"
+#include "analytics/checkpoints/checkpoint.h"
 #include "python/bindings.h"
 #include "python/exceptions.h"
 #include "python/value_rows.h"

@@ -10,7 +10,7 @@
 #include <tuple>
 
 #include "analytics/assessment/norm_rule.h"
-#include "analytics/checkpoints/registry.h"
+#include "analytics/checkpoints/checkpoint.h"
 #include "recorder/base/errors.h"
 #include "recorder/words.h"
 

@@ -11,7 +11,7 @@
 #include "analytics/assessment/norm.h"
 #include "analytics/cohort/cohort_database.h"
 #include "analytics/statistics/expected.h"
-#include "analytics/statistics/learning_curve.h"
+#include "analytics/statistics/regression.h"
 
 namespace calot::analytics {
 

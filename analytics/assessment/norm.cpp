@@ -10,7 +10,7 @@
 #include <set>
 #include <utility>
 
-#include "analytics/checkpoints/registry.h"
+#include "analytics/checkpoints/checkpoint.h"
 #include "analytics/report/report_text.h"
 #include "analytics/statistics/standard_setting.h"
 #include "recorder/base/errors.h"

@@ -2,6 +2,7 @@
 // A checkpoint is one figure of an attempt (or one per hand, or one per organ), computed from the stream of steps.
 // docs/reference/metrics.md gives the formula, source and pitfalls of each; a test holds it against the
 // registry.
+// Facts about a scene that checkpoints use: reference sizes, and the structures' roles in the operation.
 #pragma once
 
 #include <array>
@@ -16,12 +17,47 @@
 #include <vector>
 
 #include "analytics/checkpoints/definition.h"
-#include "analytics/checkpoints/scene_facts.h"
 #include "recorder/base/identity.h"
 #include "recorder/engine/observer.h"
+#include "recorder/sources/scope/picture_geometry.h"
 #include "sim/judgement/judge.h"
+#include "sim/scene/description.h"
 
 namespace calot::analytics {
+
+/// Taken from the scene's roles (StructureRole) and sizes, never from names, looks or numbers of structures: so they
+/// hold for any scene.
+struct SceneFacts {
+  struct Organ {
+    std::string name;
+    StructureRole role = StructureRole::other;
+    double skinArea = 0.0;  ///< of its surface at rest (m^2)
+    bool hasWall = false;   ///< it can be perforated
+  };
+  struct Vessel {
+    std::string name;
+    bool cystic = false;  ///< cystic duct or cystic artery
+    bool spared = false;  ///< the procedure says that it must be spared
+  };
+  struct Connective {
+    std::string name;
+    bool holdsGallbladder = false;  ///< it is a cystic plate
+    double area = 0.0;              ///< of its bed at rest (m^2), where it holds a gallbladder (connective_bed.h)
+  };
+  /// In the scene's order: the columns of StepResult.
+  std::vector<Organ> organ;
+  std::vector<Vessel> vessel;
+  std::vector<Connective> connective;
+  std::size_t fat = 0;               ///< bodies
+  bool triangle = false;             ///< a region of fat that is to be cleared is marked
+  bool retractionOnRequest = false;  ///< the assistant can be asked to retract more or less
+  recorder::PictureFrame picture = {};
+
+  [[nodiscard]] bool hasCystic() const;  ///< there is a cystic vessel
+  [[nodiscard]] bool hasSpared() const;  ///< there is a vessel to be spared
+};
+
+SceneFacts sceneFacts(const SceneDescription& scene);
 
 /// Availability of a number, and the kind of missing value. Numbers are stored and never reused.
 enum class Availability : std::uint8_t {
@@ -252,5 +288,23 @@ CheckpointValue makeValue(const CheckpointDefinition& definition, std::string su
                           std::string note = {});
 CheckpointValue makeMissing(const CheckpointDefinition& definition, std::string subject, Origin origin,
                             Availability availability, std::string reason);
+
+/// Every checkpoint that this build knows, in the order in which tables show them: by family, then by rank.
+const std::vector<CheckpointEntry>& checkpointRegistry();
+
+/// The definition of a name, or null.
+const CheckpointDefinition* findCheckpoint(std::string_view name);
+
+/// The definition that a value stands on: the registry's, or of an external metric its script's; or null. It lives as
+/// long as the value.
+const CheckpointDefinition* definitionOf(const CheckpointValue& value);
+
+/// The family of a name, or none.
+std::optional<CheckpointFamily> familyOf(std::string_view name);
+
+/// Given for each phase of a procedure, not of the whole attempt.
+bool isOfPhases(const CheckpointDefinition& definition);
+/// Names of those, in the registry's order.
+const std::vector<std::string>& phaseCheckpoints();
 
 }  // namespace calot::analytics

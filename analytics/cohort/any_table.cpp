@@ -9,35 +9,21 @@
 namespace calot::analytics {
 namespace {
 
-std::vector<std::string> texts(SQLite::Database& db, const char* sql, const std::string& about) {
-  SQLite::Statement read(db, sql);
-  read.bind(1, about);
-  std::vector<std::string> all;
-  while (read.executeStep()) all.push_back(read.getColumn(0).getString());
-  return all;
-}
-
 TableFacts factsOf(SQLite::Database& db, const std::string& name) {
   TableFacts t;
   t.name = name;
-  SQLite::Statement columns(db, "SELECT name, type FROM pragma_table_info(?) ORDER BY cid");
-  columns.bind(1, name);
-  while (columns.executeStep())
-    t.columns.push_back({columns.getColumn(0).getString(), columns.getColumn(1).getString()});
-  SQLite::Statement foreign(db,
-                            "SELECT \"from\", \"table\", coalesce(\"to\", '') FROM pragma_foreign_key_list(?) "
-                            "ORDER BY id, seq");
-  foreign.bind(1, name);
-  while (foreign.executeStep()) {
-    ForeignKey key{foreign.getColumn(0).getString(), foreign.getColumn(1).getString(),
-                   foreign.getColumn(2).getString()};
-    if (key.parentColumn.empty()) {
-      const auto primary = texts(db, "SELECT name FROM pragma_table_info(?) WHERE pk = 1", key.parent);
-      if (!primary.empty()) key.parentColumn = primary.front();
-    }
-    t.foreign.push_back(std::move(key));
-  }
-  const auto primary = texts(db, "SELECT name FROM pragma_table_info(?) WHERE pk > 0 ORDER BY pk", name);
+  eachRow(db, "SELECT name, type FROM pragma_table_info(?) ORDER BY cid", {name}, [&](SQLite::Statement& row) {
+    t.columns.push_back({row.getColumn(0).getString(), row.getColumn(1).getString()});
+  });
+  // A key that names no column of its parent refers to the primary key.
+  eachRow(db,
+          "SELECT \"from\", \"table\", coalesce(\"to\", (SELECT name FROM pragma_table_info(\"table\") WHERE pk = 1), '') "
+          "FROM pragma_foreign_key_list(?) ORDER BY id, seq",
+          {name}, [&](SQLite::Statement& row) {
+            t.foreign.push_back(
+                {row.getColumn(0).getString(), row.getColumn(1).getString(), row.getColumn(2).getString()});
+          });
+  const auto primary = firstTexts(db, "SELECT name FROM pragma_table_info(?) WHERE pk > 0 ORDER BY pk", {name});
   const auto isForeign = [&](const std::string& column) {
     return std::any_of(t.foreign.begin(), t.foreign.end(), [&](const ForeignKey& k) { return k.column == column; });
   };
@@ -49,13 +35,13 @@ TableFacts factsOf(SQLite::Database& db, const std::string& name) {
   t.key = primary;
   if (primary.empty() || !t.number.empty()) {
     const auto unique =
-        texts(db,
-              "SELECT name FROM pragma_index_list(?) WHERE \"unique\" = 1 AND origin = 'u' AND partial = 0 "
-              "ORDER BY seq DESC",
-              name);
+        firstTexts(db,
+                   "SELECT name FROM pragma_index_list(?) WHERE \"unique\" = 1 AND origin = 'u' AND partial = 0 "
+                   "ORDER BY seq DESC",
+                   {name});
     t.key.clear();
     if (!unique.empty()) {
-      t.key = texts(db, "SELECT name FROM pragma_index_info(?) ORDER BY seqno", unique.front());
+      t.key = firstTexts(db, "SELECT name FROM pragma_index_info(?) ORDER BY seqno", {unique.front()});
     } else {
       for (const ColumnFacts& c : t.columns) {
         if (c.name != t.number) t.key.push_back(c.name);
@@ -69,10 +55,10 @@ TableFacts factsOf(SQLite::Database& db, const std::string& name) {
 
 std::vector<TableFacts> readTables(SQLite::Database& db) {
   std::vector<TableFacts> rest, ordered;
-  SQLite::Statement names(
-      db,
-      "SELECT name FROM sqlite_master WHERE type = 'table' AND name NOT LIKE 'sqlite\\_%' ESCAPE '\\' ORDER BY name");
-  while (names.executeStep()) rest.push_back(factsOf(db, names.getColumn(0).getString()));
+  for (const std::string& name : firstTexts(db,
+                                            "SELECT name FROM sqlite_master WHERE type = 'table' AND name NOT LIKE "
+                                            "'sqlite\\_%' ESCAPE '\\' ORDER BY name"))
+    rest.push_back(factsOf(db, name));
   std::set<std::string> done;
   while (!rest.empty()) {
     const auto free = std::find_if(rest.begin(), rest.end(), [&](const TableFacts& t) {
@@ -156,19 +142,47 @@ std::string hexOf(const Blob& bytes) {
   return hex;
 }
 
-std::vector<Row> readRows(SQLite::Database& db, const TableFacts& table) {
+int execute(SQLite::Database& db, const std::string& sql, const std::vector<Cell>& parameters) {
+  SQLite::Statement statement(db, sql);
+  int at = 1;
+  for (const Cell& cell : parameters) bindCell(statement, at++, cell);
+  return statement.exec();
+}
+
+std::vector<Cell> firstColumn(SQLite::Database& db, const std::string& sql, const std::vector<Cell>& parameters) {
+  std::vector<Cell> cells;
+  eachRow(db, sql, parameters, [&](SQLite::Statement& row) { cells.push_back(cellOf(row.getColumn(0))); });
+  return cells;
+}
+
+std::vector<std::string> firstTexts(SQLite::Database& db, const std::string& sql,
+                                    const std::vector<Cell>& parameters) {
+  std::vector<std::string> texts;
+  for (const Cell& cell : firstColumn(db, sql, parameters)) texts.push_back(textOf(cell));
+  return texts;
+}
+
+std::int64_t firstNumber(SQLite::Database& db, const std::string& sql, const std::vector<Cell>& parameters,
+                         std::int64_t otherwise) {
+  const std::vector<Cell> cells = firstColumn(db, sql, parameters);
+  return cells.empty() ? otherwise : numberOf(cells.front());
+}
+
+std::vector<Row> readRows(SQLite::Database& db, const TableFacts& table, const std::string& condition,
+                          const std::vector<Cell>& parameters) {
   std::vector<std::string> columns, order;
   for (const ColumnFacts& c : table.columns) columns.push_back(quotedName(c.name));
   for (const std::string& k : table.key) order.push_back(quotedName(k));
   if (!table.number.empty()) order = {quotedName(table.number)};
-  SQLite::Statement read(db, fmt::format("SELECT {} FROM {}{}", joined(columns, ", "), quotedName(table.name),
-                                         order.empty() ? "" : " ORDER BY " + joined(order, ", ")));
+  std::string query = fmt::format("SELECT {} FROM {}", joined(columns, ", "), quotedName(table.name));
+  if (!condition.empty()) query += " WHERE " + condition;
+  if (!order.empty()) query += " ORDER BY " + joined(order, ", ");
   std::vector<Row> rows;
-  while (read.executeStep()) {
+  eachRow(db, query, parameters, [&](SQLite::Statement& read) {
     Row& row = rows.emplace_back();
     for (std::size_t c = 0; c < table.columns.size(); ++c)
       row[table.columns[c].name] = cellOf(read.getColumn(static_cast<int>(c)));
-  }
+  });
   return rows;
 }
 

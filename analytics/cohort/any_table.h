@@ -60,7 +60,27 @@ Blob blobOf(const std::array<std::byte, N>& bytes) {
 }
 std::string joined(const std::vector<std::string>& parts, const char* between);
 
-/// Every row of a table, in its primary key's order.
-std::vector<Row> readRows(SQLite::Database& db, const TableFacts& table);
+/// Runs a statement with its parameters. @return how many rows it changed
+int execute(SQLite::Database& db, const std::string& sql, const std::vector<Cell>& parameters = {});
+/// Calls take(statement) at each row of a query.
+template <class Take>
+void eachRow(SQLite::Database& db, const std::string& sql, const std::vector<Cell>& parameters, Take take) {
+  SQLite::Statement query(db, sql);
+  int at = 1;
+  for (const Cell& cell : parameters) bindCell(query, at++, cell);
+  while (query.executeStep()) take(query);
+}
+/// The first column of every row of a query.
+std::vector<Cell> firstColumn(SQLite::Database& db, const std::string& sql, const std::vector<Cell>& parameters = {});
+/// The same of texts.
+std::vector<std::string> firstTexts(SQLite::Database& db, const std::string& sql,
+                                    const std::vector<Cell>& parameters = {});
+/// The first column of the first row, a whole number. @param otherwise where there is no row
+std::int64_t firstNumber(SQLite::Database& db, const std::string& sql, const std::vector<Cell>& parameters = {},
+                         std::int64_t otherwise = -1);
+
+/// Rows of a table, in its primary key's order. @param condition on them, with its parameters; empty: every row
+std::vector<Row> readRows(SQLite::Database& db, const TableFacts& table, const std::string& condition = {},
+                          const std::vector<Cell>& parameters = {});
 
 }  // namespace calot::analytics

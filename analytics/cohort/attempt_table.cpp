@@ -3,13 +3,9 @@
 
 #include <fmt/format.h>
 #include <algorithm>
-#include <array>
-#include <cstdlib>
-#include <cstring>
 #include <map>
 #include <utility>
 
-#include "analytics/cohort/row_statements.h"
 #include "analytics/cohort/tables.h"
 
 namespace calot::analytics::tables {
@@ -54,31 +50,33 @@ AttemptRow attemptRow(SQLite::Statement& row) {
 }  // namespace
 
 std::int64_t attemptId(SQLite::Database& db, const std::string& uuid) {
-  SQLite::Statement find(db, "SELECT id FROM attempt WHERE uuid = ?");
-  find.bind(1, uuid);
-  return find.executeStep() ? find.getColumn(0).getInt64() : -1;
+  return firstNumber(db, "SELECT id FROM attempt WHERE uuid = ?", {uuid});
+}
+
+std::int64_t knownAttempt(SQLite::Database& db, const std::string& path, const std::string& uuid) {
+  const std::int64_t id = attemptId(db, uuid);
+  if (id < 0) throw Error(ErrorKind::refused, Where{path}, fmt::format("no attempt {}", uuid));
+  return id;
 }
 
 std::optional<AttemptRow> findAttempt(SQLite::Database& db, const std::string& uuid) {
-  SQLite::Statement select(db, selectAttempts("WHERE a.uuid = ?"));
-  select.bind(1, uuid);
-  if (!select.executeStep()) return std::nullopt;
-  AttemptRow row = attemptRow(select);
-  SQLite::Statement tags(db, "SELECT tag FROM attempt_tag WHERE attempt = ? ORDER BY tag");
-  tags.bind(1, attemptId(db, uuid));
-  while (tags.executeStep()) row.tags.push_back(text(tags.getColumn(0)));
-  return row;
+  std::optional<AttemptRow> found;
+  eachRow(db, selectAttempts("WHERE a.uuid = ?"), {uuid}, [&](SQLite::Statement& row) { found = attemptRow(row); });
+  if (found) {
+    found->tags =
+        firstTexts(db, "SELECT tag FROM attempt_tag WHERE attempt = ? ORDER BY tag", {attemptId(db, uuid)});
+  }
+  return found;
 }
 
 std::vector<AttemptRow> readAttempts(SQLite::Database& db) {
-  SQLite::Statement select(db, selectAttempts("ORDER BY a.start_utc, a.uuid"));
   std::vector<AttemptRow> rows;
-  while (select.executeStep()) rows.push_back(attemptRow(select));
+  eachRow(db, selectAttempts("ORDER BY a.start_utc, a.uuid"), {},
+          [&](SQLite::Statement& row) { rows.push_back(attemptRow(row)); });
   // Few have any: looking for them beside each attempt would cost more.
   std::map<std::string, std::vector<std::string>> tagsOf;
-  SQLite::Statement tags(db, "SELECT a.uuid, t.tag FROM attempt_tag t JOIN attempt a ON a.id = t.attempt ORDER BY 2");
-  while (tags.executeStep()) tagsOf[text(tags.getColumn(0))].push_back(text(tags.getColumn(1)));
-  if (tagsOf.empty()) return rows;
+  eachRow(db, "SELECT a.uuid, t.tag FROM attempt_tag t JOIN attempt a ON a.id = t.attempt ORDER BY 2", {},
+          [&](SQLite::Statement& row) { tagsOf[text(row.getColumn(0))].push_back(text(row.getColumn(1))); });
   for (AttemptRow& row : rows) {
     if (const auto at = tagsOf.find(row.uuid); at != tagsOf.end()) row.tags = std::move(at->second);
   }
@@ -100,29 +98,18 @@ void checkDecision(const std::string& reason, const std::string& by) {
   if (isBlank(reason)) throw Error(ErrorKind::invalid, "exclusion: a reason is wanted");
 }
 
-std::int64_t knownAttempt(SQLite::Database& db, const std::string& path, const std::string& attempt) {
-  const std::int64_t id = attemptId(db, attempt);
-  if (id < 0) throw Error(ErrorKind::refused, Where{path}, fmt::format("no attempt {}", attempt));
-  return id;
-}
-
 /// Runs a statement for each attempt that binds its number and the tag, and audits those that it changes.
-std::size_t changeTags(SQLite::Database& db, const std::string& path, const std::vector<std::string>& attempts,
-                       const std::string& tag, const std::string& by, const char* sql, const char* action) {
+std::size_t changeTags(CohortConnection& cohort, const std::vector<std::string>& attempts, const std::string& tag,
+                       const std::string& by, const char* sql, const char* action) {
   checkTag(tag);
   if (isBlank(by)) throw Error(ErrorKind::invalid, "tag: name who decides");
-  return guarded(path, [&] {
-    SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
-    SQLite::Statement change(db, sql);
+  return cohort.change([&](SQLite::Database& db) {
     std::size_t changed = 0;
     for (const std::string& attempt : attempts) {
-      change.reset();
-      SQLite::bind(change, knownAttempt(db, path, attempt), tag);
-      if (change.exec() == 0) continue;
+      if (execute(db, sql, {knownAttempt(db, cohort.path, attempt), tag}) == 0) continue;
       audit(db, action, attempt, fmt::format("{} (by {})", tag, by));
       ++changed;
     }
-    transaction.commit();
     return changed;
   });
 }
@@ -144,49 +131,36 @@ void checkTag(const std::string& tag) {
 void CohortDatabase::excludeAttempts(const std::vector<std::string>& attempts, const std::string& reason,
                                      const std::string& by) {
   checkDecision(reason, by);
-  guarded(path(), [&] {
-    SQLite::Database& db = *storage_->db;
-    SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
-    SQLite::Statement put(db,
-                          "INSERT INTO exclusion VALUES (?, ?, ?, ?) ON CONFLICT DO UPDATE SET reason = "
-                          "excluded.reason, excluded_by = excluded.excluded_by, excluded_utc = excluded.excluded_utc");
+  connection_->change([&](SQLite::Database& db) {
     for (const std::string& attempt : attempts) {
-      put.reset();
-      SQLite::bind(put, knownAttempt(db, path(), attempt), reason, by, nowUtc());
-      put.exec();
+      execute(db, "INSERT OR REPLACE INTO exclusion VALUES (?, ?, ?, ?)",
+              {knownAttempt(db, path(), attempt), reason, by, nowUtc()});
       audit(db, "attempt-exclude", attempt, fmt::format("{} (by {})", reason, by));
     }
-    transaction.commit();
   });
 }
 
 void CohortDatabase::includeAttempts(const std::vector<std::string>& attempts, const std::string& reason,
                                      const std::string& by) {
   checkDecision(reason, by);
-  guarded(path(), [&] {
-    SQLite::Database& db = *storage_->db;
-    SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
-    SQLite::Statement clear(db, "DELETE FROM exclusion WHERE attempt = ?");
+  connection_->change([&](SQLite::Database& db) {
     for (const std::string& attempt : attempts) {
-      clear.reset();
-      clear.bind(1, knownAttempt(db, path(), attempt));
-      if (clear.exec() == 0)
+      if (execute(db, "DELETE FROM exclusion WHERE attempt = ?", {knownAttempt(db, path(), attempt)}) == 0)
         throw Error(ErrorKind::refused, Where{path()}, fmt::format("attempt {} is not excluded", attempt));
       audit(db, "attempt-include", attempt, fmt::format("{} (by {})", reason, by));
     }
-    transaction.commit();
   });
 }
 
 std::size_t CohortDatabase::tagAttempts(const std::vector<std::string>& attempts, const std::string& tag,
                                         const std::string& by) {
-  return changeTags(*storage_->db, path(), attempts, tag, by,
+  return changeTags(*connection_, attempts, tag, by,
                     "INSERT INTO attempt_tag (attempt, tag) VALUES (?, ?) ON CONFLICT DO NOTHING", "attempt-tag");
 }
 
 std::size_t CohortDatabase::untagAttempts(const std::vector<std::string>& attempts, const std::string& tag,
                                           const std::string& by) {
-  return changeTags(*storage_->db, path(), attempts, tag, by, "DELETE FROM attempt_tag WHERE attempt = ? AND tag = ?",
+  return changeTags(*connection_, attempts, tag, by, "DELETE FROM attempt_tag WHERE attempt = ? AND tag = ?",
                     "attempt-untag");
 }
 

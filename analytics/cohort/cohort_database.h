@@ -122,6 +122,8 @@ struct AttemptValue {
   std::optional<ValueInterval> interval = {};  ///< of this value, where one was worked out
 };
 
+struct CohortConnection;
+
 /// One connection to a cohort database: WAL mode, foreign keys, strict tables. Two processes may write at once (the
 /// second waits). Every modifying call is one transaction, so that a killed process leaves no partial change. Not
 /// thread-safe: open one connection per thread.
@@ -210,8 +212,7 @@ class CohortDatabase {
   [[nodiscard]] std::vector<GroupCount> groups() const;  ///< by name
 
  private:
-  struct Storage;
-  std::unique_ptr<Storage> storage_;
+  std::unique_ptr<CohortConnection> connection_;
 };
 
 /// "touch-liver/1 device=falcon calibration=- simulation=1 results=1 mode=assessment": attempts are compared only

@@ -9,8 +9,8 @@
 #include <string_view>
 #include <vector>
 
-#include "analytics/cohort/analysis_locks.h"
 #include "analytics/cohort/assessment_database.h"
+#include "analytics/cohort/blinding.h"
 #include "analytics/cohort/registers.h"
 
 namespace calot::analytics {

@@ -2,21 +2,20 @@
 // First and repeated import of an attempt.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
+#include <string_view>
 
 #include "analytics/cohort/connection.h"
-#include "analytics/cohort/row_statements.h"
 #include "analytics/cohort/tables.h"
 
 namespace calot::analytics::tables {
 
 void checkAttempt(const AttemptRecord& a, const std::string& path) {
-  bool uuid = a.uuid.size() == 36;
-  for (std::size_t i = 0; uuid && i < a.uuid.size(); ++i) {
-    const char c = a.uuid[i];
-    const bool hyphen = i == 8 || i == 13 || i == 18 || i == 23;
-    uuid = hyphen ? c == '-' : (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f');
-  }
+  constexpr std::string_view form = "00000000-0000-0000-0000-000000000000";
+  const bool uuid = std::equal(a.uuid.begin(), a.uuid.end(), form.begin(), form.end(), [](char c, char of) {
+    return of == '-' ? c == '-' : (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f');
+  });
   if (!uuid)
     throw Error(ErrorKind::damaged, Where{a.fileName.empty() ? path : a.fileName},
                 fmt::format("attempt \"{}\" is not a uuid", a.uuid));
@@ -54,9 +53,7 @@ std::string contradiction(const AttemptRecord& known, const AttemptRecord& incom
 void writeRecording(SQLite::Database& db, std::int64_t id, const AttemptRecord& a) {
   InsertOf put(db, recordingTable(), {"attempt"}, orUpdateAllBut(recordingTable(), {"attempt", "step_seconds"}));
   put(a, {id});
-  SQLite::Statement outcome(db, "UPDATE attempt SET outcome = ? WHERE id = ?");
-  SQLite::bind(outcome, number(a.outcome), id);
-  outcome.exec();
+  execute(db, "UPDATE attempt SET outcome = ? WHERE id = ?", {static_cast<int>(a.outcome), id});
 }
 
 void writeVerification(SQLite::Database& db, std::int64_t id, const Verification& v) {
@@ -126,14 +123,10 @@ Imported updateAttempt(SQLite::Database& db, const std::string& path, const Atte
     writeSignature(db, id, a);
     changed = true;
   } else if (longer && !a.signature && known.signature) {
-    SQLite::Statement clear(db, "DELETE FROM recording_signature WHERE attempt = ?");  // it was of the shorter content
-    clear.bind(1, id);
-    clear.exec();
+    execute(db, "DELETE FROM recording_signature WHERE attempt = ?", {id});  // it was of the shorter content
   }
   if (known.station.empty() && !a.station.empty()) {
-    SQLite::Statement put(db, "UPDATE attempt SET station = ? WHERE id = ?");  // came in before stations were kept
-    SQLite::bind(put, a.station, id);
-    put.exec();
+    execute(db, "UPDATE attempt SET station = ? WHERE id = ?", {a.station, id});  // came in before stations were kept
     changed = true;
   }
   if (longer || !(trusted && blind)) {
@@ -144,7 +137,9 @@ Imported updateAttempt(SQLite::Database& db, const std::string& path, const Atte
     }
     if (values != nullptr && replaceValues(db, id, *values)) changed = true;
     // Those of external metrics are of the shorter content, or of one that does not verify.
-    if ((longer || (values != nullptr && values->empty())) && removeExternalValues(db, id)) changed = true;
+    if ((longer || (values != nullptr && values->empty())) &&
+        execute(db, "DELETE FROM external_value WHERE attempt = ?", {id}) > 0)
+      changed = true;
   }
   if (!changed) return Imported::unchanged;
   audit(db, "attempt-update", a.uuid,

@@ -2,71 +2,43 @@
 // Rows of participants and of the audit trail.
 
 #include "analytics/cohort/tables.h"
-#include "analytics/cohort/row_statements.h"
 
 #include <fmt/format.h>
 #include <algorithm>
-#include <chrono>
 
 #include "analytics/cohort/connection.h"
+#include "recorder/base/dates.h"
 
 namespace calot::analytics::tables {
 
 void audit(SQLite::Database& db, const std::string& action, const std::string& subject, const std::string& detail) {
-  SQLite::Statement insert(db, "INSERT INTO audit (at_utc, action, subject, detail) VALUES (?, ?, ?, ?)");
-  SQLite::bind(insert, nowUtc(), action, subject, detail);
-  insert.exec();
+  execute(db, "INSERT INTO audit (at_utc, action, subject, detail) VALUES (?, ?, ?, ?)",
+          {nowUtc(), action, subject, detail});
 }
 
-void checkPseudonym(const std::string& pseudonym) {
+void checkName(const std::string& message, const std::string& name) {
   const auto control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; };
-  if (pseudonym.empty() || pseudonym.size() > 64 || pseudonym.front() == ' ' || pseudonym.back() == ' ' ||
-      std::any_of(pseudonym.begin(), pseudonym.end(), control)) {
+  if (name.empty() || name.size() > 64 || name.front() == ' ' || name.back() == ' ' ||
+      std::any_of(name.begin(), name.end(), control)) {
     throw Error(ErrorKind::invalid,
-                "participant: a pseudonym has 1 to 64 characters, no control characters and no blank at its ends");
+                message + " has 1 to 64 characters, no control characters and no blank at its ends");
   }
 }
-
-namespace {
-
-void checkDate(const std::string& purpose, const std::string& date) {
-  const auto digits = [&](std::size_t from, std::size_t n) {
-    unsigned v = 0;
-    for (std::size_t i = from; i < from + n; ++i) {
-      if (date[i] < '0' || date[i] > '9') return -1;
-      v = v * 10 + static_cast<unsigned>(date[i] - '0');
-    }
-    return static_cast<int>(v);
-  };
-  bool good = date.size() == 10 && date[4] == '-' && date[7] == '-';
-  if (good) {
-    const int y = digits(0, 4), m = digits(5, 2), d = digits(8, 2);
-    good = y > 0 && m > 0 && d > 0 &&
-           std::chrono::year_month_day(std::chrono::year(y), std::chrono::month(static_cast<unsigned>(m)),
-                                       std::chrono::day(static_cast<unsigned>(d)))
-               .ok();
-  }
-  if (!good)
-    throw Error(ErrorKind::invalid, fmt::format("consent {}: \"{}\" is not a date (YYYY-MM-DD)", purpose, date));
-}
-
-}  // namespace
 
 void checkDetails(const std::map<std::string, std::string>& experience,
                   const std::map<std::string, std::string>& consent) {
   for (const auto& item : experience) {
     if (item.first.empty()) throw Error(ErrorKind::invalid, "experience: a criterion needs a name (criterion=value)");
   }
-  for (const auto& item : consent) {
-    if (item.first.empty()) throw Error(ErrorKind::invalid, "consent: a purpose needs a name (purpose:YYYY-MM-DD)");
-    checkDate(item.first, item.second);
+  for (const auto& [purpose, date] : consent) {
+    if (purpose.empty()) throw Error(ErrorKind::invalid, "consent: a purpose needs a name (purpose:YYYY-MM-DD)");
+    if (!recorder::isDate(date + "T00:00:00Z"))
+      throw Error(ErrorKind::invalid, fmt::format("consent {}: \"{}\" is not a date (YYYY-MM-DD)", purpose, date));
   }
 }
 
 std::int64_t participantId(SQLite::Database& db, const std::string& pseudonym) {
-  SQLite::Statement find(db, "SELECT id FROM participant WHERE pseudonym = ?");
-  find.bind(1, pseudonym);
-  return find.executeStep() ? find.getColumn(0).getInt64() : -1;
+  return firstNumber(db, "SELECT id FROM participant WHERE pseudonym = ?", {pseudonym});
 }
 
 std::int64_t insertParticipant(SQLite::Database& db, const Participant& p) {
@@ -76,18 +48,87 @@ std::int64_t insertParticipant(SQLite::Database& db, const Participant& p) {
 
 void writeDetails(SQLite::Database& db, std::int64_t id, const std::map<std::string, std::string>& experience,
                   const std::map<std::string, std::string>& consent) {
-  for (const auto& item : experience) {
-    SQLite::Statement put(
-        db, "INSERT INTO participant_experience VALUES (?, ?, ?) ON CONFLICT DO UPDATE SET value = excluded.value");
-    SQLite::bind(put, id, item.first, item.second);
-    put.exec();
+  for (const auto& [criterion, value] : experience) {
+    execute(db, "INSERT INTO participant_experience VALUES (?, ?, ?) ON CONFLICT DO UPDATE SET value = excluded.value",
+            {id, criterion, value});
   }
-  for (const auto& item : consent) {
-    SQLite::Statement put(
-        db, "INSERT INTO consent VALUES (?, ?, ?) ON CONFLICT DO UPDATE SET given_on = excluded.given_on");
-    SQLite::bind(put, id, item.first, item.second);
-    put.exec();
+  for (const auto& [purpose, date] : consent) {
+    execute(db, "INSERT INTO consent VALUES (?, ?, ?) ON CONFLICT DO UPDATE SET given_on = excluded.given_on",
+            {id, purpose, date});
   }
+}
+
+std::string memberColumns(const DeclaredTable& table, const std::string& alias) {
+  std::vector<std::string> names;
+  for (const DeclaredColumn& c : table.columns) {
+    if (c.member.read != nullptr) names.push_back(alias.empty() ? c.name : alias + "." + c.name);
+  }
+  return joined(names, ", ");
+}
+
+void readMembers(const DeclaredTable& table, SQLite::Statement& from, int& column, void* row) {
+  for (const DeclaredColumn& c : table.columns) {
+    if (c.member.read != nullptr) c.member.read(from.getColumn(column++), row);
+  }
+}
+
+std::string orUpdateAllBut(const DeclaredTable& table, std::initializer_list<std::string_view> kept) {
+  std::vector<std::string> changes;
+  for (const DeclaredColumn& c : table.columns) {
+    if (std::find(kept.begin(), kept.end(), c.name) == kept.end())
+      changes.push_back(fmt::format("{0} = excluded.{0}", c.name));
+  }
+  return " ON CONFLICT DO UPDATE SET " + joined(changes, ", ");
+}
+
+namespace {
+
+std::string insertText(const DeclaredTable& table, std::initializer_list<const char*> others,
+                       const std::string& conflict) {
+  std::vector<std::string> names(others.begin(), others.end());
+  for (const DeclaredColumn& c : table.columns) {
+    if (c.member.bind != nullptr) names.emplace_back(c.name);
+  }
+  return fmt::format("INSERT INTO {} ({}) VALUES ({}){}", table.name, joined(names, ", "),
+                     joined(std::vector<std::string>(names.size(), "?"), ", "), conflict);
+}
+
+}  // namespace
+
+RowInsert::RowInsert(SQLite::Database& db, const DeclaredTable& table, std::initializer_list<const char*> others,
+                     const std::string& conflict)
+    : table_(table), statement_(db, insertText(table, others, conflict)) {}
+
+void RowInsert::insert(const void* row, const std::vector<Cell>& others) {
+  statement_.reset();
+  int at = 1;
+  for (const Cell& cell : others) bindCell(statement_, at++, cell);
+  for (const DeclaredColumn& c : table_.columns) {
+    if (c.member.bind != nullptr) c.member.bind(statement_, at++, row);
+  }
+  statement_.exec();
+}
+
+std::vector<std::string> schemaFaults(SQLite::Database& db) {
+  std::vector<std::string> faults;
+  for (const DeclaredTable* table : cohortTables()) {
+    std::map<std::string, std::string> there;
+    eachRow(db, "SELECT name, type || iif(\"notnull\", ' NOT NULL', '') FROM pragma_table_info(?)", {table->name},
+            [&](SQLite::Statement& row) { there[text(row.getColumn(0))] = text(row.getColumn(1)); });
+    for (const DeclaredColumn& c : table->columns) {
+      const auto at = there.find(c.name);
+      if (at == there.end()) {
+        faults.push_back(fmt::format("table {} has no column {}", table->name, c.name));
+        continue;
+      }
+      if (at->second != c.type)
+        faults.push_back(fmt::format("column {} of {} is {}, not {}", c.name, table->name, at->second, c.type));
+      there.erase(at);
+    }
+    for (const auto& [name, type] : there)
+      faults.push_back(fmt::format("column {} of {} is not of this schema", name, table->name));
+  }
+  return faults;
 }
 
 }  // namespace calot::analytics::tables

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Access to single tables, which CohortDatabase and AssessmentDatabase combine. No function here begins a transaction.
+// Access to single tables, which CohortDatabase and AssessmentDatabase combine, and the statements that follow from a
+// table's declaration. No function here begins a transaction.
 #pragma once
 
 #include <SQLiteCpp/SQLiteCpp.h>
@@ -8,39 +9,29 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <initializer_list>
 #include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "analytics/cohort/any_table.h"
 #include "analytics/cohort/assessment_database.h"
 #include "analytics/cohort/cohort_database.h"
 #include "analytics/cohort/connection.h"
+#include "analytics/cohort/declared_tables.h"
 
 namespace calot::analytics::tables {
 
-template <class Enum>
-int number(Enum value) {
-  return static_cast<int>(value);
-}
-
-/// An enumeration from the database, whose CHECK keeps it in range.
-template <class Enum>
-Enum enumeration(const SQLite::Column& column) {
-  return static_cast<Enum>(column.getInt());
-}
-
 inline std::string text(const SQLite::Column& column) { return column.getString(); }
-
-inline std::optional<double> optional(const SQLite::Column& column) {
-  return column.isNull() ? std::nullopt : std::optional(column.getDouble());
-}
 
 void audit(SQLite::Database& db, const std::string& action, const std::string& subject, const std::string& detail);
 
+/// @param message begins the fault. @throws Error (invalid) for a name that is empty, long or not printable.
+void checkName(const std::string& message, const std::string& name);
 /// @throws Error (invalid).
-void checkPseudonym(const std::string& pseudonym);
+inline void checkPseudonym(const std::string& pseudonym) { checkName("participant: a pseudonym", pseudonym); }
 /// Names of criteria and purposes, dates of consent. @throws Error (invalid).
 void checkDetails(const std::map<std::string, std::string>& experience,
                   const std::map<std::string, std::string>& consent);
@@ -53,6 +44,8 @@ void writeDetails(SQLite::Database& db, std::int64_t participant, const std::map
 
 /// -1: there is none.
 std::int64_t attemptId(SQLite::Database& db, const std::string& uuid);
+/// @throws Error (refused) where there is none. @param path for the message
+std::int64_t knownAttempt(SQLite::Database& db, const std::string& path, const std::string& uuid);
 std::optional<AttemptRow> findAttempt(SQLite::Database& db, const std::string& uuid);
 /// By start, then uuid.
 std::vector<AttemptRow> readAttempts(SQLite::Database& db);
@@ -85,32 +78,66 @@ void checkExternalMetric(SQLite::Database& db, const std::string& path, const Ex
 /// CohortDatabase::storeExternal() without its transaction. @returns how many rows are new.
 std::size_t writeExternalValues(SQLite::Database& db, const std::string& path, std::int64_t attempt,
                                 const std::vector<CheckpointValue>& values);
-/// Removes external values of an attempt whose content has changed. @returns whether there were any.
-bool removeExternalValues(SQLite::Database& db, std::int64_t attempt);
 /// @returns whether anything changed.
 bool replaceValues(SQLite::Database& db, std::int64_t attempt, const std::vector<CheckpointValue>& values);
-
-}  // namespace calot::analytics::tables
-
-namespace calot::analytics {
-
-struct CohortDatabase::Storage {
-  std::string path;
-  std::unique_ptr<SQLite::Database> db;
-};
-
-struct AssessmentDatabase::Storage {
-  std::string path;
-  std::unique_ptr<SQLite::Database> db;
-};
-
-namespace tables {
 
 /// A filled form, and the form itself where it is not there yet; begins no transaction. @throws Error as
 /// AssessmentDatabase::storeRating().
 void putRating(SQLite::Database& db, const std::string& path, const StoredDocument& form, const Rating& rating,
                bool replace);
 
-}  // namespace tables
+/// The columns that the table's struct holds, for SELECT: "c.name, c.subject". @param alias of the table in the
+/// statement; may be empty
+std::string memberColumns(const DeclaredTable& table, const std::string& alias = {});
 
-}  // namespace calot::analytics
+void readMembers(const DeclaredTable& table, SQLite::Statement& from, int& column, void* row);
+/// Reads the members of memberColumns() from `column` on, and moves it behind them.
+template <class Row>
+void readMembers(const TableOf<Row>& table, SQLite::Statement& from, int& column, Row& row) {
+  readMembers(static_cast<const DeclaredTable&>(table), from, column, static_cast<void*>(&row));
+}
+
+/// "ON CONFLICT DO UPDATE SET ..." of every column but those that are named.
+std::string orUpdateAllBut(const DeclaredTable& table, std::initializer_list<std::string_view> kept);
+
+/// Inserts rows of one table, one after the other.
+class RowInsert {
+ public:
+  /// @param others columns that no member holds, whose cells stand beside each row. @param conflict a clause, or empty
+  RowInsert(SQLite::Database& db, const DeclaredTable& table, std::initializer_list<const char*> others = {},
+            const std::string& conflict = {});
+
+ protected:
+  void insert(const void* row, const std::vector<Cell>& others);
+
+ private:
+  const DeclaredTable& table_;
+  SQLite::Statement statement_;
+};
+
+template <class Row>
+class InsertOf : public RowInsert {
+ public:
+  InsertOf(SQLite::Database& db, const TableOf<Row>& table, std::initializer_list<const char*> others = {},
+           const std::string& conflict = {})
+      : RowInsert(db, table, others, conflict) {}
+  void operator()(const Row& row, const std::vector<Cell>& others = {}) { insert(&row, others); }
+};
+
+/// Every row that a clause ("WHERE norm = ? ORDER BY position") selects. @param parameters of the clause
+template <class Row>
+std::vector<Row> selectRows(SQLite::Database& db, const TableOf<Row>& table, const std::string& clause,
+                            const std::vector<Cell>& parameters = {}) {
+  std::vector<Row> rows;
+  eachRow(db, "SELECT " + memberColumns(table) + " FROM " + table.name + " " + clause, parameters,
+          [&](SQLite::Statement& select) {
+            int column = 0;
+            readMembers(table, select, column, rows.emplace_back());
+          });
+  return rows;
+}
+
+/// Where the database's tables are not as declared, one line each.
+std::vector<std::string> schemaFaults(SQLite::Database& db);
+
+}  // namespace calot::analytics::tables

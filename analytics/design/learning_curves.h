@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "analytics/statistics/expected.h"
-#include "analytics/statistics/learning_curve.h"
+#include "analytics/statistics/regression.h"
 
 namespace calot::analytics {
 

@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "analytics/external/metric_input.h"
 
+#include <stdlib.h>  // mkdtemp
+#include <cerrno>
 #include <fstream>
+#include <string>
 #include <string_view>
+#include <system_error>
 #include <type_traits>
 
 #include "analytics/external/input_columns.h"
@@ -11,6 +16,21 @@
 #include "sim/judgement/judge.h"
 
 namespace calot::analytics {
+
+TemporaryFolder::TemporaryFolder() {
+  std::error_code fault;
+  const std::filesystem::path place = std::filesystem::temp_directory_path(fault);
+  std::string name = ((fault ? std::filesystem::path(".") : place) / "calot-metric-XXXXXX").string();
+  if (mkdtemp(name.data()) == nullptr)
+    throw Error(ErrorKind::failure, Where{name}, "cannot be made: " + std::generic_category().message(errno));
+  path_ = name;
+}
+
+TemporaryFolder::~TemporaryFolder() {
+  std::error_code ignored;
+  if (!path_.empty()) std::filesystem::remove_all(path_, ignored);
+}
+
 namespace {
 
 using Json = nlohmann::ordered_json;

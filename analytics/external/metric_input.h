@@ -4,14 +4,29 @@
 
 #include <filesystem>
 #include <memory>
+#include <utility>
 
 #include "analytics/checkpoints/definition.h"
-#include "analytics/external/temporary_folder.h"
 #include "recorder/base/identity.h"
 #include "recorder/engine/observer.h"
 #include "recorder/sources/tracked_motion.h"
 
 namespace calot::analytics {
+
+/// A new folder that its owner alone may enter, removed with all that is in it.
+class TemporaryFolder {
+ public:
+  /// Below TMPDIR. @throws Error (failure).
+  TemporaryFolder();
+  TemporaryFolder(TemporaryFolder&& other) noexcept : path_(std::exchange(other.path_, {})) {}
+  TemporaryFolder& operator=(TemporaryFolder&&) = delete;
+  ~TemporaryFolder();
+
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
 
 /// The observer that writes them: results once a step, samples and forces once a tick, events as they are judged. It
 /// says nothing of who acted: a metric can't go by participant or group.

@@ -11,9 +11,9 @@
 #include <string_view>
 #include <utility>
 
-#include "analytics/checkpoints/registry.h"
-#include "analytics/external/runner.h"
-#include "analytics/external/temporary_folder.h"
+#include "analytics/checkpoints/checkpoint.h"
+#include "analytics/external/metric_input.h"
+#include "analytics/external/script_process.h"
 #include "recorder/base/file_bytes.h"
 #include "recorder/base/text_words.h"
 

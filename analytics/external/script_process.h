@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace calot::analytics {
@@ -35,5 +36,9 @@ std::string pythonProgram();
 /// cannot be started.
 ScriptEnd runScript(const std::vector<std::string>& command, const std::filesystem::path& folder,
                     const ScriptLimits& limits, std::uint64_t inputBytes);
+
+/// analytics/external/run_metric.py: what runs a user's script and writes one line of JSON to file descriptor 3. It
+/// travels inside the program.
+std::string_view metricRunner();
 
 }  // namespace calot::analytics

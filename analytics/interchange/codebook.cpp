@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "analytics/checkpoints/registry.h"
+#include "analytics/checkpoints/checkpoint.h"
 #include "recorder/attempt.h"
 #include "recorder/base/csv_writer.h"
 

@@ -19,7 +19,6 @@
 #include "analytics/cohort/cohort_database.h"
 #include "analytics/report/ratings.h"
 #include "analytics/statistics/descriptive.h"
-#include "analytics/statistics/effect_sizes.h"
 #include "analytics/statistics/expected.h"
 #include "analytics/statistics/rank_tests.h"
 #include "analytics/statistics/regression.h"

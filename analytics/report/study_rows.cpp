@@ -9,7 +9,7 @@
 #include "analytics/report/report_text.h"
 #include "analytics/report/study_protocol.h"
 #include "analytics/statistics/descriptive.h"
-#include "analytics/statistics/multiplicity.h"
+#include "analytics/statistics/rank_tests.h"
 #include "recorder/base/errors.h"
 
 namespace calot::analytics {

@@ -9,7 +9,7 @@
 
 #include "analytics/statistics/descriptive.h"
 #include "analytics/statistics/distributions.h"
-#include "analytics/statistics/multiplicity.h"
+#include "analytics/statistics/rank_tests.h"
 #include "analytics/statistics/resampling.h"
 #include "analytics/statistics/two_groups.h"
 

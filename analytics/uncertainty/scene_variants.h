@@ -6,7 +6,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -39,10 +38,11 @@ int designSign(std::size_t run, std::size_t factor);
 /// The scene in which a run of the design takes place.
 SceneDescription perturbed(const SceneDescription& scene, std::size_t run);
 
+/// A constant by the names of the fields that lead to it; of lists by the name of a part, or * for each of them.
 struct SceneConstant {
-  std::string name;
-  /// Times a positive factor, wherever the scene has it. @returns false where the scene has none.
-  std::function<bool(SceneDescription&, double)> multiply;
+  std::string name;  ///< "vessels.*.material.youngModulus"
+  /// Times a positive factor, wherever the scene has it. @returns false where the scene has none, or 0
+  bool multiply(SceneDescription& scene, double factor) const;
 };
 
 const std::vector<SceneConstant>& sceneConstants();

@@ -6,7 +6,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "analytics/checkpoints/registry.h"
+#include "analytics/checkpoints/checkpoint.h"
 #include "apps/calot/commands.h"
 #include "apps/calot/results.h"
 #include "apps/calot/terminal_text.h"

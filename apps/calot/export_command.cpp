@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "analytics/checkpoints/collector.h"
-#include "analytics/checkpoints/motion_track.h"
 #include "analytics/cohort/withdraw.h"
 #include "analytics/interchange/motion_tables.h"
 #include "apps/calot/commands.h"

@@ -14,8 +14,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "analytics/checkpoints/checkpoint.h"
 #include "analytics/checkpoints/collector.h"
-#include "analytics/checkpoints/registry.h"
 #include "analytics/report/report_text.h"
 #include "apps/calot/environment.h"
 #include "apps/calot/source_options.h"

@@ -13,7 +13,6 @@
 #include <utility>
 
 #include "analytics/assess.h"
-#include "analytics/intake/enrolment.h"
 #include "analytics/intake/motion_manifest.h"
 #include "apps/calot/environment.h"
 #include "apps/calot/results.h"

@@ -9,8 +9,8 @@
 #include <string>
 
 #include "analytics/assessment/protocol.h"
-#include "analytics/cohort/analysis_locks.h"
 #include "analytics/cohort/assessment_database.h"
+#include "analytics/cohort/blinding.h"
 #include "analytics/report/masked_study.h"
 #include "analytics/statistics/two_groups.h"
 #include "apps/calot/cohort_option.h"

@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "analytics/assessment/rating_form.h"
+#include "analytics/cohort/blinding.h"
 #include "analytics/cohort/cohort_database.h"
-#include "analytics/cohort/rating_packs.h"
 #include "analytics/cohort/withdraw.h"
 #include "analytics/intake/manifest_table.h"
 #include "analytics/interchange/folder_output.h"

@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "analytics/checkpoints/registry.h"
+#include "analytics/checkpoints/checkpoint.h"
 #include "analytics/report/report_text.h"
 #include "apps/calot/results.h"
 #include "apps/calot/value_report.h"

@@ -8,7 +8,7 @@
 #include <QShortcut>
 #include <QSplitter>
 
-#include "analytics/checkpoints/registry.h"
+#include "analytics/checkpoints/checkpoint.h"
 #include "gui/attempt/attempt_recording.h"
 #include "gui/attempt/long_work.h"
 #include "gui/attempt/replay_transport.h"

@@ -9,7 +9,7 @@
 #include <QStyle>
 #include <utility>
 
-#include "analytics/checkpoints/registry.h"
+#include "analytics/checkpoints/checkpoint.h"
 #include "gui/attempt/attempt_recording.h"
 #include "gui/attempt/figure_text.h"
 #include "gui/attempt/theme.h"

@@ -6,7 +6,7 @@
 #include <set>
 #include <tuple>
 
-#include "analytics/checkpoints/registry.h"
+#include "analytics/checkpoints/checkpoint.h"
 #include "analytics/report/plots.h"
 #include "gui/attempt/figure_text.h"
 

@@ -10,7 +10,7 @@
 #include "analytics/cohort/cohort_database.h"
 #include "analytics/report/plots.h"
 #include "analytics/statistics/expected.h"
-#include "analytics/statistics/learning_curve.h"
+#include "analytics/statistics/regression.h"
 #include "gui/dashboard/comparison.h"
 
 namespace calot::gui {

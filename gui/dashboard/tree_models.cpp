@@ -6,7 +6,7 @@
 #include <QFont>
 
 #include "analytics/assessment/grade.h"
-#include "analytics/checkpoints/registry.h"
+#include "analytics/checkpoints/checkpoint.h"
 #include "gui/attempt/figure_text.h"
 #include "gui/attempt/theme.h"
 #include "gui/words/event_words.h"

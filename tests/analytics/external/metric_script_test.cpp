@@ -9,8 +9,8 @@
 #include <fstream>
 #include <iterator>
 
+#include "analytics/external/input_columns.h"
 #include "analytics/external/metric_input.h"
-#include "analytics/external/npy_column.h"
 #include "tests/analytics/cohort/support/cohort_support.h"
 
 namespace calot::analytics {

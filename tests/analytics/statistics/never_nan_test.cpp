@@ -8,8 +8,6 @@
 #include <vector>
 
 #include "analytics/statistics/descriptive.h"
-#include "analytics/statistics/effect_sizes.h"
-#include "analytics/statistics/learning_curve.h"
 #include "analytics/statistics/mixed_models.h"
 #include "analytics/statistics/rank_tests.h"
 #include "analytics/statistics/regression.h"

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "analytics/checkpoints/registry.h"
+#include "analytics/checkpoints/checkpoint.h"
 #include "analytics/uncertainty/scene_variants.h"
 #include "recorder/formats/scene_file.h"
 

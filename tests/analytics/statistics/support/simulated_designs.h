@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "analytics/statistics/method_agreement.h"
 #include "analytics/statistics/rank_tests.h"
 #include "analytics/statistics/reliability.h"
 #include "analytics/statistics/resampling.h"
