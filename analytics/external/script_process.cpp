@@ -2,12 +2,13 @@
 
 #include "analytics/external/script_process.h"
 
-#include <dirent.h>
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
+#include <sys/socket.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 #include <algorithm>
@@ -20,49 +21,27 @@
 #include <set>
 #include <system_error>
 
+#include "recorder/base/child_process.h"
 #include "recorder/base/errors.h"
 
 namespace calot::analytics {
 namespace {
 
+using recorder::Channel;
 using Clock = std::chrono::steady_clock;
 
 constexpr std::size_t maxAnswer = 65536;
 constexpr int answerDescriptor = 3;
 constexpr int notStarted = 127;
 
-struct Pipe {
-  int read = -1, write = -1;
-  Pipe() {
-    std::array<int, 2> ends{};
-    if (pipe2(ends.data(), O_CLOEXEC) != 0)
-      throw Error(ErrorKind::failure, std::string("pipe: ") + std::generic_category().message(errno));
-    read = ends[0];
-    write = ends[1];
-  }
-  Pipe(const Pipe&) = delete;
-  Pipe& operator=(const Pipe&) = delete;
-  ~Pipe() {
-    ::close(read);
-    closeWrite();
-  }
-  void closeWrite() {
-    if (write >= 0) ::close(write);
-    write = -1;
-  }
-};
-
 /// Children of this program.
 std::set<pid_t> childrenNow() {
   std::set<pid_t> children;
-  DIR* const tasks = opendir("/proc/self/task");
-  if (tasks == nullptr) return children;
-  while (const dirent* task = readdir(tasks)) {
-    if (task->d_name[0] == '.') continue;
-    std::ifstream list(fmt::format("/proc/self/task/{}/children", task->d_name));
+  std::error_code gone;
+  for (const auto& task : std::filesystem::directory_iterator("/proc/self/task", gone)) {
+    std::ifstream list(task.path() / "children");
     for (pid_t child = 0; list >> child;) children.insert(child);
   }
-  closedir(tasks);
   return children;
 }
 
@@ -105,7 +84,6 @@ void limit(int resource, rlim_t value) {
 [[noreturn]] void become(char* const* arguments, char* const* environment, const char* folder, int answer, int printed,
                          const ScriptLimits& limits, std::uint64_t inputBytes) {
   setpgid(0, 0);
-  prctl(PR_SET_PDEATHSIG, SIGKILL);
   const int nothing = open("/dev/null", O_RDONLY);
   // The answer's end may be one of the numbers that are given out here.
   const int kept = fcntl(answer, F_DUPFD, 10);
@@ -124,23 +102,24 @@ void limit(int resource, rlim_t value) {
   _exit(notStarted);
 }
 
-/// @return whether there may be more.
-bool readSome(int descriptor, std::string& into, std::size_t most, bool& over) {
-  std::array<char, 4096> piece{};
-  const ssize_t n = read(descriptor, piece.data(), piece.size());
-  if (n < 0) return errno == EINTR || errno == EAGAIN;
-  if (n == 0) return false;
-  const std::size_t taken = std::min(static_cast<std::size_t>(n), most - into.size());
-  into.append(piece.data(), taken);
-  over = over || taken < static_cast<std::size_t>(n);
-  return true;
-}
+/// What comes through a connection, up to a number of bytes.
+struct Collected {
+  int descriptor;
+  std::size_t most;
+  std::string text = {};
+  bool over = false;
 
-/// It has ended and is not reaped yet, so that its number is nobody else's.
-bool hasEnded(pid_t child) {
-  siginfo_t info{};
-  return waitid(P_PID, static_cast<id_t>(child), &info, WEXITED | WNOHANG | WNOWAIT) == 0 && info.si_pid == child;
-}
+  /// Takes what is there. @return whether more may come
+  bool take() {
+    std::array<char, 4096> piece{};
+    const ssize_t n = recv(descriptor, piece.data(), piece.size(), MSG_DONTWAIT);
+    if (n <= 0) return n < 0 && errno == EINTR;
+    const std::size_t taken = std::min(static_cast<std::size_t>(n), most - text.size());
+    text.append(piece.data(), taken);
+    over = over || taken < static_cast<std::size_t>(n);
+    return !over;
+  }
+};
 
 std::vector<char*> pointersTo(const std::vector<std::string>& texts) {
   std::vector<char*> pointers;
@@ -179,65 +158,49 @@ ScriptEnd runScript(const std::vector<std::string>& command, const std::filesyst
                                        "LANG=C.UTF-8",       "PYTHONHASHSEED=0",  "OPENBLAS_NUM_THREADS=1",
                                        "OMP_NUM_THREADS=1",  "MKL_NUM_THREADS=1", "PYTHONDONTWRITEBYTECODE=1"};
   const std::vector<char*> arguments = pointersTo(command), environment = pointersTo(fixed);
-  Pipe answer, printed;
+  auto [print, childsPrint] = recorder::newConnection();
+  const int childsPrints = childsPrint.descriptor();
   const Adoption adoption;
   const auto deadline = Clock::now() + std::chrono::seconds(limits.seconds);
-  const pid_t child = fork();
-  if (child < 0)
-    throw Error(ErrorKind::failure, Where{command.front()},
-                "cannot be started: " + std::generic_category().message(errno));
-  if (child == 0)
-    become(arguments.data(), environment.data(), home.c_str(), answer.write, printed.write, limits, inputBytes);
-  setpgid(child, child);  // whichever of both comes first
-  answer.closeWrite();
-  printed.closeWrite();
+  recorder::ChildProcess child([&](const Channel& parent) {
+    become(arguments.data(), environment.data(), home.c_str(), parent.descriptor(), childsPrints, limits, inputBytes);
+  });
+  childsPrint = Channel();
+  setpgid(child.pid(), child.pid());  // whichever of both comes first
+  const Channel process(static_cast<int>(syscall(SYS_pidfd_open, child.pid(), 0)));
+  Collected answer{child.channel().descriptor(), maxAnswer}, printed{print.descriptor(), maxPrinted};
+  std::array<pollfd, 3> ready{pollfd{answer.descriptor, POLLIN, 0}, pollfd{printed.descriptor, POLLIN, 0},
+                              pollfd{process.descriptor(), POLLIN, 0}};
   ScriptEnd end;
-  std::array<pollfd, 2> ready{pollfd{answer.read, POLLIN, 0}, pollfd{printed.read, POLLIN, 0}};
-  bool over = false, ended = false, killed = false;
-  for (const int descriptor : {answer.read, printed.read}) fcntl(descriptor, F_SETFL, O_NONBLOCK);
-  while (!ended) {
-    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
-    // What it forked may keep both pipes open after its end.
-    const bool open = ready[0].fd >= 0 || ready[1].fd >= 0;
-    poll(ready.data(), ready.size(), static_cast<int>(std::clamp<long long>(left, 1, open ? 50 : 1)));
-    ended = hasEnded(child);
-    std::array<std::string*, 2> into{&end.answer, &end.printed};
-    for (std::size_t i = 0; i < ready.size(); ++i) {
-      if (ready[i].fd < 0 || ready[i].revents == 0) continue;
-      if (!readSome(ready[i].fd, *into[i], i == 0 ? maxAnswer : maxPrinted, over)) ready[i].fd = -1;
-    }
-    if (ended || killed) continue;
+  // What it forked may keep both connections open after its end.
+  while ((ready[2].revents & POLLIN) == 0 && end.how == ScriptEnd::How::exited) {
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - Clock::now()).count();
     if (left <= 0) end.how = ScriptEnd::How::late;
-    if (over) end.how = ScriptEnd::How::printedTooMuch;
-    if (left <= 0 || over) {
-      kill(-child, SIGKILL);
-      killed = true;
+    poll(ready.data(), ready.size(), static_cast<int>(std::clamp<long long>(left, 0, 1000)));
+    for (std::size_t i = 0; i < 2; ++i) {
+      Collected& from = i == 0 ? answer : printed;
+      if (ready[i].revents != 0 && !from.take()) ready[i].fd = -1;
+      if (from.over) end.how = ScriptEnd::How::printedTooMuch;
     }
   }
-  kill(-child, SIGKILL);
-  int status = 0;
-  waitpid(child, &status, 0);
-  for (std::size_t i = 0; i < ready.size(); ++i) {
-    const int descriptor = i == 0 ? answer.read : printed.read;
-    std::string& into = i == 0 ? end.answer : end.printed;
-    const std::size_t most = i == 0 ? maxAnswer : maxPrinted;
-    for (std::size_t before = into.size() + 1; before != into.size() && into.size() < most;) {
-      before = into.size();
-      static_cast<void>(readSome(descriptor, into, most, over));
+  for (Collected* from : {&answer, &printed}) {
+    while (from->take()) {
     }
   }
-  if (killed) return end;
-  if (over) {
+  kill(-child.pid(), SIGKILL);
+  const recorder::ProcessEnd ended = child.end();
+  end.answer = std::move(answer.text);
+  end.printed = std::move(printed.text);
+  if (end.how != ScriptEnd::How::exited) return end;
+  end.number = ended.number;
+  if (answer.over || printed.over) {
     end.how = ScriptEnd::How::printedTooMuch;
-  } else if (WIFSIGNALED(status)) {
-    end.how = WTERMSIG(status) == SIGXCPU ? ScriptEnd::How::late : ScriptEnd::How::signalled;
-    end.number = WTERMSIG(status);
-  } else {
-    end.number = WEXITSTATUS(status);
-  }
-  if (end.number == notStarted && end.answer.empty() && end.how == ScriptEnd::How::exited)
+  } else if (ended.signalled) {
+    end.how = ended.number == SIGXCPU ? ScriptEnd::How::late : ScriptEnd::How::signalled;
+  } else if (ended.number == notStarted && end.answer.empty()) {
     throw Error(ErrorKind::failure, Where{command.front()},
                 "cannot be started; CALOT_PYTHON names the Python that runs metrics");
+  }
   return end;
 }
 
