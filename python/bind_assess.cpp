@@ -44,7 +44,7 @@ py::tuple assessed(const std::filesystem::path& file, unsigned threads, double c
       throwUnlessExact(judged.report);
   }
   py::list values;
-  for (const analytics::CheckpointValue& v : judged.values) values.append(valueDict(v));
+  for (const analytics::CheckpointValue& v : judged.values) values.append(dictOf(fieldsOf(v)));
   return py::make_tuple(reportOf(judged.report), values);
 }
 

@@ -2,12 +2,17 @@
 #pragma once
 
 #include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
 
-#include "analytics/checkpoints/checkpoint.h"
+#include "analytics/cohort/cohort_database.h"
 
 namespace calot::python {
 
-/// A value with the keys of `calot assess` in its JSON form.
-pybind11::dict valueDict(const analytics::CheckpointValue& value);
+/// A row by the names that `calot` gives its columns in JSON.
+inline pybind11::dict dictOf(const analytics::Fields& fields) {
+  pybind11::dict row;
+  for (const auto& [name, value] : fields) row[pybind11::str(name)] = value;
+  return row;
+}
 
 }  // namespace calot::python

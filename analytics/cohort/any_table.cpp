@@ -16,13 +16,13 @@ TableFacts factsOf(SQLite::Database& db, const std::string& name) {
     t.columns.push_back({row.getColumn(0).getString(), row.getColumn(1).getString()});
   });
   // A key that names no column of its parent refers to the primary key.
-  eachRow(db,
-          "SELECT \"from\", \"table\", coalesce(\"to\", (SELECT name FROM pragma_table_info(\"table\") WHERE pk = 1), '') "
-          "FROM pragma_foreign_key_list(?) ORDER BY id, seq",
-          {name}, [&](SQLite::Statement& row) {
-            t.foreign.push_back(
-                {row.getColumn(0).getString(), row.getColumn(1).getString(), row.getColumn(2).getString()});
-          });
+  eachRow(
+      db,
+      "SELECT \"from\", \"table\", coalesce(\"to\", (SELECT name FROM pragma_table_info(\"table\") WHERE pk = 1), '') "
+      "FROM pragma_foreign_key_list(?) ORDER BY id, seq",
+      {name}, [&](SQLite::Statement& row) {
+        t.foreign.push_back({row.getColumn(0).getString(), row.getColumn(1).getString(), row.getColumn(2).getString()});
+      });
   const auto primary = firstTexts(db, "SELECT name FROM pragma_table_info(?) WHERE pk > 0 ORDER BY pk", {name});
   const auto isForeign = [&](const std::string& column) {
     return std::any_of(t.foreign.begin(), t.foreign.end(), [&](const ForeignKey& k) { return k.column == column; });
@@ -155,8 +155,7 @@ std::vector<Cell> firstColumn(SQLite::Database& db, const std::string& sql, cons
   return cells;
 }
 
-std::vector<std::string> firstTexts(SQLite::Database& db, const std::string& sql,
-                                    const std::vector<Cell>& parameters) {
+std::vector<std::string> firstTexts(SQLite::Database& db, const std::string& sql, const std::vector<Cell>& parameters) {
   std::vector<std::string> texts;
   for (const Cell& cell : firstColumn(db, sql, parameters)) texts.push_back(textOf(cell));
   return texts;

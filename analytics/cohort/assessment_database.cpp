@@ -143,8 +143,7 @@ std::vector<Rating> AssessmentDatabase::ratings() const {
 }
 
 std::vector<StoredDocument> AssessmentDatabase::forms() const {
-  return connection_->read(
-      [](SQLite::Database& db) { return selectRows(db, formTable(), "ORDER BY name, version"); });
+  return connection_->read([](SQLite::Database& db) { return selectRows(db, formTable(), "ORDER BY name, version"); });
 }
 
 }  // namespace calot::analytics

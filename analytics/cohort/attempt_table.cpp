@@ -63,8 +63,7 @@ std::optional<AttemptRow> findAttempt(SQLite::Database& db, const std::string& u
   std::optional<AttemptRow> found;
   eachRow(db, selectAttempts("WHERE a.uuid = ?"), {uuid}, [&](SQLite::Statement& row) { found = attemptRow(row); });
   if (found) {
-    found->tags =
-        firstTexts(db, "SELECT tag FROM attempt_tag WHERE attempt = ? ORDER BY tag", {attemptId(db, uuid)});
+    found->tags = firstTexts(db, "SELECT tag FROM attempt_tag WHERE attempt = ? ORDER BY tag", {attemptId(db, uuid)});
   }
   return found;
 }

@@ -129,10 +129,10 @@ std::optional<RatingPack> readRatingPack(const std::string& path, const std::str
     std::optional<RatingPack> pack;
     eachRow(db, "SELECT form, form_version, form_sha256, form_text FROM rating_pack WHERE id = ?", {id},
             [&](SQLite::Statement& row) {
-              pack = {id,
-                      {text(row.getColumn(0)), row.getColumn(1).getUInt(), text(row.getColumn(2)),
-                       text(row.getColumn(3))},
-                      {}};
+              pack = {
+                  id,
+                  {text(row.getColumn(0)), row.getColumn(1).getUInt(), text(row.getColumn(2)), text(row.getColumn(3))},
+                  {}};
             });
     eachRow(db, "SELECT rater, taken_utc FROM rating_pack_rater WHERE pack = ? ORDER BY rater", {id},
             [&](SQLite::Statement& row) {
@@ -154,8 +154,9 @@ std::optional<RatingPack> readRatingPack(const std::string& path, const std::str
 void storePackAnswers(const std::string& path, const RatingPack& pack, const std::string& rater,
                       const std::vector<Rating>& ratings, bool replace) {
   CohortConnection(path, CohortDatabase::Access::write).change([&](SQLite::Database& db) {
-    const std::vector<std::string> taken = firstTexts(
-        db, "SELECT taken_utc FROM rating_pack_rater WHERE pack = ? AND rater = ? AND taken_utc <> ''", {pack.id, rater});
+    const std::vector<std::string> taken =
+        firstTexts(db, "SELECT taken_utc FROM rating_pack_rater WHERE pack = ? AND rater = ? AND taken_utc <> ''",
+                   {pack.id, rater});
     if (!taken.empty() && !replace) {
       throw Error(ErrorKind::refused, Where{path},
                   fmt::format("answers of rater \"{}\" to this pack were stored on {}", rater, taken.front()),

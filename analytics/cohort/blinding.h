@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Blinding (schemas/cohort/0007_blinding.sql): masked groups and locked analyses of protocols; packs of films and a form
-// for raters, who know the films by random names alone. The key stands in the cohort database.
+// Blinding (schemas/cohort/0007_blinding.sql): masked groups and locked analyses of protocols; packs of films and a
+// form for raters, who know the films by random names alone. The key stands in the cohort database.
 #pragma once
 
 #include <optional>

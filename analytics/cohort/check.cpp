@@ -21,7 +21,8 @@ CohortCheck checkCohort(const std::string& path) {
     for (const char* fault :
          {"SELECT count(*) || ' rows of ' || \"table\" || ' refer to no row of ' || \"parent\" FROM "
           "pragma_foreign_key_check GROUP BY \"table\", \"parent\"",
-          "SELECT 'attempt ' || uuid || ' has no recording' FROM attempt WHERE id NOT IN (SELECT attempt FROM recording)",
+          "SELECT 'attempt ' || uuid || ' has no recording' FROM attempt WHERE id NOT IN (SELECT attempt FROM "
+          "recording)",
           "SELECT 'attempt ' || a.uuid || ': its signature is of another content' FROM recording_signature s JOIN "
           "recording r USING (attempt) JOIN attempt a ON a.id = s.attempt WHERE s.chain_head <> r.chain_head"}) {
       for (std::string& line : firstTexts(db, fault)) result.faults.push_back(std::move(line));

@@ -236,4 +236,46 @@ std::string comparabilityWords(const std::string& key) {
                      part[0], part[1] == "-" ? "no calibration" : "calibration " + part[1], simulation, part[4]);
 }
 
+namespace {
+
+void addFields(Fields& fields, const DeclaredTable& table, const void* row) {
+  for (const DeclaredColumn& c : table.columns) {
+    if (c.member.value != nullptr) fields.emplace_back(*c.listed != '\0' ? c.listed : c.name, c.member.value(row));
+  }
+}
+
+}  // namespace
+
+Fields fieldsOf(const AttemptRow& a) {
+  Fields fields;
+  addFields(fields, attemptTable(), static_cast<const AttemptRecord*>(&a));
+  addFields(fields, recordingTable(), static_cast<const AttemptRecord*>(&a));
+  addFields(fields, verificationTable(), &a.verification);
+  const Fields others{{"participant", a.participant},
+                      {"group", a.group},
+                      {"arm", a.arm},
+                      {"site", a.site},
+                      {"seconds", static_cast<double>(a.steps) * a.stepSeconds},
+                      {"excluded", a.excluded},
+                      {"exclusion_reason", a.exclusionReason},
+                      {"withdrawn", a.withdrawn},
+                      {"tags", a.tags}};
+  fields.insert(fields.end(), others.begin(), others.end());
+  return fields;
+}
+
+Fields fieldsOf(const Participant& p) {
+  Fields fields;
+  addFields(fields, participantTable(), &p);
+  fields.emplace_back("experience", p.experience);
+  fields.emplace_back("consent", p.consent);
+  return fields;
+}
+
+Fields fieldsOf(const CheckpointValue& value) {
+  Fields fields;
+  addFields(fields, checkpointValueTable(), &value);
+  return fields;
+}
+
 }  // namespace calot::analytics

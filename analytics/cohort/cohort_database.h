@@ -12,6 +12,8 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
+#include <variant>
 #include <vector>
 
 #include "analytics/checkpoints/checkpoint.h"
@@ -102,6 +104,16 @@ struct AttemptRow : AttemptRecord {
   std::string exclusionReason;    ///< reason and by whom
   std::vector<std::string> tags;  ///< words to find it by, in the order of their bytes
 };
+
+/// One value of a row in a list for people or other programs; enumerations by their words.
+using FieldValue = std::variant<std::monostate, bool, std::int64_t, std::uint64_t, double, std::string,
+                                std::vector<std::string>, std::map<std::string, std::string>>;
+using Fields = std::vector<std::pair<std::string, FieldValue>>;
+/// A row by the names that lists give its columns: those that declared_tables.h declares, then what several of them say
+/// together.
+Fields fieldsOf(const AttemptRow& attempt);
+Fields fieldsOf(const Participant& participant);
+Fields fieldsOf(const CheckpointValue& value);
 
 /// A tag is one word: 1 to 40 characters, no blank, comma or control character. @throws Error (invalid)
 void checkTag(const std::string& tag);

@@ -15,9 +15,11 @@ using namespace tables;
 
 /// Adds a name to a table, and its note where one is given. @returns whether anything changed
 bool put(SQLite::Database& db, const char* table, const std::string& name, const std::optional<std::string>& note) {
-  const bool added = execute(db, fmt::format("INSERT INTO {} (name) VALUES (?) ON CONFLICT DO NOTHING", table), {name}) > 0;
+  const bool added =
+      execute(db, fmt::format("INSERT INTO {} (name) VALUES (?) ON CONFLICT DO NOTHING", table), {name}) > 0;
   if (!note) return added;
-  return execute(db, fmt::format("UPDATE {} SET note = ?1 WHERE name = ?2 AND note <> ?1", table), {*note, name}) > 0 || added;
+  return execute(db, fmt::format("UPDATE {} SET note = ?1 WHERE name = ?2 AND note <> ?1", table), {*note, name}) > 0 ||
+         added;
 }
 
 template <class Work>
@@ -52,7 +54,8 @@ void setStation(const std::string& path, const std::string& name, const std::opt
       }
     }
     if (!key) return changed;
-    const Cell wanted = blobOf(*key), known = firstColumn(db, "SELECT public_key FROM station WHERE name = ?", {name}).at(0);
+    const Cell wanted = blobOf(*key),
+               known = firstColumn(db, "SELECT public_key FROM station WHERE name = ?", {name}).at(0);
     if (known == wanted) return changed;
     if (!isEmpty(known)) {
       throw Error(ErrorKind::refused, Where{path},

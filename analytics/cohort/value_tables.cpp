@@ -172,8 +172,8 @@ std::vector<ExternalMetric> readExternalMetrics(SQLite::Database& db) {
 
 void checkExternalMetric(SQLite::Database& db, const std::string& path, const ExternalMetric& metric) {
   const CheckpointDefinition& d = metric.definition;
-  for (const ExternalMetric& known :
-       selectRows(db, externalMetricTable(), "WHERE name = ? AND version >= ? ORDER BY version DESC", {d.name, d.version})) {
+  for (const ExternalMetric& known : selectRows(
+           db, externalMetricTable(), "WHERE name = ? AND version >= ? ORDER BY version DESC", {d.name, d.version})) {
     const std::uint32_t version = known.definition.version;
     if (version > d.version) {
       throw Error(ErrorKind::refused,
@@ -193,9 +193,9 @@ std::vector<CheckpointValue> readExternalValues(SQLite::Database& db, std::int64
 }
 
 std::vector<AttemptValue> readAllExternalValues(SQLite::Database& db, const std::vector<std::string>& without) {
-  return externalValues(
-      db, fmt::format("m.name NOT IN ({})", joined(std::vector<std::string>(without.size(), "?"), ", ")),
-      {without.begin(), without.end()});
+  return externalValues(db,
+                        fmt::format("m.name NOT IN ({})", joined(std::vector<std::string>(without.size(), "?"), ", ")),
+                        {without.begin(), without.end()});
 }
 
 std::size_t writeExternalValues(SQLite::Database& db, const std::string& path, std::int64_t attempt,

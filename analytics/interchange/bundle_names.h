@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Names and dates that a bundle gives instead of those in the database.
 #pragma once
 
 #include <cstdint>

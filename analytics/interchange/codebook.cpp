@@ -20,33 +20,16 @@ std::string typeWord(const std::string& type) {
 
 /// Entries shared by checkpoints and external metrics.
 CodebookEntry entryOf(const CheckpointDefinition& d) {
-  CodebookEntry e;
-  e.table = "checkpoint";
-  e.name = d.name;
-  e.title = d.title;
-  e.type = "number";
-  e.unit = d.unit;
-  e.allowed = "finite";
-  e.direction = nameOf(d.direction);
-  e.window = d.window;
-  e.filter = d.filter;
-  e.version = d.version;
-  return e;
-}
-
-/// @param declared null: nobody explains the column
-CodebookEntry columnEntry(const std::string& table, const std::string& name, const std::string& type,
-                          const DeclaredColumn* declared) {
-  CodebookEntry e;
-  e.table = table;
-  e.name = name;
-  e.type = typeWord(type);
-  if (declared == nullptr) return e;
-  e.title = declared->meaning;
-  e.unit = declared->unit;
-  e.allowed = declared->allowed;
-  e.missing = declared->missing;
-  return e;
+  return {.table = "checkpoint",
+          .name = d.name,
+          .title = d.title,
+          .type = "number",
+          .unit = d.unit,
+          .allowed = "finite",
+          .direction = nameOf(d.direction),
+          .window = d.window,
+          .filter = d.filter,
+          .version = d.version};
 }
 
 }  // namespace
@@ -79,15 +62,25 @@ std::vector<CodebookEntry> checkpointEntries(const std::vector<ExternalMetric>& 
 
 std::vector<CodebookEntry> columnEntries(const DeclaredTable& table) {
   std::vector<CodebookEntry> entries;
-  for (const DeclaredColumn& c : table.columns) entries.push_back(columnEntry(table.name, c.name, c.type, &c));
+  for (const DeclaredColumn& c : table.columns) {
+    entries.push_back({.table = table.name,
+                       .name = c.name,
+                       .title = c.meaning,
+                       .type = typeWord(c.type),
+                       .unit = c.unit,
+                       .allowed = c.allowed,
+                       .missing = c.missing});
+  }
   return entries;
 }
 
 std::vector<CodebookEntry> columnEntries(const TableFacts& table) {
-  std::vector<CodebookEntry> entries;
-  for (const ColumnFacts& c : table.columns)
-    entries.push_back(columnEntry(table.name, c.name, c.type, findColumn(table.name, c.name)));
-  return entries;
+  DeclaredTable declared{table.name.c_str(), {}};
+  for (const ColumnFacts& c : table.columns) {
+    const DeclaredColumn* known = findColumn(table.name, c.name);
+    declared.columns.push_back(known != nullptr ? *known : DeclaredColumn{c.name.c_str(), c.type.c_str(), ""});
+  }
+  return columnEntries(declared);
 }
 
 std::string codebookCsv(const std::vector<CodebookEntry>& entries) {

@@ -14,19 +14,19 @@ namespace calot::analytics {
 
 /// A variable: a checkpoint (a row of `checkpoint_value`, or of a bundle's values.csv), or a column of a table.
 struct CodebookEntry {
-  std::string table;      ///< file without ending; of a checkpoint "checkpoint"
-  std::string name;       ///< of the column or the checkpoint
-  std::string title;      ///< what it is, a clause
-  std::string type;       ///< "number", "whole number", "text", "bytes in hexadecimal"
-  std::string unit;       ///< SI, or empty
-  std::string allowed;    ///< allowed values; empty: any of its type
-  std::string missing;    ///< representation of a missing value; empty: never missing
-  std::string direction;  ///< of a checkpoint: which way is better
-  std::string window;     ///< of a checkpoint: the part of the attempt that it covers
-  std::string subjects;   ///< of a checkpoint: its subjects, and aggregation over instruments
-  std::string formula;    ///< of a checkpoint
-  std::string filter;     ///< of a checkpoint: resampling and filter with their constants
-  std::string origins;    ///< of a checkpoint: its possible origins
+  std::string table = {};      ///< file without ending; of a checkpoint "checkpoint"
+  std::string name = {};       ///< of the column or the checkpoint
+  std::string title = {};      ///< what it is, a clause
+  std::string type = {};       ///< "number", "whole number", "text", "bytes in hexadecimal"
+  std::string unit = {};       ///< SI, or empty
+  std::string allowed = {};    ///< allowed values; empty: any of its type
+  std::string missing = {};    ///< representation of a missing value; empty: never missing
+  std::string direction = {};  ///< of a checkpoint: which way is better
+  std::string window = {};     ///< of a checkpoint: the part of the attempt that it covers
+  std::string subjects = {};   ///< of a checkpoint: its subjects, and aggregation over instruments
+  std::string formula = {};    ///< of a checkpoint
+  std::string filter = {};     ///< of a checkpoint: resampling and filter with their constants
+  std::string origins = {};    ///< of a checkpoint: its possible origins
   std::uint32_t version = 0;
 };
 

@@ -19,20 +19,18 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string csvOf(const Cell& cell) {
-  if (const auto* s = std::get_if<std::string>(&cell)) return csvCell(*s);
-  if (const auto* i = std::get_if<std::int64_t>(&cell)) return fmt::format("{}", *i);
-  if (const auto* d = std::get_if<double>(&cell)) return fmt::format("{}", *d);
-  if (const auto* b = std::get_if<Blob>(&cell)) return hexOf(*b);
-  return {};
-}
-
 Json jsonOf(const Cell& cell) {
   if (const auto* s = std::get_if<std::string>(&cell)) return *s;
   if (const auto* i = std::get_if<std::int64_t>(&cell)) return *i;
   if (const auto* d = std::get_if<double>(&cell)) return *d;
   if (const auto* b = std::get_if<Blob>(&cell)) return hexOf(*b);
   return nullptr;
+}
+
+std::string csvOf(const Cell& cell) {
+  if (const auto* s = std::get_if<std::string>(&cell)) return csvCell(*s);
+  if (const auto* b = std::get_if<Blob>(&cell)) return hexOf(*b);
+  return std::holds_alternative<std::monostate>(cell) ? "" : shownCell(cell);
 }
 
 std::string csvOf(const TableFacts& table, const std::vector<Row>& rows) {
@@ -67,22 +65,20 @@ std::vector<ExportedTable> exportCohort(const std::string& database, const std::
   FolderOutput output(folder, force);
   std::vector<ExportedTable> written;
   std::vector<std::string> attempts;
-  guarded(database, [&] {
-    const auto db = openCohort(database, CohortDatabase::Access::read, std::chrono::seconds(10));
-    SQLite::Transaction reading(*db);
+  CohortConnection(database, CohortDatabase::Access::read).read([&](SQLite::Database& db) {
+    SQLite::Transaction reading(db);
     std::vector<CodebookEntry> entries;
-    for (const TableFacts& table : readTables(*db)) {
-      const std::vector<Row> rows = readRows(*db, table);
+    for (const TableFacts& table : readTables(db)) {
+      const std::vector<Row> rows = readRows(db, table);
       output.add(table.name + ".csv", csvOf(table, rows));
       output.add(table.name + ".json", jsonOf(table, rows));
       for (CodebookEntry& e : columnEntries(table)) entries.push_back(std::move(e));
       written.push_back({table.name, rows.size()});
-      if (table.name != "attempt") continue;
-      for (const Row& row : rows) attempts.push_back(textOf(row.at("uuid")));
     }
-    for (CodebookEntry& e : checkpointEntries(tables::readExternalMetrics(*db))) entries.push_back(std::move(e));
+    for (CodebookEntry& e : checkpointEntries(tables::readExternalMetrics(db))) entries.push_back(std::move(e));
     output.add("codebook.csv", codebookCsv(entries));
     output.add("codebook.json", codebookJson(entries));
+    attempts = firstTexts(db, "SELECT uuid FROM attempt");
   });
   recordExport(database, "cohort-export", folder, attempts);
   output.finish();

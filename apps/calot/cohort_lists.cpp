@@ -10,6 +10,8 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <type_traits>
+#include <variant>
 #include <vector>
 
 #include "analytics/cohort/cohort_database.h"
@@ -43,15 +45,17 @@ bool isAsked(const AttemptRow& a, const ListOptions& o) {
 
 std::string whoOf(const AttemptRow& a) { return a.participant.empty() ? a.profile : a.participant; }
 
-Json jsonOf(const AttemptRow& a) {
-  return {{"attempt", a.uuid},        {"participant", a.participant},
-          {"group", a.group},         {"synthetic", a.synthetic},
-          {"profile", a.profile},     {"scene", a.scene},
-          {"mode", wordFor(a.mode)},  {"outcome", wordFor(a.outcome)},
-          {"start_utc", a.startUtc},  {"seconds", static_cast<double>(a.steps) * a.stepSeconds},
-          {"file", a.fileName},       {"verdict", nameOf(a.verification.verdict)},
-          {"excluded", a.excluded},   {"exclusion_reason", a.exclusionReason},
-          {"withdrawn", a.withdrawn}, {"tags", a.tags}};
+Json jsonOf(const analytics::Fields& fields) {
+  Json object;
+  for (const auto& [name, value] : fields) {
+    Json& member = object[name];
+    std::visit(
+        [&](const auto& v) {
+          if constexpr (!std::is_same_v<std::remove_cvref_t<decltype(v)>, std::monostate>) member = v;
+        },
+        value);
+  }
+  return object;
 }
 
 /// Beginnings of the uuids, as long as it takes to tell all of the database's apart: what other commands accept.
@@ -85,7 +89,7 @@ int listAttempts(const ListOptions& o) {
   Json list = Json::array();
   for (const AttemptRow& a : rows) {
     if (!isAsked(a, o)) continue;
-    list.push_back(jsonOf(a));
+    list.push_back(jsonOf(fieldsOf(a)));
     const std::string beginning = a.uuid.substr(0, length);
     table.add({beginning, whoOf(a), a.group, a.scene, a.startUtc.substr(0, 10),
                fmt::format("{:.1f}", static_cast<double>(a.steps) * a.stepSeconds), wordFor(a.outcome),
@@ -127,13 +131,8 @@ int listParticipants(const ListOptions& o) {
   Json list = Json::array();
   for (const Participant& p : database.participants()) {
     if (!o.group.empty() && p.group != o.group) continue;
-    list.push_back({{"participant", p.pseudonym},
-                    {"group", p.group},
-                    {"arm", p.arm},
-                    {"site", p.site},
-                    {"attempts", attempts[p.pseudonym]},
-                    {"experience", p.experience},
-                    {"consent", p.consent}});
+    list.push_back(jsonOf(fieldsOf(p)));
+    list.back()["attempts"] = attempts[p.pseudonym];
     table.add({p.pseudonym, p.group, p.arm, p.site, std::to_string(attempts[p.pseudonym]), joined(p.experience, '='),
                joined(p.consent, ':')});
   }
