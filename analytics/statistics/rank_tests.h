@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Several groups by ranks (Kruskal and Wallis, Dunn), and Spearman's rank correlation.
-// Many tests at once. Adjusted p values, to be compared with the level, in the order of the input.
+// Several groups by ranks (Kruskal and Wallis, Dunn), Spearman's rank correlation, and many tests at once: adjusted p
+// values, to be compared with the level, in the order of the input.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Least squares, and the analysis of covariance of two groups.
+// Least squares, the analysis of covariance of two groups, and the learning curve.
 #pragma once
 
 #include <cstddef>
@@ -34,20 +34,25 @@ Expected<LeastSquares> leastSquares(const std::vector<std::vector<double>>& colu
 /// determines a coefficient.
 Expected<std::vector<double>> hc3Errors(const LeastSquares& fit, const std::vector<std::vector<double>>& columns);
 
+/// One coefficient with its test by Student's t, two-sided.
+struct ModelTerm {
+  double estimate = 0.0, error = 0.0, t = 0.0, df = 0.0, p = 1.0;
+  Interval interval;
+};
+ModelTerm modelTerm(double estimate, double error, double df, double level, const char* method);
+
 /// One group before and after: value i of both is the same person's.
 struct BaselineGroup {
   std::span<const double> baseline, outcome;
 };
 
-struct CovarianceAnalysis {
-  double difference = 0.0;            ///< of x to y at one baseline: coefficient b of outcome = a + b [x] + c baseline
-  double error = 0.0;                 ///< HC3
-  double t = 0.0, df = 0.0, p = 1.0;  ///< Student, df = people - 3; two-sided
-  Interval interval;
+/// Difference of x to y at one baseline: coefficient b of outcome = a + b [x] + c baseline, with its HC3 error and
+/// people - 3 degrees of freedom.
+struct CovarianceAnalysis : ModelTerm {
   double slope = 0.0;  ///< c
   /// p of one slope for both groups (coefficient of [x] baseline, HC3). Small: the difference depends on the baseline,
   /// and one number does not describe it.
-  Expected<double> sameSlope = Expected<double>::none("not computed");
+  Expected<double> sameSlope = NoResult{"not computed"};
 };
 
 /// Analysis of covariance of an outcome on its baseline (Vickers and Altman 2001, BMJ 323:1123) by least squares

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Agreement and repeatability of ratings and of attempts: intraclass correlation, internal consistency,
-// generalizability theory of one crossed facet, error of measurement.
-// Agreement of two methods that measured the same people: limits of agreement, Deming regression.
+// generalizability theory of one crossed facet, error of measurement; of two methods that measured the same people:
+// limits of agreement, Deming regression.
 #pragma once
 
 #include <cstddef>
@@ -38,7 +38,7 @@ MeanSquares meanSquares(const RatingTable& table);
 
 struct CronbachAlpha {
   double value = 0.0;
-  Expected<Interval> interval = Expected<Interval>::none("not computed");
+  Expected<Interval> interval = NoResult{"not computed"};
 };
 
 /// Internal consistency of a scale of k items (columns): k / (k - 1) (1 - sum of the items' variances / variance of the
@@ -58,7 +58,7 @@ const char* nameOf(IccForm form);
 
 struct IntraclassCorrelation {
   double value = 0.0;  ///< may be negative
-  Expected<Interval> interval = Expected<Interval>::none("not computed");
+  Expected<Interval> interval = NoResult{"not computed"};
 };
 
 /// With mean squares S (subjects), R (raters), E (residual), n subjects and k raters:

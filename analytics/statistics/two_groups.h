@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Two independent groups x and y: rank test, effect size, shift. All from one statistic, U = #{x > y} + #{x = y} / 2
-// (R's W). One value per participant: the caller's duty.
-// Hedges' g, and the interval of A = P(X > Y) (the area under the ROC curve, Cliff's delta).
+// (R's W); and Hedges' g. One value per participant: the caller's duty.
 #pragma once
 
 #include <cstddef>
@@ -77,28 +76,6 @@ struct ShiftInterval {
 Expected<ShiftInterval> hodgesLehmannInterval(std::span<const double> x, std::span<const double> y,
                                               double level = 0.95);
 
-/// Permutation distribution of the sum of the mid-ranks of one group of `n`, when every choice of n of the N pooled
-/// values is equally likely: exact with ties. Counted by dynamic programming over the pooled values (one value after
-/// the other is in the group or not): O(N n S) with S the largest sum in half ranks. Counts are exact integers while
-/// C(N, n) < 2^53 and carry a relative error below N * 2^-53 beyond, since all terms are positive.
-class RankSumDistribution {
- public:
-  /// @param midRanks of the pooled values (multiples of 1/2); @pre 0 < n < midRanks.size().
-  RankSumDistribution(std::span<const double> midRanks, std::size_t n);
-
-  [[nodiscard]] double atMost(double sum) const;   ///< P(S <= sum)
-  [[nodiscard]] double atLeast(double sum) const;  ///< P(S >= sum)
-  [[nodiscard]] double expected() const { return expected_; }
-  /// P(|S - E S| >= |sum - E S|): both tails as far out as the observed sum.
-  [[nodiscard]] double asFarAs(double sum) const;
-
- private:
-  [[nodiscard]] double between(long lower, long upper) const;  ///< probability of half-rank sums in [lower, upper]
-  std::vector<double> count_;                                  ///< by half-rank sum
-  double total_ = 0.0;
-  double expected_ = 0.0;
-};
-
 /// Mid-ranks (1-based; tied values share the mean of their ranks), in the order of the values. @pre all finite.
 std::vector<double> midRanks(std::span<const double> values);
 
@@ -138,7 +115,7 @@ struct HedgesG {
   double j = 1.0;  ///< small-sample correction
   /// "J times non-central t": the non-centralities at which t = d sqrt(nx ny / (nx + ny)) is the upper and the lower
   /// quantile, converted back to d, times J. Assumes normal groups of one variance.
-  Expected<Interval> interval = Expected<Interval>::none("not computed");
+  Expected<Interval> interval = NoResult{"not computed"};
 };
 
 /// Hedges' g (Hedges 1981, J. Educ. Stat. 6:107): J = Gamma(m / 2) / (sqrt(m / 2) Gamma((m - 1) / 2)), m = nx + ny - 2.
