@@ -7,6 +7,8 @@
 #include <cassert>
 #include <cmath>
 #include <iterator>
+#include <map>
+#include <numbers>
 #include <utility>
 
 #include "analytics/checkpoints/figures/rows.h"
@@ -112,9 +114,7 @@ std::vector<std::string> subjectsOf(const CheckpointEntry& entry, const AttemptC
 
 std::string nameOf(Direction direction) { return nameIn({"none", "lower", "higher"}, direction); }
 
-std::string nameOf(Origin origin) {
-  return nameIn({"re-simulated", "observables", "samples", "external"}, origin);
-}
+std::string nameOf(Origin origin) { return nameIn({"re-simulated", "observables", "samples", "external"}, origin); }
 
 std::string nameOf(Aggregation aggregation) {
   return nameIn({"attempt", "hand", "organ", "phase", "hand and phase"}, aggregation);
@@ -188,6 +188,11 @@ CheckpointDefinition completed(CheckpointDefinition definition) {
   fill(definition.instruments, "union over instruments");
   fill(definition.filter, "none");
   if (definition.origins.empty()) definition.origins = {Origin::resimulated, Origin::observables};
+  static const std::map<std::string, double> factors{
+      {"%", 100.0}, {"mm", 1000.0}, {"mm/s", 1000.0}, {"deg", 180.0 / std::numbers::pi},
+      {"ml", 1e6},  {"cm^2", 1e4},  {"cm^2/ml", 0.01}};
+  const auto factor = factors.find(definition.displayUnit);
+  if (factor != factors.end()) definition.displayFactor = factor->second;
   return definition;
 }
 

@@ -2,7 +2,6 @@
 // A checkpoint is one figure of an attempt (or one per hand, or one per organ), computed from the stream of steps.
 // docs/reference/metrics.md gives the formula, source and pitfalls of each; a test holds it against the
 // registry.
-// Facts about a scene that checkpoints use: reference sizes, and the structures' roles in the operation.
 #pragma once
 
 #include <array>
@@ -197,14 +196,14 @@ class AccumulatorOf final : public Accumulator {
   A a_;
 };
 
-/// Makes A{context, arguments...}; without arguments A{}, where that is possible.
+/// Makes A{context, arguments...}, or A{arguments...} of an A that needs no context.
 template <class A, class... Arguments>
 AccumulatorMaker accumulating(Arguments... arguments) {
-  return [arguments...](const AttemptContext& context) -> std::unique_ptr<Accumulator> {
-    if constexpr (sizeof...(Arguments) == 0 && std::is_default_constructible_v<A>) {
-      return std::make_unique<AccumulatorOf<A>>(A{});
-    } else {
+  return [arguments...]([[maybe_unused]] const AttemptContext& context) -> std::unique_ptr<Accumulator> {
+    if constexpr (requires { A{context, arguments...}; }) {
       return std::make_unique<AccumulatorOf<A>>(A{context, arguments...});
+    } else {
+      return std::make_unique<AccumulatorOf<A>>(A{arguments...});
     }
   };
 }
@@ -255,7 +254,7 @@ struct CheckpointEntry {
 };
 
 /// The definition with what its row leaves out: window "whole attempt", "union over instruments", filter "none",
-/// origins of steps, displayed in its own unit.
+/// origins of steps, displayed in its own unit; and the factor of the unit in which it is displayed.
 CheckpointDefinition completed(CheckpointDefinition definition);
 
 /// One running computation of one entry over one attempt.

@@ -48,7 +48,7 @@ struct CheckpointDefinition {
   std::string title = {};        ///< "Path length of the instrument's tip"
   std::string unit = {};         ///< SI, of stored values: "s", "m", "N", "1"
   std::string displayUnit = {};  ///< at the edges: "mm"
-  double displayFactor = 1.0;    ///< displayed = stored * displayFactor
+  double displayFactor = 1.0;    ///< displayed = stored * displayFactor; by the unit (completed())
   Direction direction = Direction::none;
   std::string window = {};  ///< part of the attempt that is covered: "whole attempt"
   Aggregation aggregation = Aggregation::attempt;

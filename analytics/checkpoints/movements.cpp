@@ -18,9 +18,7 @@ constexpr double movementShare = 0.5;  // of it
 }  // namespace
 
 double movementSpeedOf(const std::vector<MotionSegment>& segments) {
-  std::vector<double> speed;
-  for (const MotionSegment& segment : segments) speed.insert(speed.end(), segment.speed.begin(), segment.speed.end());
-  const Expected<double> peak = quantile(speed, fastest);
+  const Expected<double> peak = quantile(speedsOf(segments), fastest);
   return std::max(peak ? movementShare * *peak : 0.0, idleSpeed);
 }
 
@@ -57,12 +55,7 @@ std::vector<Stretch> movementsOf(const MotionSegment& segment, double threshold)
 
 double pathLength(const MotionSegment& segment, std::size_t begin, std::size_t end) {
   double length = 0.0;
-  for (std::size_t i = begin + 1; i < end; ++i) {
-    const double dx = segment.filtered[i].x() - segment.filtered[i - 1].x();
-    const double dy = segment.filtered[i].y() - segment.filtered[i - 1].y();
-    const double dz = segment.filtered[i].z() - segment.filtered[i - 1].z();
-    length += std::sqrt(dx * dx + dy * dy + dz * dz);
-  }
+  for (std::size_t i = begin + 1; i < end; ++i) length += lengthOf(segment.filtered[i] - segment.filtered[i - 1]);
   return length;
 }
 
@@ -74,25 +67,25 @@ double pathLength(const Motion& motion) {
 
 namespace {
 
-/// Eight sums side by side, added up in a fixed order: wide on every machine, the same bits.
-double dot(const double* a, const double* b, std::size_t n, double meanA, double meanB) {
+/// Sum of term(0) to term(n - 1): eight sums side by side, added up in a fixed order: wide on every machine, the same
+/// bits.
+template <class Term>
+double sumOf(std::size_t n, Term term) {
   double lane[8] = {};
   std::size_t i = 0;
   for (; i + 8 <= n; i += 8) {
-    for (std::size_t l = 0; l < 8; ++l) lane[l] += (a[i + l] - meanA) * (b[i + l] - meanB);
+    for (std::size_t l = 0; l < 8; ++l) lane[l] += term(i + l);
   }
-  for (std::size_t l = 0; i < n; ++i, ++l) lane[l] += (a[i] - meanA) * (b[i] - meanB);
+  for (std::size_t l = 0; i < n; ++i, ++l) lane[l] += term(i);
   return ((lane[0] + lane[1]) + (lane[2] + lane[3])) + ((lane[4] + lane[5]) + (lane[6] + lane[7]));
 }
 
 double sum(const double* a, std::size_t n) {
-  double lane[8] = {};
-  std::size_t i = 0;
-  for (; i + 8 <= n; i += 8) {
-    for (std::size_t l = 0; l < 8; ++l) lane[l] += a[i + l];
-  }
-  for (std::size_t l = 0; i < n; ++i, ++l) lane[l] += a[i];
-  return ((lane[0] + lane[1]) + (lane[2] + lane[3])) + ((lane[4] + lane[5]) + (lane[6] + lane[7]));
+  return sumOf(n, [a](std::size_t i) { return a[i]; });
+}
+
+double dot(const double* a, const double* b, std::size_t n, double meanA, double meanB) {
+  return sumOf(n, [=](std::size_t i) { return (a[i] - meanA) * (b[i] - meanB); });
 }
 
 }  // namespace

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Stretches of a motion by the speed of the tip: movements, and rest between them.
-// Figures of both hands together.
+// Stretches of a motion by the speed of the tip: movements, and rest between them; both hands' speeds together.
 #pragma once
 
 #include <cstddef>

@@ -106,19 +106,6 @@ struct CysticContactTime {
   [[nodiscard]] Measured figure(const AttemptEnd& end) const { return contact.sum(end); }
 };
 
-struct PhaseCysticContactTime {
-  std::vector<CysticContactTime> window;
-
-  explicit PhaseCysticContactTime(const AttemptContext& context)
-      : window(windowPhases.size(), CysticContactTime{context}) {}
-
-  void add(const recorder::StepRecord& record, const Judgement& judgement) {
-    const std::size_t w = windowOf(judgement.phase);
-    if (w < window.size()) window[w].add(record.result);
-  }
-  [[nodiscard]] Measured figure(const AttemptEnd& end, std::size_t w) const { return window[w].figure(end); }
-};
-
 struct SparedContactTime {
   const AttemptContext& context;
   bool sum;
@@ -171,7 +158,7 @@ std::vector<CheckpointEntry> contactRows() {
       .accumulate = accumulating<CysticContactTime>()};
   return {
       cystic,
-      phaseRow(cystic, 140, "steps", accumulating<PhaseCysticContactTime>(), 2),
+      phaseRow(cystic, 140, "steps", accumulating<PerPhase<CysticContactTime>>(), 2),
       {.place = {CheckpointFamily::contact, 10},
        .definition = {.name = "contact-time-union",
                       .title = "Contact time with the organ (any instrument)",

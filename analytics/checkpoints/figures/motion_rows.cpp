@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "analytics/checkpoints/figures/rows.h"
 #include "analytics/checkpoints/movements.h"
@@ -101,20 +102,14 @@ Measured workingVolumeOf(const Motion& motion) {
 }
 
 Measured meanSpeed(const Motion& motion) {
-  double sum = 0.0;
-  for (const MotionSegment& segment : motion.segments) {
-    for (const double v : segment.speed) sum += v;
-  }
-  return Measured::of(sum / static_cast<double>(motion.points()));
+  const std::vector<double> speeds = speedsOf(motion.segments);
+  return Measured::of(std::accumulate(speeds.begin(), speeds.end(), 0.0) / static_cast<double>(speeds.size()));
 }
 
 Measured speedPercentile(const Motion& motion) {
-  std::vector<double> all;
-  all.reserve(motion.points());
-  for (const MotionSegment& segment : motion.segments)
-    all.insert(all.end(), segment.speed.begin(), segment.speed.end());
-  std::sort(all.begin(), all.end());
-  return Measured::of(quantileOfSorted(all, 0.95));
+  std::vector<double> speeds = speedsOf(motion.segments);
+  std::sort(speeds.begin(), speeds.end());
+  return Measured::of(quantileOfSorted(speeds, 0.95));
 }
 
 Measured count(const Motion& motion) {
@@ -129,8 +124,7 @@ Measured straightness(const Motion& motion) {
   double chord = 0.0, path = 0.0;
   for (const MotionSegment& segment : motion.segments) {
     for (const Stretch& movement : movementsOf(segment, motion.movementSpeed)) {
-      const Vec3 d = segment.filtered[movement.end - 1] - segment.filtered[movement.begin];
-      chord += std::sqrt(d.x() * d.x() + d.y() * d.y() + d.z() * d.z());
+      chord += lengthOf(segment.filtered[movement.end - 1] - segment.filtered[movement.begin]);
       path += pathLength(segment, movement.begin, movement.end);
     }
   }
@@ -199,7 +193,6 @@ std::vector<CheckpointEntry> motionRows() {
                               .title = "Path length of the instrument's tip",
                               .unit = "m",
                               .displayUnit = "mm",
-                              .displayFactor = 1000.0,
                               .direction = Direction::lower,
                               .version = 3,
                               .definition = "L = sum |p(k+1) - p(k)| over the filtered points of the real tip p_WI, "
@@ -213,7 +206,6 @@ std::vector<CheckpointEntry> motionRows() {
                               .title = "Path along the instrument's axis",
                               .unit = "m",
                               .displayUnit = "mm",
-                              .displayFactor = 1000.0,
                               .direction = Direction::lower,
                               .version = 2,
                               .definition = "sum |(p(k+1) - p(k)) . (z(k) + z(k+1)) / 2|, p the filtered tip, z the "
@@ -226,7 +218,6 @@ std::vector<CheckpointEntry> motionRows() {
                               .title = "Angular path of the instrument",
                               .unit = "rad",
                               .displayUnit = "deg",
-                              .displayFactor = 180.0 / std::numbers::pi,
                               .direction = Direction::lower,
                               .version = 2,
                               .definition = "sum angle(R(k)^T R(k+1)) over the filtered orientations (quaternion "
@@ -239,7 +230,6 @@ std::vector<CheckpointEntry> motionRows() {
                               .title = "Mean speed of the instrument's tip",
                               .unit = "m/s",
                               .displayUnit = "mm/s",
-                              .displayFactor = 1000.0,
                               .version = 2,
                               .definition = "mean of v(k) over all points; v(k) = |p(k+1) - p(k-1)| * 50 Hz of the "
                                             "filtered tip, one-sided at the ends of a segment"}},
@@ -250,7 +240,6 @@ std::vector<CheckpointEntry> motionRows() {
                               .title = "95th percentile of the tip's speed",
                               .unit = "m/s",
                               .displayUnit = "mm/s",
-                              .displayFactor = 1000.0,
                               .version = 2,
                               .definition = "quantile of type 7 at 0.95 of v(k) over all points, v as in speed-mean"}},
               speedPercentile);
@@ -291,7 +280,6 @@ std::vector<CheckpointEntry> motionRows() {
                               .title = "Working volume of the instrument's tip",
                               .unit = "m^3",
                               .displayUnit = "ml",
-                              .displayFactor = 1e6,
                               .direction = Direction::lower,
                               .version = 2,
                               .definition = "4/3 pi (7.814727903)^(3/2) sqrt(det S): the ellipsoid of normally "
@@ -363,7 +351,6 @@ std::vector<CheckpointEntry> motionRows() {
                                   .title = "Right hand's share of both paths",
                                   .unit = "1",
                                   .displayUnit = "%",
-                                  .displayFactor = 100.0,
                                   .window = "whole attempt, while an instrument is mounted and measured",
                                   .version = 2,
                                   .definition = "L_right / (L_left + L_right), L as in path-length; the value's note "
