@@ -20,86 +20,59 @@
 #include "sim/judgement/judge.h"
 
 namespace calot::analytics {
-struct CheckpointCollector::Storage {
-  Storage(const recorder::AttemptHeader& header, const SceneDescription& scene, Origin from, double cut)
-      : origin(from),
-        cutoff(cut),
-        tickSeconds(header.tickSeconds),
-        ticksPerStep(header.ticksPerStep),
-        track{trackFor(header), trackFor(header)},
-        judge(scene),
-        force(header.tickSeconds),
-        phaseForce(header.tickSeconds) {
-    const bool procedure = !scene.procedure.specimen.empty();
-    const AttemptContext context{header.tickSeconds, header.ticksPerStep, header.structures(), header.stepResultVersion,
-                                 procedure,          header.handedness,   sceneFacts(scene)};
-    for (const CheckpointEntry& entry : checkpointRegistry()) checkpoint.push_back(entry.make(context));
-  }
-  Origin origin;
-  double cutoff;
-  double tickSeconds;
-  std::uint64_t ticksPerStep;
-  std::array<MotionTrack, handCount> track;
-  PhaseTrack phases;
-  Judge judge;
-  ForceTrack force;
-  PhaseForceTrack phaseForce;
-  std::vector<std::unique_ptr<Checkpoint>> checkpoint;
-  std::uint64_t steps = 0;
-  double stretched = 0.0;
-  recorder::Outcome outcome = recorder::Outcome::running;
-  bool ended = false;
-};
 
 CheckpointCollector::CheckpointCollector(const recorder::AttemptHeader& header, const SceneDescription& scene,
                                          Origin origin, double cutoff)
-    : storage_(std::make_unique<Storage>(header, scene, origin, cutoff)) {
+    : origin_(origin),
+      cutoff_(cutoff),
+      tickSeconds_(header.tickSeconds),
+      ticksPerStep_(header.ticksPerStep),
+      track_{trackFor(header), trackFor(header)},
+      judge_(scene),
+      force_(header.tickSeconds),
+      phaseForce_(header.tickSeconds) {
   assert(origin != Origin::samples);
+  const bool procedure = !scene.procedure.specimen.empty();
+  const AttemptContext context{header.tickSeconds, header.ticksPerStep, header.structures(), header.stepResultVersion,
+                               procedure,          header.handedness,   sceneFacts(scene)};
+  for (const CheckpointEntry& entry : checkpointRegistry()) checkpoint_.push_back(entry.make(context));
 }
 
-CheckpointCollector::~CheckpointCollector() = default;
-
-void CheckpointCollector::onStep(const recorder::StepRecord& record) {
-  take(record, storage_->judge.observe(record.result));
-}
+void CheckpointCollector::onStep(const recorder::StepRecord& record) { take(record, judge_.observe(record.result)); }
 
 void CheckpointCollector::take(const recorder::StepRecord& record, const Judgement& judgement) {
-  assert(!storage_->ended);
+  assert(!ended_);
   for (const TickSamples& tick : record.samples) {
-    for (std::size_t h = 0; h < static_cast<std::size_t>(handCount); ++h) storage_->track[h].add(tick.hand[h]);
+    for (std::size_t h = 0; h < track_.size(); ++h) track_[h].add(tick.hand[h]);
   }
-  storage_->force.add(record);
-  storage_->phaseForce.add(record, judgement.phase);
-  storage_->phases.add(judgement.phase, storage_->ticksPerStep);
+  force_.add(record);
+  phaseForce_.add(record, judgement.phase);
+  phases_.add(judgement.phase, ticksPerStep_);
   for (const Event& event : record.result.events) {
-    if (event.kind == EventKind::clockStretched) storage_->stretched += event.value;
+    if (event.kind == EventKind::clockStretched) stretched_ += event.value;
   }
-  for (const auto& checkpoint : storage_->checkpoint) checkpoint->onStep(record, judgement);
-  ++storage_->steps;
+  for (const auto& checkpoint : checkpoint_) checkpoint->onStep(record, judgement);
+  ++steps_;
 }
 
 void CheckpointCollector::onEnd(recorder::Outcome outcome) {
-  storage_->outcome = outcome;
-  storage_->ended = true;
+  outcome_ = outcome;
+  ended_ = true;
 }
 
 std::vector<CheckpointValue> CheckpointCollector::values() const {
-  std::array<Motion, handCount> motion;
-  AttemptEnd end;
-  end.steps = storage_->steps;
-  end.stretched = storage_->stretched;
-  end.outcome = storage_->outcome;
-  end.origin = storage_->origin;
-  end.force = &storage_->force;
-  end.phaseForce = &storage_->phaseForce;
-  for (std::size_t h = 0; h < static_cast<std::size_t>(handCount); ++h) {
-    motion[h] = storage_->track[h].motion(storage_->cutoff);
-    end.motion[h] = &motion[h];
-  }
-  const std::vector<PhaseMotion> phases = storage_->phases.cut(motion, storage_->tickSeconds);
-  end.phases = &phases;
+  const std::array<Motion, handCount> motion{track_[0].motion(cutoff_), track_[1].motion(cutoff_)};
+  const std::vector<PhaseMotion> phases = phases_.cut(motion, tickSeconds_);
+  const AttemptEnd end{.steps = steps_,
+                       .stretched = stretched_,
+                       .outcome = outcome_,
+                       .origin = origin_,
+                       .motion = {&motion[0], &motion[1]},
+                       .phases = &phases,
+                       .force = &force_,
+                       .phaseForce = &phaseForce_};
   std::vector<CheckpointValue> result;
-  for (const auto& checkpoint : storage_->checkpoint) {
+  for (const auto& checkpoint : checkpoint_) {
     for (CheckpointValue& value : checkpoint->values(end)) result.push_back(std::move(value));
   }
   return result;
@@ -150,18 +123,18 @@ std::vector<CheckpointValue> valuesFromSamples(const recorder::TrackedMotion& tr
   const std::array<Motion, handCount> motion{motionOf(tracked, 0, context.cutoff),
                                              motionOf(tracked, 1, context.cutoff)};
   const std::vector<PhaseMotion> phases;
+  const std::uint64_t steps = tracked.time.size() - 1;
   AttemptContext attempt;
   attempt.handedness = context.handedness;
-  AttemptEnd end;
-  end.steps = tracked.time.size() - 1;
   attempt.ticksPerStep = 1;
-  attempt.tickSeconds = tracked.time.back() / static_cast<double>(end.steps);
+  attempt.tickSeconds = tracked.time.back() / static_cast<double>(steps);
   const ForceTrack force(attempt.tickSeconds);
-  end.outcome = context.outcome;
-  end.origin = Origin::samples;
-  end.motion = {&motion[0], &motion[1]};
-  end.phases = &phases;
-  end.force = &force;
+  const AttemptEnd end{.steps = steps,
+                       .outcome = context.outcome,
+                       .origin = Origin::samples,
+                       .motion = {&motion[0], &motion[1]},
+                       .phases = &phases,
+                       .force = &force};
   std::vector<CheckpointValue> values;
   for (const CheckpointEntry& entry : checkpointRegistry()) {
     const std::vector<Origin>& origins = entry.definition.origins;

@@ -45,6 +45,7 @@ struct Participant {
   std::string site;
   std::map<std::string, std::string> experience;
   std::map<std::string, std::string> consent;  ///< purpose -> date (YYYY-MM-DD)
+  bool operator==(const Participant&) const = default;
 };
 
 /// @throws Error (invalid) for an empty or malformed pseudonym, a criterion or purpose without name, or no date.

@@ -3,7 +3,6 @@
 #include "analytics/external/input_columns.h"
 
 #include <fmt/format.h>
-#include <bit>
 #include <cassert>
 #include <cerrno>
 #include <string>
@@ -30,16 +29,8 @@ NpyColumn::NpyColumn(std::filesystem::path path, bool whole, std::size_t width)
   writeHead();
 }
 
-void NpyColumn::put(double value) {
-  assert(!whole_);
-  waiting_.push_back(std::bit_cast<std::uint64_t>(value));
-  ++numbers_;
-  if (waiting_.size() == heldBack) flush();
-}
-
-void NpyColumn::put(std::int64_t value) {
-  assert(whole_);
-  waiting_.push_back(std::bit_cast<std::uint64_t>(value));
+void NpyColumn::putBits(std::uint64_t bits) {
+  waiting_.push_back(bits);
   ++numbers_;
   if (waiting_.size() == heldBack) flush();
 }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Internal to this folder.
+// Tables of numbers as files of NumPy.
 #pragma once
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
@@ -23,14 +24,15 @@ class NpyColumn {
   /// @param width numbers of a row; 0: the array has one dimension. @throws Error (failure), as all functions here
   NpyColumn(std::filesystem::path path, bool whole, std::size_t width);
 
-  void put(double value);
-  void put(std::int64_t value);
+  void put(double value) { putBits(std::bit_cast<std::uint64_t>(value)); }        ///< @pre not whole
+  void put(std::int64_t value) { putBits(std::bit_cast<std::uint64_t>(value)); }  ///< @pre whole
   /// Forgets all rows. @pre they are few: none was written yet
   void clear();
   /// Writes what is left, and the number of rows into the head. @pre rows are whole.
   void close();
 
  private:
+  void putBits(std::uint64_t bits);
   void flush();
   void writeHead();
   [[noreturn]] void fail() const;

@@ -118,52 +118,38 @@ void writeDescription(const std::filesystem::path& folder, const Json& attempt, 
 
 }  // namespace
 
-struct MetricInput::Storage {
-  Storage(const recorder::AttemptHeader& h, const SceneDescription& scene, Origin origin)
-      : header(h),
-        judge(scene),
-        results(folder.path(), "results"),
-        samples(folder.path(), "samples"),
-        events(folder.path(), "events"),
-        source(nameOf(origin)) {}
-  TemporaryFolder folder;
-  recorder::AttemptHeader header;
-  Judge judge;
-  InputColumns results, samples, events;
-  std::string source;
-};
-
 MetricInput::MetricInput(const recorder::AttemptHeader& header, const SceneDescription& scene, Origin origin)
-    : storage_(std::make_unique<Storage>(header, scene, origin)) {
-  putEvent(storage_->events, 0.0, Event{});
-  storage_->events.dropRows();
+    : header_(header),
+      judge_(scene),
+      results_(folder_.path(), "results"),
+      samples_(folder_.path(), "samples"),
+      events_(folder_.path(), "events"),
+      origin_(origin) {
+  putEvent(events_, 0.0, Event{});
+  events_.dropRows();
 }
 
-MetricInput::~MetricInput() = default;
-
 void MetricInput::onStep(const recorder::StepRecord& record) {
-  Storage& s = *storage_;
-  const Judgement& judgement = s.judge.observe(record.result);
-  const std::uint64_t first = record.step * s.header.ticksPerStep;
-  const double tick = s.header.tickSeconds;
-  const double end = static_cast<double>(first + s.header.ticksPerStep) * tick;
+  const Judgement& judgement = judge_.observe(record.result);
+  const std::uint64_t first = record.step * header_.ticksPerStep;
+  const double tick = header_.tickSeconds;
+  const double end = static_cast<double>(first + header_.ticksPerStep) * tick;
   for (std::size_t t = 0; t < record.samples.size(); ++t)
-    putTick(s.samples, static_cast<double>(first + t) * tick, record.samples[t], record.ticks[t]);
-  s.results.beginRow();
-  s.results.number("time", "s", end);
-  s.results.whole("phase", static_cast<std::int64_t>(judgement.phase));
+    putTick(samples_, static_cast<double>(first + t) * tick, record.samples[t], record.ticks[t]);
+  results_.beginRow();
+  results_.number("time", "s", end);
+  results_.whole("phase", static_cast<std::int64_t>(judgement.phase));
   for (std::size_t h = 0; h < static_cast<std::size_t>(handCount); ++h)
-    s.results.number(std::string(handNames[h]) + "_force", "N", record.result.hand[h].contactForce.norm());
-  StepResult::fields(record.result, s.header.stepResultVersion, ResultVisitor{s.results});
-  s.results.endRow();
-  for (const Event& event : judgement.events) putEvent(s.events, end, event);
+    results_.number(std::string(handNames[h]) + "_force", "N", record.result.hand[h].contactForce.norm());
+  StepResult::fields(record.result, header_.stepResultVersion, ResultVisitor{results_});
+  results_.endRow();
+  for (const Event& event : judgement.events) putEvent(events_, end, event);
 }
 
 void MetricInput::onEnd(recorder::Outcome outcome) {
-  Storage& s = *storage_;
-  for (InputColumns* table : {&s.results, &s.samples, &s.events}) table->close();
-  const recorder::AttemptHeader& h = s.header;
-  const Json attempt{{"source", s.source},
+  for (InputColumns* table : {&results_, &samples_, &events_}) table->close();
+  const recorder::AttemptHeader& h = header_;
+  const Json attempt{{"source", nameOf(origin_)},
                      {"scene", h.sceneName},
                      {"scene_major", h.sceneMajor},
                      {"scene_minor", h.sceneMinor},
@@ -176,10 +162,8 @@ void MetricInput::onEnd(recorder::Outcome outcome) {
                      {"step_result_version", h.stepResultVersion},
                      {"tick_seconds", h.tickSeconds},
                      {"ticks_per_step", h.ticksPerStep}};
-  writeDescription(s.folder.path(), attempt, h.structures(), {&s.results, &s.samples, &s.events});
+  writeDescription(folder_.path(), attempt, h.structures(), {&results_, &samples_, &events_});
 }
-
-const std::filesystem::path& MetricInput::folder() const { return storage_->folder.path(); }
 
 TemporaryFolder writeMetricInput(const recorder::TrackedMotion& motion, recorder::Outcome outcome,
                                  const std::string& handedness, const std::string& task) {

@@ -3,13 +3,14 @@
 #pragma once
 
 #include <filesystem>
-#include <memory>
 #include <utility>
 
 #include "analytics/checkpoints/definition.h"
+#include "analytics/external/input_columns.h"
 #include "recorder/base/identity.h"
 #include "recorder/engine/observer.h"
 #include "recorder/sources/tracked_motion.h"
+#include "sim/judgement/judge.h"
 
 namespace calot::analytics {
 
@@ -35,19 +36,19 @@ class MetricInput final : public recorder::Observer {
   /// @param scene the attempt's own. @param origin `resimulated` or `observables`. @throws Error (failure), as all
   /// functions here, where the folder cannot be written
   MetricInput(const recorder::AttemptHeader& header, const SceneDescription& scene, Origin origin);
-  ~MetricInput() override;
-  MetricInput(const MetricInput&) = delete;
-  MetricInput& operator=(const MetricInput&) = delete;
 
   void onStep(const recorder::StepRecord& record) override;
   void onEnd(recorder::Outcome outcome) override;
 
   /// The folder, complete. @pre onEnd() was called
-  [[nodiscard]] const std::filesystem::path& folder() const;
+  [[nodiscard]] const std::filesystem::path& folder() const { return folder_.path(); }
 
  private:
-  struct Storage;
-  std::unique_ptr<Storage> storage_;
+  TemporaryFolder folder_;
+  recorder::AttemptHeader header_;
+  Judge judge_;
+  InputColumns results_, samples_, events_;
+  Origin origin_;
 };
 
 /// The same of motion without a scene: its rows are the samples.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A table of motion files with who made them: what `calot import --manifest` reads.
-// Registering participants from a table: what a cohort knows of them is never replaced.
+// A table of motion files with who made them: what `calot import --manifest` reads; and registering its participants,
+// of whom nothing that a cohort knows is replaced.
 #pragma once
 
 #include <cstddef>
@@ -55,7 +55,8 @@ class Enrolment {
   [[nodiscard]] std::vector<Error> conflicts(const MotionManifest& manifest) const;
 
  private:
-  [[nodiscard]] ParticipantChange changeOf(const Participant& wanted) const;
+  /// What the cohort does not know of a participant yet, all of it where it does not know the participant.
+  [[nodiscard]] Participant additionsOf(const Participant& wanted) const;
 
   std::string path_;
   std::map<std::string, Participant> known_;

@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "analytics/intake/folder_watch.h"
 #include "analytics/intake/intake.h"
 #include "apps/calot/commands.h"
 #include "apps/calot/environment.h"
