@@ -21,11 +21,6 @@ namespace {
 
 using namespace tables;
 
-bool wordLetter(char c) {
-  return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' || c == '-' ||
-         static_cast<unsigned char>(c) >= 0x80;
-}
-
 bool namesAny(const std::string& text, const std::vector<std::string>& words) {
   return std::any_of(words.begin(), words.end(), [&](const std::string& word) { return namesWord(text, word); });
 }
@@ -165,12 +160,17 @@ CohortConnection openForDeletion(const std::string& path) {
 
 }  // namespace
 
+bool isInWord(char c) {
+  return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' || c == '-' ||
+         static_cast<unsigned char>(c) >= 0x80;
+}
+
 bool namesWord(const std::string& where, const std::string& word) {
   if (word.empty()) return false;
   for (std::size_t at = where.find(word); at != std::string::npos; at = where.find(word, at + 1)) {
-    const bool begins = at == 0 || !wordLetter(where[at - 1]) || !wordLetter(word.front());
+    const bool begins = at == 0 || !isInWord(where[at - 1]) || !isInWord(word.front());
     const std::size_t end = at + word.size();
-    const bool ends = end == where.size() || !wordLetter(where[end]) || !wordLetter(word.back());
+    const bool ends = end == where.size() || !isInWord(where[end]) || !isInWord(word.back());
     if (begins && ends) return true;
   }
   return false;

@@ -8,6 +8,8 @@
 #include <chrono>
 #include <cstdio>
 
+#include "analytics/cohort/withdraw.h"
+
 namespace calot::analytics {
 
 std::int64_t drawShift() {
@@ -45,11 +47,6 @@ bool saysNothing(std::string_view name) {
   return name.size() < 2 || (figure && !day);
 }
 
-bool inWord(char c) {
-  return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' || c == '-' ||
-         static_cast<unsigned char>(c) >= 0x80;
-}
-
 bool inCell(char c) { return c != ',' && c != '"' && c != '\n'; }
 
 }  // namespace
@@ -59,7 +56,7 @@ void OriginalNames::add(const std::string& name, const char* kind) {
 }
 
 std::string OriginalNames::firstIn(std::string_view text, const std::set<std::string>& vocabulary) const {
-  for (bool (*belongs)(char) : {inCell, inWord}) {
+  for (bool (*belongs)(char) : {inCell, isInWord}) {
     for (std::size_t i = 0; i < text.size();) {
       std::size_t end = i;
       while (end < text.size() && belongs(text[end])) ++end;

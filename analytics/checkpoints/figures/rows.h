@@ -48,7 +48,9 @@ struct PerPhase {
   std::vector<A> window;
   Phase phase = Phase::none;
 
-  explicit PerPhase(const AttemptContext& context) : window(windowPhases.size(), A{context}) {}
+  template <class... Arguments>
+  explicit PerPhase(const AttemptContext& context, Arguments... arguments)
+      : window(windowPhases.size(), A{context, arguments...}) {}
 
   void add(const recorder::StepRecord& record, const Judgement& judgement) {
     if constexpr (requires(A & a) { a.leavePhase(); }) {
