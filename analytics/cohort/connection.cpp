@@ -9,8 +9,8 @@
 #include <system_error>
 #include <thread>
 
-#include "analytics/cohort/any_table.h"
 #include "analytics/cohort/embedded.h"
+#include "analytics/cohort/tables.h"
 #include "recorder/base/dates.h"
 
 namespace calot::analytics {

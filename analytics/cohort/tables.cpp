@@ -1,13 +1,195 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Rows of participants and of the audit trail.
+// Any table; rows of participants and of the audit trail.
 
 #include "analytics/cohort/tables.h"
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <set>
 
 #include "analytics/cohort/connection.h"
 #include "recorder/base/dates.h"
+
+namespace calot::analytics {
+namespace {
+
+TableFacts factsOf(SQLite::Database& db, const std::string& name) {
+  TableFacts t;
+  t.name = name;
+  eachRow(db, "SELECT name, type FROM pragma_table_info(?) ORDER BY cid", {name}, [&](SQLite::Statement& row) {
+    t.columns.push_back({row.getColumn(0).getString(), row.getColumn(1).getString()});
+  });
+  // A key that names no column of its parent refers to the primary key.
+  eachRow(
+      db,
+      "SELECT \"from\", \"table\", coalesce(\"to\", (SELECT name FROM pragma_table_info(\"table\") WHERE pk = 1), '') "
+      "FROM pragma_foreign_key_list(?) ORDER BY id, seq",
+      {name}, [&](SQLite::Statement& row) {
+        t.foreign.push_back({row.getColumn(0).getString(), row.getColumn(1).getString(), row.getColumn(2).getString()});
+      });
+  const auto primary = firstTexts(db, "SELECT name FROM pragma_table_info(?) WHERE pk > 0 ORDER BY pk", {name});
+  const auto isForeign = [&](const std::string& column) {
+    return std::any_of(t.foreign.begin(), t.foreign.end(), [&](const ForeignKey& k) { return k.column == column; });
+  };
+  const auto typeOf = [&](const std::string& column) {
+    const auto at = std::find_if(t.columns.begin(), t.columns.end(), [&](const auto& c) { return c.name == column; });
+    return at == t.columns.end() ? std::string() : at->type;
+  };
+  if (primary.size() == 1 && typeOf(primary[0]) == "INTEGER" && !isForeign(primary[0])) t.number = primary[0];
+  t.key = primary;
+  if (primary.empty() || !t.number.empty()) {
+    const auto unique =
+        firstTexts(db,
+                   "SELECT name FROM pragma_index_list(?) WHERE \"unique\" = 1 AND origin = 'u' AND partial = 0 "
+                   "ORDER BY seq DESC",
+                   {name});
+    t.key.clear();
+    if (!unique.empty()) {
+      t.key = firstTexts(db, "SELECT name FROM pragma_index_info(?) ORDER BY seqno", {unique.front()});
+    } else {
+      for (const ColumnFacts& c : t.columns) {
+        if (c.name != t.number) t.key.push_back(c.name);
+      }
+    }
+  }
+  return t;
+}
+
+}  // namespace
+
+std::vector<TableFacts> readTables(SQLite::Database& db) {
+  std::vector<TableFacts> rest, ordered;
+  for (const std::string& name : firstTexts(db,
+                                            "SELECT name FROM sqlite_master WHERE type = 'table' AND name NOT LIKE "
+                                            "'sqlite\\_%' ESCAPE '\\' ORDER BY name"))
+    rest.push_back(factsOf(db, name));
+  std::set<std::string> done;
+  while (!rest.empty()) {
+    const auto free = std::find_if(rest.begin(), rest.end(), [&](const TableFacts& t) {
+      return std::all_of(t.foreign.begin(), t.foreign.end(),
+                         [&](const ForeignKey& k) { return k.parent == t.name || done.count(k.parent) > 0; });
+    });
+    const auto next = free == rest.end() ? rest.begin() : free;  // tables that refer to each other: in any order
+    done.insert(next->name);
+    ordered.push_back(std::move(*next));
+    rest.erase(next);
+  }
+  return ordered;
+}
+
+std::string quotedName(const std::string& name) {
+  std::string quoted = "\"";
+  for (const char c : name) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
+}
+
+Cell cellOf(const SQLite::Column& column) {
+  if (column.isInteger()) return column.getInt64();
+  if (column.isFloat()) return column.getDouble();
+  if (column.isText()) return column.getString();
+  if (column.isBlob()) {
+    const auto* bytes = static_cast<const unsigned char*>(column.getBlob());
+    return Blob(bytes, bytes + column.getBytes());
+  }
+  return std::monostate{};
+}
+
+void bindCell(SQLite::Statement& statement, int at, const Cell& cell) {
+  if (const auto* i = std::get_if<std::int64_t>(&cell)) {
+    statement.bind(at, *i);
+  } else if (const auto* d = std::get_if<double>(&cell)) {
+    statement.bind(at, *d);
+  } else if (const auto* s = std::get_if<std::string>(&cell)) {
+    statement.bind(at, *s);
+  } else if (const auto* b = std::get_if<Blob>(&cell)) {
+    statement.bind(at, b->data(), static_cast<int>(b->size()));
+  } else {
+    statement.bind(at);
+  }
+}
+
+bool isEmpty(const Cell& cell) {
+  const auto* s = std::get_if<std::string>(&cell);
+  return std::holds_alternative<std::monostate>(cell) || (s != nullptr && s->empty());
+}
+
+std::string shownCell(const Cell& cell) {
+  if (const auto* i = std::get_if<std::int64_t>(&cell)) return fmt::format("{}", *i);
+  if (const auto* d = std::get_if<double>(&cell)) return fmt::format("{}", *d);
+  if (const auto* s = std::get_if<std::string>(&cell)) return fmt::format("\"{}\"", *s);
+  if (const auto* b = std::get_if<Blob>(&cell)) {
+    const std::string hex = hexOf(*b);
+    return hex.size() > 16 ? hex.substr(0, 16) + "..." : hex;
+  }
+  return "nothing";
+}
+
+std::string textOf(const Cell& cell) {
+  const auto* s = std::get_if<std::string>(&cell);
+  return s == nullptr ? std::string() : *s;
+}
+
+std::int64_t numberOf(const Cell& cell) {
+  const auto* i = std::get_if<std::int64_t>(&cell);
+  return i == nullptr ? 0 : *i;
+}
+
+std::string joined(const std::vector<std::string>& parts, const char* between) {
+  std::string text;
+  for (const std::string& part : parts) text += (text.empty() ? "" : between) + part;
+  return text;
+}
+
+std::string hexOf(const Blob& bytes) {
+  std::string hex;
+  for (const unsigned char byte : bytes) hex += fmt::format("{:02x}", byte);
+  return hex;
+}
+
+int execute(SQLite::Database& db, const std::string& sql, const std::vector<Cell>& parameters) {
+  SQLite::Statement statement(db, sql);
+  int at = 1;
+  for (const Cell& cell : parameters) bindCell(statement, at++, cell);
+  return statement.exec();
+}
+
+std::vector<Cell> firstColumn(SQLite::Database& db, const std::string& sql, const std::vector<Cell>& parameters) {
+  std::vector<Cell> cells;
+  eachRow(db, sql, parameters, [&](SQLite::Statement& row) { cells.push_back(cellOf(row.getColumn(0))); });
+  return cells;
+}
+
+std::vector<std::string> firstTexts(SQLite::Database& db, const std::string& sql, const std::vector<Cell>& parameters) {
+  std::vector<std::string> texts;
+  for (const Cell& cell : firstColumn(db, sql, parameters)) texts.push_back(textOf(cell));
+  return texts;
+}
+
+std::int64_t firstNumber(SQLite::Database& db, const std::string& sql, const std::vector<Cell>& parameters,
+                         std::int64_t otherwise) {
+  const std::vector<Cell> cells = firstColumn(db, sql, parameters);
+  return cells.empty() ? otherwise : numberOf(cells.front());
+}
+
+std::vector<Row> readRows(SQLite::Database& db, const TableFacts& table, const std::string& condition,
+                          const std::vector<Cell>& parameters) {
+  std::vector<std::string> columns, order;
+  for (const ColumnFacts& c : table.columns) columns.push_back(quotedName(c.name));
+  for (const std::string& k : table.key) order.push_back(quotedName(k));
+  if (!table.number.empty()) order = {quotedName(table.number)};
+  std::string query = fmt::format("SELECT {} FROM {}", joined(columns, ", "), quotedName(table.name));
+  if (!condition.empty()) query += " WHERE " + condition;
+  if (!order.empty()) query += " ORDER BY " + joined(order, ", ");
+  std::vector<Row> rows;
+  eachRow(db, query, parameters, [&](SQLite::Statement& read) {
+    Row& row = rows.emplace_back();
+    for (std::size_t c = 0; c < table.columns.size(); ++c)
+      row[table.columns[c].name] = cellOf(read.getColumn(static_cast<int>(c)));
+  });
+  return rows;
+}
+
+}  // namespace calot::analytics
 
 namespace calot::analytics::tables {
 

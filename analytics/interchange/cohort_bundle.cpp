@@ -17,7 +17,7 @@
 #include "analytics/cohort/registers.h"
 #include "analytics/cohort/withdraw.h"
 #include "analytics/interchange/bundle_names.h"
-#include "analytics/interchange/codebook.h"
+#include "analytics/interchange/cohort_tables.h"
 #include "recorder/attempt.h"
 #include "recorder/base/csv_writer.h"
 #include "recorder/base/errors.h"

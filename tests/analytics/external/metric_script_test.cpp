@@ -9,7 +9,6 @@
 #include <fstream>
 #include <iterator>
 
-#include "analytics/external/input_columns.h"
 #include "analytics/external/metric_input.h"
 #include "tests/analytics/cohort/support/cohort_support.h"
 

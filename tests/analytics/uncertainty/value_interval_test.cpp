@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "analytics/checkpoints/checkpoint.h"
-#include "analytics/uncertainty/scene_variants.h"
+#include "analytics/uncertainty/uncertainty.h"
 #include "recorder/formats/scene_file.h"
 
 namespace calot::analytics {
