@@ -64,13 +64,13 @@ for stage in "${stages[@]}"; do
       "$root/scripts/docs.sh"
       ;;
     guard)
-      configure release -DBUILD_TESTING=ON
+      configure release "${whole[@]}" -DBUILD_TESTING=ON
       build release calot calot-bench
       "$python" -B "$root/scripts/guard.py" "$root/build/release/bin/calot" "$root/build/release/bin/calot-bench" --root "$root" --jobs "$jobs"
       ;;
     clang)
       # Recordings of either compiler's program replay in the other's.
-      configure release -DBUILD_TESTING=ON
+      configure release "${whole[@]}" -DBUILD_TESTING=ON
       build release calot
       configure clang "-DCALOT_OTHER=$root/build/release/bin/calot"
       build clang calot calot-dashboard calot-trainer calot-matrix
@@ -91,7 +91,7 @@ for stage in "${stages[@]}"; do
       "$python" -B "$root/scripts/tidy.py" "$root/build/clang" --jobs "$jobs" --rooms sim recorder analytics
       ;;
     matrix)
-      configure release -DBUILD_TESTING=ON
+      configure release "${whole[@]}" -DBUILD_TESTING=ON
       build release calot calot-matrix
       trees=(--tree "$root/build/release")
       configure asan-ubsan
