@@ -11,10 +11,9 @@
 
 #include "analytics/cohort/cohort_database.h"
 #include "apps/calot/cohort_lists.h"
-#include "apps/calot/commands.h"
-#include "apps/calot/results.h"
-#include "apps/calot/wrong_word.h"
-#include "apps/common/exit_code.h"
+#include "apps/calot/command.h"
+#include "apps/calot/help.h"
+#include "apps/common/program.h"
 #include "recorder/base/errors.h"
 
 namespace calot::apps {

@@ -7,8 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "analytics/report/report_text.h"
-#include "apps/calot/commands.h"
-#include "apps/calot/results.h"
+#include "apps/calot/command.h"
 #include "recorder/compliance_cache.h"
 
 namespace calot::apps {

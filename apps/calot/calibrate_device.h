@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <string>
 
-#include "apps/calot/commands.h"
+#include "apps/calot/command.h"
 #include "recorder/sources/devices/camera/camera_calibration.h"
 #include "recorder/sources/devices/device.h"
 #include "recorder/sources/devices/device_script.h"

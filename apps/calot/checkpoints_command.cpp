@@ -7,10 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "analytics/checkpoints/registry.h"
-#include "apps/calot/commands.h"
-#include "apps/calot/results.h"
-#include "apps/calot/terminal_text.h"
-#include "apps/common/exit_code.h"
+#include "apps/calot/command.h"
+#include "apps/common/program.h"
 #include "recorder/base/errors.h"
 
 namespace calot::apps {

@@ -16,12 +16,10 @@
 #include "analytics/interchange/cohort_bundle.h"
 #include "analytics/interchange/cohort_tables.h"
 #include "analytics/regrade.h"
-#include "apps/calot/cohort_option.h"
-#include "apps/calot/commands.h"
+#include "apps/calot/command.h"
 #include "apps/calot/environment.h"
-#include "apps/calot/regrade_report.h"
-#include "apps/calot/results.h"
-#include "apps/common/exit_code.h"
+#include "apps/calot/regrade_command.h"
+#include "apps/common/program.h"
 #include "recorder/base/errors.h"
 
 namespace calot::apps {

@@ -14,10 +14,8 @@
 
 #include "analytics/cohort/cohort_database.h"
 #include "analytics/report/report_text.h"
-#include "apps/calot/cohort_option.h"
-#include "apps/calot/results.h"
-#include "apps/calot/terminal_text.h"
-#include "apps/common/exit_code.h"
+#include "apps/calot/command.h"
+#include "apps/common/program.h"
 #include "recorder/words.h"
 
 namespace calot::apps {

@@ -2,7 +2,7 @@
 // Lists of what a cohort holds: calot attempt list, calot participant list.
 #pragma once
 
-#include "apps/calot/commands.h"
+#include "apps/calot/command.h"
 
 namespace calot::apps {
 

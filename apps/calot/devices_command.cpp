@@ -10,12 +10,10 @@
 #include <string>
 
 #include "apps/calot/calibrate_device.h"
-#include "apps/calot/commands.h"
+#include "apps/calot/command.h"
 #include "apps/calot/environment.h"
-#include "apps/calot/results.h"
+#include "apps/calot/help.h"
 #include "apps/calot/source_options.h"
-#include "apps/calot/terminal_text.h"
-#include "apps/calot/wrong_word.h"
 #include "recorder/attempt.h"
 #include "recorder/base/errors.h"
 #include "recorder/base/text_output.h"

@@ -10,10 +10,9 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "apps/calot/commands.h"
+#include "apps/calot/command.h"
 #include "apps/calot/environment.h"
-#include "apps/calot/results.h"
-#include "apps/common/exit_code.h"
+#include "apps/common/program.h"
 #include "recorder/base/errors.h"
 #include "recorder/base/program_files.h"
 #include "recorder/base/text_output.h"

@@ -3,11 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "apps/calot/cohort_option.h"
-#include "apps/calot/commands.h"
+#include "apps/calot/command.h"
 #include "apps/calot/environment.h"
 #include "apps/calot/help.h"
-#include "apps/calot/wrong_word.h"
 #include "apps/common/help_json.h"
 #include "apps/common/program.h"
 #include "recorder/attempt.h"

@@ -8,10 +8,9 @@
 #include <string>
 #include <utility>
 
-#include "apps/calot/commands.h"
-#include "apps/calot/results.h"
-#include "apps/calot/wrong_word.h"
-#include "apps/common/exit_code.h"
+#include "apps/calot/command.h"
+#include "apps/calot/help.h"
+#include "apps/common/program.h"
 #include "recorder/base/errors.h"
 #include "recorder/base/text_output.h"
 #include "recorder/formats/mesh_file.h"

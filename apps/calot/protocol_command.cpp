@@ -13,13 +13,10 @@
 #include "analytics/cohort/assessment_database.h"
 #include "analytics/report/masked_study.h"
 #include "analytics/statistics/two_groups.h"
-#include "apps/calot/cohort_option.h"
-#include "apps/calot/commands.h"
+#include "apps/calot/command.h"
 #include "apps/calot/environment.h"
-#include "apps/calot/results.h"
-#include "apps/calot/study_options.h"
-#include "apps/calot/terminal_text.h"
-#include "apps/common/exit_code.h"
+#include "apps/calot/study_command.h"
+#include "apps/common/program.h"
 #include "recorder/base/errors.h"
 
 namespace calot::apps {

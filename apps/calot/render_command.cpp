@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "analytics/cohort/withdraw.h"
-#include "apps/calot/commands.h"
+#include "apps/calot/command.h"
 #include "apps/calot/environment.h"
-#include "apps/calot/wrong_word.h"
+#include "apps/calot/help.h"
 #include "gui/film/film.h"
 #include "recorder/base/errors.h"
 #include "recorder/recording/probe.h"

@@ -9,10 +9,9 @@
 #include <optional>
 #include <thread>
 
-#include "apps/calot/commands.h"
+#include "apps/calot/command.h"
 #include "apps/calot/environment.h"
 #include "apps/calot/replay_report.h"
-#include "apps/calot/results.h"
 #include "apps/calot/source_options.h"
 #include "recorder/base/errors.h"
 #include "recorder/base/text_output.h"

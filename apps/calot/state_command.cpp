@@ -4,10 +4,9 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
-#include "apps/calot/commands.h"
+#include "apps/calot/command.h"
 #include "apps/calot/environment.h"
-#include "apps/calot/results.h"
-#include "apps/common/exit_code.h"
+#include "apps/common/program.h"
 #include "recorder/base/errors.h"
 #include "recorder/base/text_output.h"
 #include "recorder/engine/state_fields.h"

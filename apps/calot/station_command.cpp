@@ -6,9 +6,9 @@
 #include <memory>
 #include <string>
 
-#include "apps/calot/commands.h"
+#include "apps/calot/command.h"
 #include "apps/calot/environment.h"
-#include "apps/common/exit_code.h"
+#include "apps/common/program.h"
 #include "recorder/base/errors.h"
 #include "recorder/recording/station_key.h"
 

@@ -11,13 +11,10 @@
 
 #include "analytics/intake/folder_watch.h"
 #include "analytics/intake/intake.h"
-#include "apps/calot/commands.h"
+#include "apps/calot/command.h"
 #include "apps/calot/environment.h"
-#include "apps/calot/key_fault.h"
 #include "apps/calot/replay_report.h"
-#include "apps/calot/results.h"
-#include "apps/common/advice.h"
-#include "apps/common/exit_code.h"
+#include "apps/common/program.h"
 #include "recorder/base/errors.h"
 #include "recorder/kept/engine_folders.h"
 

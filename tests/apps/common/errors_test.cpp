@@ -8,8 +8,6 @@
 #include <stdexcept>
 #include <string>
 
-#include "apps/common/advice.h"
-#include "apps/common/exit_code.h"
 #include "apps/common/program.h"
 
 namespace calot::apps {

@@ -14,7 +14,7 @@
 #include "analytics/cohort/cohort_database.h"
 #include "analytics/external/metric_script.h"
 #include "analytics/import_motion.h"
-#include "apps/common/exit_code.h"
+#include "apps/common/program.h"
 #include "recorder/base/errors.h"
 #include "recorder/sources/column_map.h"
 #include "recorder/sources/tracked_motion.h"

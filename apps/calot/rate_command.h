@@ -5,7 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <string>
 
-#include "apps/calot/commands.h"
+#include "apps/calot/command.h"
 
 namespace calot::apps {
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "analytics/regrade.h"
-#include "apps/common/exit_code.h"
+#include "apps/common/program.h"
 
 namespace calot::apps {
 
