@@ -74,19 +74,18 @@ CLI::Option* addChoice(CLI::App& command, const std::string& name, std::string& 
   return command.add_option(name, value, help)->check(oneOf(std::move(words)))->capture_default_str();
 }
 
-CLI::Option* addList(CLI::App& command, const std::string& name, std::vector<std::string>& values,
-                     const std::string& help) {
-  return command.add_option(name, values, help)->delimiter(',')->allow_extra_args(false);
+std::optional<std::string> givenOf(const CLI::App& command, const std::string& option, const std::string& value) {
+  return command.count(option) > 0 ? std::optional(value) : std::nullopt;
 }
 
-analytics::TextTable tableOf(const std::vector<std::string>& columns) {
+std::vector<std::pair<std::string, analytics::TextTable::Align>> columnsOf(const std::vector<std::string>& names) {
   using Align = analytics::TextTable::Align;
   std::vector<std::pair<std::string, Align>> aligned;
-  for (const std::string& name : columns) {
+  for (const std::string& name : names) {
     const bool right = name.starts_with('>');
     aligned.emplace_back(name.substr(right ? 1 : 0), right ? Align::right : Align::left);
   }
-  return analytics::TextTable(std::move(aligned));
+  return aligned;
 }
 
 namespace {

@@ -68,6 +68,9 @@ using Run = std::function<int()>;
 CALOT_COMMAND_LIST(CALOT_DECLARE_COMMAND)
 #undef CALOT_DECLARE_COMMAND
 
+/// `calot devices calibrate`, in a file of its own.
+void addCalibrateDevice(CLI::App& devices, Run& run);
+
 /// Adds a command whose work has these options. The options live as long as the command.
 /// @param run is set to the work when the command is chosen, unless a command below it was
 /// @param work returns an exit code, or nothing: ExitCode::yes
@@ -109,8 +112,10 @@ CLI::Option* addChoice(CLI::App& command, const std::string& name, std::string& 
                        std::vector<std::string> words);
 
 /// Adds an option for several values, "A,B".
-CLI::Option* addList(CLI::App& command, const std::string& name, std::vector<std::string>& values,
-                     const std::string& help);
+template <class Value>
+CLI::Option* addList(CLI::App& command, const std::string& name, std::vector<Value>& values, const std::string& help) {
+  return command.add_option(name, values, help)->delimiter(',')->allow_extra_args(false);
+}
 
 /// Adds an option that is a number from `least` to `most`; its value is the default.
 template <class Number>
@@ -125,6 +130,9 @@ inline CLI::Option* addThreads(CLI::App& command, unsigned& count, const std::st
   return addNumber(command, name, count, help, 0U, 64U);
 }
 
+/// The value of an option that the command line has, which may be empty: --group "" takes a group away.
+std::optional<std::string> givenOf(const CLI::App& command, const std::string& option, const std::string& value);
+
 /// Head of every result: {"schema": "calot-<what>", "version": N}. The version is raised when a member
 /// changes its meaning or goes; new members alone do not raise it.
 /// @param body an object without these two members
@@ -136,8 +144,11 @@ void printResult(std::string_view what, const Json& body);
 /// The same on one line, flushed: of results that come one after the other.
 void printResultLine(std::string_view what, const Json& body);
 
-/// A table with these columns; ">" before a name aligns its column to the right.
-analytics::TextTable tableOf(const std::vector<std::string>& columns);
+/// Columns of a table; ">" before a name aligns its column to the right.
+std::vector<std::pair<std::string, analytics::TextTable::Align>> columnsOf(const std::vector<std::string>& names);
+inline analytics::TextTable tableOf(const std::vector<std::string>& columns) {
+  return analytics::TextTable(columnsOf(columns));
+}
 
 /// Columns of the terminal that stdout is, from 60 to 160; 80 where it is none.
 std::size_t terminalColumns();

@@ -1,30 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // calot golden: recordings that every build of their simulation version must replay bit for bit.
+// assets/golden/golden.json says how each is made and gives the values of its checkpoints; docs/how-to/golden.md says
+// how to review a change of it.
 
-#include "apps/calot/golden_command.h"
-
-#include <fcntl.h>
-#include <fmt/format.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
 #include <algorithm>
-#include <array>
 #include <bit>
-#include <iostream>
-#include <memory>
-#include <nlohmann/json.hpp>
+#include <cstdio>
 #include <set>
 
 #include "analytics/checkpoints/collector.h"
 #include "analytics/checkpoints/registry.h"
-#include "analytics/report/report_text.h"
 #include "apps/calot/command.h"
-#include "apps/calot/environment.h"
 #include "apps/calot/replay_report.h"
 #include "apps/calot/source_options.h"
-#include "apps/common/program.h"
-#include "recorder/base/errors.h"
 #include "recorder/base/file_bytes.h"
 #include "recorder/base/json_reader.h"
 #include "recorder/base/text_output.h"
@@ -38,112 +26,31 @@ namespace calot::apps {
 
 namespace {
 
-struct GoldenOptions {
-  std::string folder, reason, only, junit;
-  unsigned threads = 1;
-  bool json = false, force = false, skipUndecided = false;
+constexpr const char* listName = "golden.json";
+
+/// A checkpoint's value when the recording was made; in SI units.
+struct GoldenValue {
+  std::string name, subject;
+  std::uint32_t version = 0;  ///< of the checkpoint's definition
+  double value = 0.0;
+  bool operator==(const GoldenValue&) const = default;
 };
 
-std::filesystem::path folderOf(const GoldenOptions& o) {
-  if (!o.folder.empty()) return o.folder;
-  for (const std::filesystem::path& root : assetFolders()) {
-    if (std::filesystem::exists(root / "golden" / "golden.json")) return root / "golden";
-  }
-  throw Error(ErrorKind::damaged, "golden: no asset folder holds golden/golden.json: name one with --folder");
-}
+/// One recording and how to make it: a performer in a scene, up to so many seconds.
+struct GoldenEntry {
+  std::string file;  ///< base name, beside the list
+  std::string scene, performer;
+  std::uint32_t seed = 1;
+  double seconds = 0.0;  ///< 0: until the performer ends
+  std::vector<GoldenValue> values;
+};
 
-int check(const GoldenOptions& o) {
-  const std::filesystem::path folder = folderOf(o);
-  const GoldenList list = readGoldenList(folder / "golden.json");
-  if (!o.junit.empty()) recorder::refuseOutput(o.junit, o.force);
-  std::vector<recorder::ReplayReport> reports;
-  nlohmann::json rows = nlohmann::json::array();
-  Progress progress("replaying, recordings", o.json);
-  for (const GoldenEntry& entry : list.recordings) {
-    if (!o.only.empty() && entry.file != o.only) continue;
-    const GoldenReplay checked = replayGolden(folder / entry.file, entry, o.threads);
-    reports.push_back(checked.report);
-    progress.show(reports.size(), list.recordings.size());
-    if (o.json) {
-      nlohmann::json row = reportJson(checked.report);
-      row["changed_checkpoints"] = checked.changed;
-      rows.push_back(row);
-    } else {
-      printReport(checked.report);
-      for (const std::string& line : checked.changed) fmt::print("    {}\n", line);
-    }
-  }
-  if (reports.empty()) throw Error(ErrorKind::invalid, fmt::format("golden: --only {}: not in the list", o.only));
-  Progress::erase();
-  if (!o.junit.empty()) recorder::writeJunit(o.junit, reports, {"calot golden check", o.skipUndecided, o.force});
-  if (o.json) printResult("golden-check", {{"recordings", rows}});
-  return static_cast<int>(worstOf(reports));
-}
-
-int takeValues(const GoldenOptions& o) {
-  const std::filesystem::path folder = folderOf(o);
-  GoldenList list = readGoldenList(folder / "golden.json");
-  list.valuesReason = requiredReason(o.reason);
-  Progress progress("replaying, recordings", false);
-  for (std::size_t i = 0; i < list.recordings.size(); ++i) {
-    GoldenEntry& entry = list.recordings[i];
-    const GoldenReplay replay = replayGolden(folder / entry.file, entry, o.threads);
-    progress.show(i + 1, list.recordings.size());
-    // Only where the simulation does what it did are the checkpoints all that changed.
-    if (replay.report.verdict != recorder::ReplayVerdict::exact && replay.changed.empty()) {
-      printReport(replay.report);
-      return static_cast<int>(worstOf({replay.report}));
-    }
-    refuseValues(entry, replay.values);
-    Progress::erase();
-    fmt::print("{}: {} checkpoints, {} changed\n", entry.file, replay.values.size(), replay.changed.size());
-    for (const std::string& line : replay.changed) fmt::print("    {}\n", line);
-    entry.values = replay.values;
-  }
-  recorder::writeText(folder / "golden.json", toJson(list), true);
-  return static_cast<int>(ExitCode::yes);
-}
-
-int update(const GoldenOptions& o) {
-  stopOnSignals();
-  const std::filesystem::path folder = folderOf(o);
-  const GoldenList list = readGoldenList(folder / "golden.json");
-  refuseUpdate(folder, list, o.reason);
-  updateGolden(folder, list, o.reason, [](const GoldenEntry& before, const GoldenEntry& now) {
-    const std::vector<std::string> changed = changedValues(before.values, now.values);
-    fmt::print("{}: {} checkpoints, {} changed\n", now.file, now.values.size(), changed.size());
-    for (const std::string& line : changed) fmt::print("    {}\n", line);
-    std::fflush(stdout);
-  });
-  return static_cast<int>(ExitCode::yes);
-}
-
-}  // namespace
-
-void addGolden(CLI::App& app, Run& run) {
-  auto o = std::make_shared<GoldenOptions>();
-  CLI::App* command = app.add_subcommand("golden", "Recordings that every build must replay bit for bit.");
-  command->require_subcommand(1);
-  CLI::App* checking = command->add_subcommand("check", "Replays them; compares checkpoints with those of the list.");
-  CLI::App* updating = command->add_subcommand("update", "Makes them anew, after a change of the simulation.");
-  CLI::App* values = command->add_subcommand("values", "Replays them; the list takes over what the checkpoints give.");
-  for (CLI::App* one : {checking, updating, values})
-    one->add_option("--folder", o->folder, "with golden.json; default: golden/ of the assets");
-  checking->add_option("--only", o->only, "one file of the list");
-  for (CLI::App* one : {checking, values})
-    one->add_option("--threads", o->threads, "of the simulation; 0: all")
-        ->check(CLI::Range(0U, 64U))
-        ->capture_default_str();
-  addJunitOptions(*checking, o->junit, o->skipUndecided, o->force);
-  checking->add_flag("--json", o->json, "print the result as JSON");
-  for (CLI::App* one : {updating, values})
-    one->add_option("--reason", o->reason, "why they change; kept in the list")->required();
-  checking->callback([o, &run] { run = [o] { return check(*o); }; });
-  values->callback([o, &run] { run = [o] { return takeValues(*o); }; });
-  updating->callback([o, &run] { run = [o] { return update(*o); }; });
-}
-
-namespace {
+struct GoldenList {
+  std::uint32_t simulationVersion = 0;  ///< of all recordings
+  std::string reason;                   ///< why they were made anew
+  std::string valuesReason;             ///< why values were taken over since; empty: they were not
+  std::vector<GoldenEntry> recordings;
+};
 
 using recorder::JsonObject;
 using recorder::JsonPlace;
@@ -191,8 +98,7 @@ GoldenEntry readEntry(const JsonPlace& place) {
   return e;
 }
 
-}  // namespace
-
+/// @throws Error (damaged) naming file and place; a name of a file that is no base name, or is given twice, is refused.
 GoldenList readGoldenList(const std::filesystem::path& file) {
   const std::vector<std::byte> bytes = recorder::readFileBytes(file, file.string(), maxBytes);
   const nlohmann::json json = recorder::parseStrictJson(bytes, file.string());
@@ -209,35 +115,31 @@ GoldenList readGoldenList(const std::filesystem::path& file) {
   return list;
 }
 
+/// The list as JSON; every number reads back as the same bits.
 std::string toJson(const GoldenList& list) {
-  nlohmann::ordered_json json;
-  json["simulation_version"] = list.simulationVersion;
-  json["reason"] = list.reason;
+  Json json{{"simulation_version", list.simulationVersion}, {"reason", list.reason}};
   if (!list.valuesReason.empty()) json["values_reason"] = list.valuesReason;
-  json["recordings"] = nlohmann::ordered_json::array();
+  json["recordings"] = Json::array();
   for (const GoldenEntry& e : list.recordings) {
-    nlohmann::ordered_json row;
-    row["file"] = e.file;
-    row["scene"] = e.scene;
-    row["performer"] = e.performer;
-    row["seed"] = e.seed;
-    row["seconds"] = e.seconds;
-    row["checkpoints"] = nlohmann::ordered_json::array();
+    Json values = Json::array();
     for (const GoldenValue& v : e.values) {
-      nlohmann::ordered_json value = {{"name", v.name}};
+      Json value{{"name", v.name}};
       if (!v.subject.empty()) value["subject"] = v.subject;
       value["version"] = v.version;
       value["value"] = v.value;
-      row["checkpoints"].push_back(value);
+      values.push_back(value);
     }
-    json["recordings"].push_back(row);
+    json["recordings"].push_back({{"file", e.file},
+                                  {"scene", e.scene},
+                                  {"performer", e.performer},
+                                  {"seed", e.seed},
+                                  {"seconds", e.seconds},
+                                  {"checkpoints", values}});
   }
   return json.dump(1) + "\n";
 }
 
-namespace {
-
-std::string shown(const GoldenValue& v) {
+std::string shownValue(const GoldenValue& v) {
   const analytics::CheckpointDefinition* definition = analytics::findCheckpoint(v.name);
   if (definition == nullptr) return fmt::format("{}", v.value);
   return fmt::format("{} {}", analytics::significant(v.value * definition->displayFactor, 8), definition->displayUnit);
@@ -253,8 +155,7 @@ std::string titleOf(const GoldenValue& v) { return v.subject.empty() ? v.name : 
 
 bool sameBits(double a, double b) { return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b); }
 
-}  // namespace
-
+/// The values that there are.
 std::vector<GoldenValue> goldenValues(const std::vector<analytics::CheckpointValue>& values) {
   std::vector<GoldenValue> kept;
   for (const analytics::CheckpointValue& v : values) {
@@ -263,23 +164,31 @@ std::vector<GoldenValue> goldenValues(const std::vector<analytics::CheckpointVal
   return kept;
 }
 
+/// One line for each checkpoint whose value differs in a bit, "path-length left: 123.4 mm -> 125.0 mm".
 std::vector<std::string> changedValues(const std::vector<GoldenValue>& before, const std::vector<GoldenValue>& now) {
   std::vector<std::string> lines;
   for (const GoldenValue& b : before) {
     const GoldenValue* n = sameOf(now, b);
     if (n == nullptr) {
-      lines.push_back(fmt::format("{}: {} -> none", titleOf(b), shown(b)));
+      lines.push_back(fmt::format("{}: {} -> none", titleOf(b), shownValue(b)));
     } else if (!sameBits(n->value, b.value)) {
       const std::string why =
           n->version == b.version ? "" : fmt::format(" (definition version {} -> {})", b.version, n->version);
-      lines.push_back(fmt::format("{}: {} -> {}{}", titleOf(b), shown(b), shown(*n), why));
+      lines.push_back(fmt::format("{}: {} -> {}{}", titleOf(b), shownValue(b), shownValue(*n), why));
     }
   }
   for (const GoldenValue& n : now) {
-    if (sameOf(before, n) == nullptr) lines.push_back(fmt::format("{}: none -> {}", titleOf(n), shown(n)));
+    if (sameOf(before, n) == nullptr) lines.push_back(fmt::format("{}: none -> {}", titleOf(n), shownValue(n)));
   }
   return lines;
 }
+
+/// A replay of a golden recording.
+struct GoldenReplay {
+  recorder::ReplayReport report;
+  std::vector<GoldenValue> values;   ///< where it is bit-exact
+  std::vector<std::string> changed;  ///< changedValues() from the list's; the verdict is then `diverged`
+};
 
 GoldenReplay replayGolden(const std::filesystem::path& file, const GoldenEntry& entry, unsigned threads) {
   GoldenReplay replay;
@@ -302,6 +211,8 @@ GoldenReplay replayGolden(const std::filesystem::path& file, const GoldenEntry& 
   return replay;
 }
 
+/// A changed value needs a definition of a higher version, a value that is gone a checkpoint that is gone.
+/// @throws Error (refused) naming the first value that changed without its definition.
 void refuseValues(const GoldenEntry& entry, const std::vector<GoldenValue>& now) {
   for (const GoldenValue& before : entry.values) {
     const GoldenValue* after = sameOf(now, before);
@@ -312,41 +223,21 @@ void refuseValues(const GoldenEntry& entry, const std::vector<GoldenValue>& now)
     throw Error(ErrorKind::refused,
                 fmt::format("golden: {}: {} has another value ({} -> {}) and still definition version "
                             "{}: raise the version or mend the checkpoint",
-                            entry.file, titleOf(before), shown(before), after == nullptr ? "none" : shown(*after),
-                            before.version));
+                            entry.file, titleOf(before), shownValue(before),
+                            after == nullptr ? "none" : shownValue(*after), before.version));
   }
 }
 
-namespace {
-
-constexpr const char* listName = "golden.json";
-
-/// What git prints, or nothing where it fails or is not there.
-std::optional<std::string> git(const std::vector<std::string>& arguments) {
-  std::vector<std::string> words{"git"};
-  words.insert(words.end(), arguments.begin(), arguments.end());
-  std::vector<char*> argv;
-  argv.reserve(words.size() + 1);
-  for (std::string& word : words) argv.push_back(word.data());
-  argv.push_back(nullptr);
-  std::array<int, 2> ends{};
-  if (pipe2(ends.data(), O_CLOEXEC) != 0) return std::nullopt;
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_adddup2(&actions, ends[1], STDOUT_FILENO);
-  posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
-  pid_t child = 0;
-  const int failed = posix_spawnp(&child, "git", &actions, nullptr, argv.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  close(ends[1]);
+/// Changes of a work tree outside of this folder; nothing where git fails or is not there.
+std::optional<std::string> changesOutside(const std::filesystem::path& folder) {
+  std::string quoted;
+  for (const char c : folder.string()) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  const std::string command = "git -C '" + quoted + "' status --porcelain -- :/ ':(exclude).' 2>/dev/null";
+  std::FILE* const pipe = popen(command.c_str(), "r");
+  if (pipe == nullptr) return std::nullopt;
   std::string text;
-  std::array<char, 4096> buffer{};
-  for (ssize_t n = 0; failed == 0 && (n = read(ends[0], buffer.data(), buffer.size())) > 0;)
-    text.append(buffer.data(), static_cast<std::size_t>(n));
-  close(ends[0]);
-  int status = 0;
-  if (failed != 0 || waitpid(child, &status, 0) != child || status != 0) return std::nullopt;
-  return text;
+  for (int c = 0; (c = std::fgetc(pipe)) != EOF;) text += static_cast<char>(c);
+  return pclose(pipe) == 0 ? std::optional(text) : std::nullopt;
 }
 
 GoldenEntry recordEntry(const GoldenEntry& entry, const std::filesystem::path& file) {
@@ -387,14 +278,15 @@ struct Temporary {
   }
 };
 
-}  // namespace
-
+/// The reason given. @throws Error (invalid) where it is empty.
 const std::string& requiredReason(const std::string& reason) {
   if (reason.find_first_not_of(" \t\n") == std::string::npos)
     throw Error(ErrorKind::invalid, "golden: --reason: say why the recordings or their values change");
   return reason;
 }
 
+/// @throws Error (invalid): the reason is empty; or all recordings are there and of this build's simulation version; or
+/// `folder` is in no work tree, or in one with changes outside of it.
 void refuseUpdate(const std::filesystem::path& folder, const GoldenList& list, const std::string& reason) {
   requiredReason(reason);
   const bool complete = std::all_of(list.recordings.begin(), list.recordings.end(),
@@ -405,9 +297,7 @@ void refuseUpdate(const std::filesystem::path& folder, const GoldenList& list, c
                             "them raises simulationVersion (sim/scene/version.h) first",
                             list.simulationVersion));
   }
-  // Of the whole work tree, but for the recordings themselves: their header names a revision.
-  const std::optional<std::string> changes =
-      git({"-C", folder.string(), "status", "--porcelain", "--", ":/", ":(exclude)."});
+  const std::optional<std::string> changes = changesOutside(folder);  // a recording's header names a revision
   if (!changes) {
     throw Error(ErrorKind::invalid, fmt::format("golden: {} lies in no git work tree, or git is not there: golden "
                                                 "recordings belong to a revision",
@@ -419,21 +309,122 @@ void refuseUpdate(const std::filesystem::path& folder, const GoldenList& list, c
   }
 }
 
-void updateGolden(const std::filesystem::path& folder, const GoldenList& list, const std::string& reason,
-                  const std::function<void(const GoldenEntry& before, const GoldenEntry& now)>& told) {
+struct GoldenOptions {
+  std::string folder, reason, only, junit;
+  unsigned threads = 1;
+  bool json = false, force = false, skipUndecided = false;
+};
+
+std::filesystem::path folderOf(const GoldenOptions& o) {
+  if (!o.folder.empty()) return o.folder;
+  for (const std::filesystem::path& root : assetFolders()) {
+    if (std::filesystem::exists(root / "golden" / listName)) return root / "golden";
+  }
+  throw Error(ErrorKind::damaged, "golden: no asset folder holds golden/golden.json: name one with --folder");
+}
+
+void printLines(const std::vector<std::string>& lines) {
+  for (const std::string& line : lines) fmt::print("    {}\n", line);
+}
+
+void printChanges(const std::string& file, std::size_t checkpoints, const std::vector<std::string>& changed) {
+  fmt::print("{}: {} checkpoints, {} changed\n", file, checkpoints, changed.size());
+  printLines(changed);
+  std::fflush(stdout);
+}
+
+ExitCode checkGolden(const GoldenOptions& o) {
+  const std::filesystem::path folder = folderOf(o);
+  const GoldenList list = readGoldenList(folder / listName);
+  if (!o.junit.empty()) recorder::refuseOutput(o.junit, o.force);
+  std::vector<recorder::ReplayReport> reports;
+  nlohmann::json rows = nlohmann::json::array();
+  Progress progress("replaying, recordings", o.json);
+  for (const GoldenEntry& entry : list.recordings) {
+    if (!o.only.empty() && entry.file != o.only) continue;
+    const GoldenReplay checked = replayGolden(folder / entry.file, entry, o.threads);
+    reports.push_back(checked.report);
+    progress.show(reports.size(), list.recordings.size());
+    if (o.json) {
+      nlohmann::json row = reportJson(checked.report);
+      row["changed_checkpoints"] = checked.changed;
+      rows.push_back(row);
+    } else {
+      printReport(checked.report);
+      printLines(checked.changed);
+    }
+  }
+  if (reports.empty()) throw Error(ErrorKind::invalid, fmt::format("golden: --only {}: not in the list", o.only));
+  Progress::erase();
+  if (!o.junit.empty()) recorder::writeJunit(o.junit, reports, {"calot golden check", o.skipUndecided, o.force});
+  if (o.json) printResult("golden-check", {{"recordings", rows}});
+  return worstOf(reports);
+}
+
+ExitCode takeValues(const GoldenOptions& o) {
+  const std::filesystem::path folder = folderOf(o);
+  GoldenList list = readGoldenList(folder / listName);
+  list.valuesReason = requiredReason(o.reason);
+  Progress progress("replaying, recordings", false);
+  for (std::size_t i = 0; i < list.recordings.size(); ++i) {
+    GoldenEntry& entry = list.recordings[i];
+    const GoldenReplay replay = replayGolden(folder / entry.file, entry, o.threads);
+    progress.show(i + 1, list.recordings.size());
+    // Only where the simulation does what it did are the checkpoints all that changed.
+    if (replay.report.verdict != recorder::ReplayVerdict::exact && replay.changed.empty()) {
+      printReport(replay.report);
+      return worstOf({replay.report});
+    }
+    refuseValues(entry, replay.values);
+    Progress::erase();
+    printChanges(entry.file, replay.values.size(), replay.changed);
+    entry.values = replay.values;
+  }
+  recorder::writeText(folder / listName, toJson(list), true);
+  return ExitCode::yes;
+}
+
+/// Runs every recording of the list again, then replaces files and list together. @throws Error with nothing replaced.
+void updateGolden(const GoldenOptions& o) {
+  stopOnSignals();
+  const std::filesystem::path folder = folderOf(o);
+  const GoldenList list = readGoldenList(folder / listName);
+  refuseUpdate(folder, list, o.reason);
   GoldenList made;
   made.simulationVersion = simulationVersion;
-  made.reason = reason;
+  made.reason = o.reason;
   Temporary temporary;
   for (const GoldenEntry& entry : list.recordings) {
     temporary.files.push_back(folder / ("new." + entry.file));
-    made.recordings.push_back(recordEntry(entry, temporary.files.back()));
-    told(entry, made.recordings.back());
+    const GoldenEntry& now = made.recordings.emplace_back(recordEntry(entry, temporary.files.back()));
+    printChanges(now.file, now.values.size(), changedValues(entry.values, now.values));
   }
   for (std::size_t i = 0; i < made.recordings.size(); ++i)
     std::filesystem::rename(temporary.files[i], folder / made.recordings[i].file);
   temporary.files.clear();
   recorder::writeText(folder / listName, toJson(made), true);
+}
+
+}  // namespace
+
+void addGolden(CLI::App& app, Run& run) {
+  CLI::App* command = app.add_subcommand("golden", "Recordings that every build must replay bit for bit.");
+  command->require_subcommand(1);
+  const auto o = std::make_shared<GoldenOptions>();
+  const auto add = [&](const char* name, const char* help, auto work) {
+    CLI::App* const one = addCommand(*command, run, name, help, work, o).first;
+    one->add_option("--folder", o->folder, "with golden.json; default: golden/ of the assets");
+    return one;
+  };
+  CLI::App* checking = add("check", "Replays them; compares checkpoints with those of the list.", checkGolden);
+  CLI::App* updating = add("update", "Makes them anew, after a change of the simulation.", updateGolden);
+  CLI::App* values = add("values", "Replays them; the list takes over what the checkpoints give.", takeValues);
+  checking->add_option("--only", o->only, "one file of the list");
+  for (CLI::App* one : {checking, values}) addThreads(*one, o->threads, "of the simulation; 0: all");
+  addJunitOptions(*checking, o->junit, o->skipUndecided, o->force);
+  checking->add_flag("--json", o->json, "print the result as JSON");
+  for (CLI::App* one : {updating, values})
+    one->add_option("--reason", o->reason, "why they change; kept in the list")->required();
 }
 
 }  // namespace calot::apps

@@ -2,16 +2,9 @@
 
 #include "apps/calot/help.h"
 
-#include <fmt/format.h>
 #include <algorithm>
-#include <filesystem>
-#include <memory>
-#include <string>
-#include <string_view>
-#include <system_error>
 
 #include "apps/calot/command.h"
-#include "apps/calot/environment.h"
 #include "recorder/base/nearest_word.h"
 #include "recorder/base/text_words.h"
 

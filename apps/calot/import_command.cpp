@@ -3,158 +3,18 @@
 
 #include "apps/calot/import_command.h"
 
-#include <fmt/format.h>
 #include <algorithm>
-#include <cstddef>
-#include <cstdio>
-#include <filesystem>
-#include <functional>
-#include <iostream>
 #include <map>
-#include <memory>
-#include <nlohmann/json.hpp>
-#include <optional>
 #include <set>
-#include <utility>
 
 #include "analytics/assess.h"
 #include "analytics/checkpoints/collector.h"
-#include "analytics/import_motion.h"
 #include "analytics/intake/enrolment.h"
 #include "analytics/intake/motion_manifest.h"
 #include "apps/calot/command.h"
-#include "apps/calot/environment.h"
-#include "apps/calot/help.h"
 #include "apps/calot/replay_report.h"
-#include "apps/common/program.h"
-#include "recorder/base/errors.h"
-#include "recorder/sources/column_map.h"
-#include "recorder/sources/tracked_motion.h"
 
 namespace calot::apps {
-
-namespace {
-
-struct ImportOptions {
-  std::vector<std::string> files;
-  std::string manifest, cohort, columns, mode = "practice", outcome = "stopped";
-  analytics::MotionDeclaration declaration;
-  MetricOptions metrics;
-  double cutoff = 0.0;
-  bool json = false;
-};
-
-/// Reads first, so that a file that cannot be read makes no database.
-ImportedFile importOne(const std::string& file, const ImportOptions& o, const std::optional<recorder::ColumnMap>& map,
-                       const std::vector<analytics::MetricScript>& metrics,
-                       std::optional<analytics::CohortDatabase>& database) {
-  return importFile([&] { return readMotion(file, map ? &*map : nullptr); },
-                    [&](ImportedFile& result) {
-                      if (!o.cohort.empty()) {
-                        storeImported(o.cohort, database, o.declaration, metrics, result);
-                        return;
-                      }
-                      result.external = analytics::externalOf(*result.motion, o.declaration, metrics);
-                      result.values = analytics::valuesFromSamples(
-                          *result.motion, {o.declaration.outcome, o.declaration.handedness, o.cutoff});
-                      result.addExternal();
-                    });
-}
-
-std::string summaryOf(const recorder::TrackedMotion& motion) {
-  return fmt::format("{:.2f} s, {} rows", motion.time.back(), motion.time.size());
-}
-
-int import(const ImportOptions& o) {
-  checkStored(o.cohort, o.cutoff);
-  std::optional<recorder::ColumnMap> map;
-  if (!o.columns.empty()) map = recorder::readColumnMap(o.columns);
-  const std::vector<analytics::MetricScript> metrics = readMetrics(o.metrics);
-  checkMetrics(metrics, o.cohort);
-  std::optional<analytics::CohortDatabase> database;
-  std::vector<ExitCode> codes;
-  nlohmann::ordered_json list = nlohmann::ordered_json::array();
-  Progress progress("importing, files", o.json);
-  for (const std::string& file : o.files) {
-    const ImportedFile result = importOne(file, o, map, metrics, database);
-    codes.push_back(worstOf({result.code, reportFailures(result.external, file)}));
-    progress.show(codes.size(), o.files.size());
-    Progress::erase();
-    if (!result.error.empty()) fmt::print(stderr, "calot: {}\n", result.error);
-    if (o.json) {
-      list.push_back(jsonOf(file, result));
-    } else if (result.error.empty()) {
-      std::cout << fmt::format("{}: {}, {}\n", file, o.cohort.empty() ? "shown" : result.how,
-                               summaryOf(*result.motion));
-      if (o.files.size() == 1 || o.cohort.empty()) {
-        analytics::printValues(result.values, {}, std::cout);
-        std::cout << '\n';
-      }
-    }
-  }
-  if (o.json) {
-    printResult("import", {{"files", list}});
-  } else if (database) {
-    analytics::printAttempts(*database, std::cout);
-  }
-  return static_cast<int>(worstOf(codes));
-}
-
-/// For CLI::Option::check.
-std::function<std::string(const std::string&)> wordOf(const char* field) {
-  return [field](const std::string& word) {
-    analytics::MotionDeclaration ignored;
-    return analytics::declareMotion(ignored, field, word);
-  };
-}
-
-}  // namespace
-
-void addImport(CLI::App& app, Run& run) {
-  auto o = std::make_shared<ImportOptions>();
-  CLI::App* command = app.add_subcommand(
-      "import", "Computes the motion checkpoints of motion without a scene and stores them in a cohort.");
-  CLI::Option* manifest = command->add_option(
-      "--manifest", o->manifest,
-      "A CSV table instead of files: a row each with file, participant, group, task, start, outcome, experience and "
-      "what the options below say; these stand for what it leaves out");
-  command->add_option("files", o->files, "two-handed motion, 76 columns at 30 Hz; or CSV files with --columns")
-      ->excludes(manifest);
-  addStoring(*command, o->cohort, o->cutoff);
-  addMetrics(*command, o->metrics);
-  command->add_option("--columns", o->columns, "a JSON file that says what the columns of the CSV files are");
-  command->add_option("--task", o->declaration.task, "what was done; attempts of different tasks are never compared")
-      ->check(wordOf("task"))
-      ->capture_default_str();
-  command->add_option("--participant", o->declaration.participant, "pseudonym")->check(wordOf("participant"));
-  command->add_option("--mode", o->mode, "practice or assessment")
-      ->check(oneOf({"practice", "assessment"}))
-      ->capture_default_str();
-  command->add_option("--purpose", o->declaration.purpose, "training, study, demo")
-      ->check(oneOf({"training", "study", "demo"}))
-      ->capture_default_str();
-  command->add_option("--handedness", o->declaration.handedness, "right, left, unknown")
-      ->check(oneOf({"right", "left", "unknown"}))
-      ->capture_default_str();
-  command->add_option("--outcome", o->outcome, "completed, abandoned, stopped")
-      ->check(oneOf({"completed", "abandoned", "stopped"}))
-      ->capture_default_str();
-  command->add_option("--start", o->declaration.startUtc, "when it began: 2026-01-31T12:00:00Z")
-      ->check(wordOf("start"));
-  command->add_flag("--json", o->json, "print the result as JSON");
-  command->callback([o, &run] {
-    run = [o] {
-      analytics::declareMotion(o->declaration, "mode", o->mode);
-      analytics::declareMotion(o->declaration, "outcome", o->outcome);
-      if (o->files.empty() && o->manifest.empty())
-        throw Error(ErrorKind::invalid, "import: name motion files, or a table of them with --manifest");
-      if (o->manifest.empty()) return import(*o);
-      if (o->cohort.empty() || o->cutoff > 0.0)
-        throw Error(ErrorKind::invalid, "import: --manifest stores what it names: give --cohort, and no --cutoff");
-      return importManifest({o->manifest, o->cohort, o->columns, o->declaration, o->metrics, o->json});
-    };
-  });
-}
 
 CLI::Option* addMetrics(CLI::App& command, MetricOptions& options) {
   CLI::Option* metric =
@@ -206,13 +66,155 @@ ExitCode reportFailures(const analytics::MetricOutcomes& outcomes, const std::st
   return worstOf(codes);
 }
 
-nlohmann::ordered_json failuresJson(const analytics::MetricOutcomes& outcomes) {
-  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+Json failuresJson(const analytics::MetricOutcomes& outcomes) {
+  Json list = Json::array();
   for (const Error& e : outcomes.failures) list.push_back(messageOf(e));
   return list;
 }
 
+recorder::TrackedMotion readMotion(const std::filesystem::path& file, const recorder::ColumnMap* map) {
+  if (map != nullptr) return recorder::readCsvMotion(file, *map);
+  if (file.extension() == ".csv") {
+    throw Error(ErrorKind::invalid, Where{file.string()},
+                "a CSV file needs --columns MAP.json, which says what is in it");
+  }
+  return recorder::trackedMotion(recorder::readKinematics(file));
+}
+
+ExitCode refuseRows(const std::vector<Error>& faults) {
+  constexpr std::size_t most = 20;
+  std::vector<ExitCode> codes;
+  codes.reserve(faults.size());
+  for (const Error& fault : faults) codes.push_back(codeOf(fault.kind()));
+  for (std::size_t i = 0; i < std::min(faults.size(), most); ++i)
+    fmt::print(stderr, "calot: {}\n", messageOf(faults[i]));
+  if (faults.size() > most)
+    fmt::print(stderr, "calot: and {} more wrong rows; nothing was stored\n", faults.size() - most);
+  return worstOf(codes);
+}
+
 namespace {
+
+struct ImportOptions {
+  std::vector<std::string> files;
+  std::string manifest, cohort, columns, mode = "practice", outcome = "stopped";
+  analytics::MotionDeclaration declaration;
+  MetricOptions metrics;
+  double cutoff = 0.0;
+  bool json = false;
+};
+
+/// Result for one file.
+struct ImportedFile {
+  ExitCode code = ExitCode::yes;
+  std::string how = "not stored", error;
+  std::optional<recorder::TrackedMotion> motion;
+  std::vector<analytics::CheckpointValue> values;
+  analytics::MetricOutcomes external;
+
+  void addExternal() { values.insert(values.end(), external.values.begin(), external.values.end()); }
+};
+
+/// Runs `read`, then `store`. A damaged file, or a conflict when it is stored, is the file's own result; what ends
+/// every file (a wrong command line, a database that cannot be used) is thrown.
+ImportedFile importFile(const std::function<recorder::TrackedMotion()>& read,
+                        const std::function<void(ImportedFile&)>& store) {
+  ImportedFile result;
+  try {
+    result.motion = read();
+    store(result);
+  } catch (const Error& e) {
+    if (e.kind() == ErrorKind::invalid || e.kind() == ErrorKind::failure ||
+        (result.motion && e.kind() != ErrorKind::refused))
+      throw;
+    result.code = codeOf(e.kind());
+    result.error = messageOf(e);
+  }
+  return result;
+}
+
+/// Computes the users' own metrics of `file.motion`, makes or opens the cohort if it is not open yet, stores all values
+/// and their result in `file`.
+void storeImported(const std::string& cohort, std::optional<analytics::CohortDatabase>& database,
+                   const analytics::MotionDeclaration& declaration, const std::vector<analytics::MetricScript>& metrics,
+                   ImportedFile& file) {
+  file.external = analytics::externalOf(*file.motion, declaration, metrics);
+  if (!database) database.emplace(cohort, analytics::CohortDatabase::Access::create);
+  analytics::StoredMotion stored = analytics::storeMotion(*database, *file.motion, declaration);
+  file.how = importedName(stored.imported);
+  file.values = std::move(stored.values);
+  const std::string attempt = analytics::recordOf(*file.motion, declaration).uuid;
+  if (analytics::storeExternal(*database, attempt, file.external, metrics) &&
+      stored.imported == analytics::Imported::unchanged)
+    file.how = importedName(analytics::Imported::extended);
+  file.addExternal();
+}
+
+/// A row of the output with --json.
+Json fileJson(const std::string& file, const ImportedFile& result) {
+  Json row = {{"file", file}, {"stored", result.how}};
+  if (!result.error.empty()) row["error"] = result.error;
+  if (result.motion) {
+    row["sha256"] = result.motion->sha256;
+    row["rows"] = result.motion->time.size();
+    row["seconds"] = result.motion->time.back();
+  }
+  row["checkpoints"] = apps::jsonOf(result.values);
+  if (!result.external.failures.empty()) row["failed_metrics"] = failuresJson(result.external);
+  return row;
+}
+
+/// Reads first, so that a file that cannot be read makes no database.
+ImportedFile importOne(const std::string& file, const ImportOptions& o, const std::optional<recorder::ColumnMap>& map,
+                       const std::vector<analytics::MetricScript>& metrics,
+                       std::optional<analytics::CohortDatabase>& database) {
+  return importFile([&] { return readMotion(file, map ? &*map : nullptr); },
+                    [&](ImportedFile& result) {
+                      if (!o.cohort.empty()) {
+                        storeImported(o.cohort, database, o.declaration, metrics, result);
+                        return;
+                      }
+                      result.external = analytics::externalOf(*result.motion, o.declaration, metrics);
+                      result.values = analytics::valuesFromSamples(
+                          *result.motion, {o.declaration.outcome, o.declaration.handedness, o.cutoff});
+                      result.addExternal();
+                    });
+}
+
+ExitCode importFiles(const ImportOptions& o) {
+  checkStored(o.cohort, o.cutoff);
+  std::optional<recorder::ColumnMap> map;
+  if (!o.columns.empty()) map = recorder::readColumnMap(o.columns);
+  const std::vector<analytics::MetricScript> metrics = readMetrics(o.metrics);
+  checkMetrics(metrics, o.cohort);
+  std::optional<analytics::CohortDatabase> database;
+  std::vector<ExitCode> codes;
+  Json list = Json::array();
+  Progress progress("importing, files", o.json);
+  for (const std::string& file : o.files) {
+    const ImportedFile result = importOne(file, o, map, metrics, database);
+    codes.push_back(worstOf({result.code, reportFailures(result.external, file)}));
+    progress.show(codes.size(), o.files.size());
+    Progress::erase();
+    if (!result.error.empty()) fmt::print(stderr, "calot: {}\n", result.error);
+    if (o.json) {
+      list.push_back(fileJson(file, result));
+    } else if (result.error.empty()) {
+      std::cout << fmt::format("{}: {}, {:.2f} s, {} rows\n", file, o.cohort.empty() ? "shown" : result.how,
+                               result.motion->time.back(), result.motion->time.size());
+      if (o.files.size() == 1 || o.cohort.empty()) {
+        analytics::printValues(result.values, {}, std::cout);
+        std::cout << '\n';
+      }
+    }
+  }
+  if (o.json) {
+    printResult("import", {{"files", list}});
+  } else if (database) {
+    analytics::printAttempts(*database, std::cout);
+  }
+  return worstOf(codes);
+}
 
 /// "expert 6, novice 6", or empty without groups.
 std::string groupsOf(const analytics::MotionManifest& manifest) {
@@ -238,64 +240,10 @@ void printSummary(const analytics::MotionManifest& manifest, const std::map<std:
   }
 }
 
-}  // namespace
-
-recorder::TrackedMotion readMotion(const std::filesystem::path& file, const recorder::ColumnMap* map) {
-  if (map != nullptr) return recorder::readCsvMotion(file, *map);
-  if (file.extension() == ".csv") {
-    throw Error(ErrorKind::invalid, Where{file.string()},
-                "a CSV file needs --columns MAP.json, which says what is in it");
-  }
-  return recorder::trackedMotion(recorder::readKinematics(file));
-}
-
-ImportedFile importFile(const std::function<recorder::TrackedMotion()>& read,
-                        const std::function<void(ImportedFile&)>& store) {
-  ImportedFile result;
-  try {
-    result.motion = read();
-    store(result);
-  } catch (const Error& e) {
-    if (e.kind() == ErrorKind::invalid || e.kind() == ErrorKind::failure ||
-        (result.motion && e.kind() != ErrorKind::refused))
-      throw;
-    result.code = codeOf(e.kind());
-    result.error = messageOf(e);
-  }
-  return result;
-}
-
-void storeImported(const std::string& cohort, std::optional<analytics::CohortDatabase>& database,
-                   const analytics::MotionDeclaration& declaration, const std::vector<analytics::MetricScript>& metrics,
-                   ImportedFile& file) {
-  file.external = analytics::externalOf(*file.motion, declaration, metrics);
-  if (!database) database.emplace(cohort, analytics::CohortDatabase::Access::create);
-  analytics::StoredMotion stored = analytics::storeMotion(*database, *file.motion, declaration);
-  file.how = importedName(stored.imported);
-  file.values = std::move(stored.values);
-  const std::string attempt = analytics::recordOf(*file.motion, declaration).uuid;
-  if (analytics::storeExternal(*database, attempt, file.external, metrics) &&
-      stored.imported == analytics::Imported::unchanged)
-    file.how = importedName(analytics::Imported::extended);
-  file.addExternal();
-}
-
-nlohmann::ordered_json jsonOf(const std::string& file, const ImportedFile& result) {
-  nlohmann::ordered_json row = {{"file", file}, {"stored", result.how}};
-  if (!result.error.empty()) row["error"] = result.error;
-  if (result.motion) {
-    row["sha256"] = result.motion->sha256;
-    row["rows"] = result.motion->time.size();
-    row["seconds"] = result.motion->time.back();
-  }
-  row["checkpoints"] = apps::jsonOf(result.values);
-  if (!result.external.failures.empty()) row["failed_metrics"] = failuresJson(result.external);
-  return row;
-}
-
-int importManifest(const ManifestOptions& o) {
+ExitCode importManifest(const ImportOptions& o) {
   std::vector<Error> faults;
-  const analytics::MotionManifest manifest = analytics::readMotionManifest(o.manifest, o.otherwise, o.columns, faults);
+  const analytics::MotionManifest manifest =
+      analytics::readMotionManifest(o.manifest, o.declaration, o.columns, faults);
   std::optional<analytics::CohortDatabase> database;
   std::optional<analytics::Enrolment> enrolment;
   if (std::filesystem::exists(o.cohort)) {
@@ -312,7 +260,7 @@ int importManifest(const ManifestOptions& o) {
   std::map<std::string, std::size_t> counts;
   std::set<std::string> enrolled;
   std::size_t practice = 0;
-  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  Json list = Json::array();
   {
     Progress progress("importing, files", o.json);
     for (const analytics::MotionRow& row : manifest.rows) {
@@ -334,7 +282,7 @@ int importManifest(const ManifestOptions& o) {
       if (result.error.empty() && row.declaration.mode == recorder::Mode::practice) ++practice;
       if (!result.error.empty())
         errors.push_back(fmt::format("{}: line {}: {}", manifest.path, row.line, result.error));
-      if (o.json) list.push_back(jsonOf(row.file.string(), result));
+      if (o.json) list.push_back(fileJson(row.file.string(), result));
     }
   }
   if (o.json) {
@@ -344,19 +292,54 @@ int importManifest(const ManifestOptions& o) {
   }
   std::cout.flush();
   for (const std::string& error : errors) fmt::print(stderr, "calot: {}\n", error);
-  return static_cast<int>(worstOf(codes));
+  return worstOf(codes);
 }
 
-int refuseRows(const std::vector<Error>& faults) {
-  constexpr std::size_t most = 20;
-  std::vector<ExitCode> codes;
-  codes.reserve(faults.size());
-  for (const Error& fault : faults) codes.push_back(codeOf(fault.kind()));
-  for (std::size_t i = 0; i < std::min(faults.size(), most); ++i)
-    fmt::print(stderr, "calot: {}\n", messageOf(faults[i]));
-  if (faults.size() > most)
-    fmt::print(stderr, "calot: and {} more wrong rows; nothing was stored\n", faults.size() - most);
-  return static_cast<int>(worstOf(codes));
+/// For CLI::Option::check.
+std::function<std::string(const std::string&)> wordOf(const char* field) {
+  return [field](const std::string& word) {
+    analytics::MotionDeclaration ignored;
+    return analytics::declareMotion(ignored, field, word);
+  };
+}
+
+ExitCode importMotion(ImportOptions& o) {
+  analytics::declareMotion(o.declaration, "mode", o.mode);
+  analytics::declareMotion(o.declaration, "outcome", o.outcome);
+  if (o.files.empty() && o.manifest.empty())
+    throw Error(ErrorKind::invalid, "import: name motion files, or a table of them with --manifest");
+  if (o.manifest.empty()) return importFiles(o);
+  if (o.cohort.empty() || o.cutoff > 0.0)
+    throw Error(ErrorKind::invalid, "import: --manifest stores what it names: give --cohort, and no --cutoff");
+  return importManifest(o);
+}
+
+}  // namespace
+
+void addImport(CLI::App& app, Run& run) {
+  const auto [command, o] = addCommand(
+      app, run, "import", "Computes the motion checkpoints of motion without a scene and stores them in a cohort.",
+      importMotion);
+  CLI::Option* manifest = command->add_option(
+      "--manifest", o->manifest,
+      "A CSV table instead of files: a row each with file, participant, group, task, start, outcome, experience and "
+      "what the options below say; these stand for what it leaves out");
+  command->add_option("files", o->files, "two-handed motion, 76 columns at 30 Hz; or CSV files with --columns")
+      ->excludes(manifest);
+  addStoring(*command, o->cohort, o->cutoff);
+  addMetrics(*command, o->metrics);
+  command->add_option("--columns", o->columns, "a JSON file that says what the columns of the CSV files are");
+  command->add_option("--task", o->declaration.task, "what was done; attempts of different tasks are never compared")
+      ->check(wordOf("task"))
+      ->capture_default_str();
+  command->add_option("--participant", o->declaration.participant, "pseudonym")->check(wordOf("participant"));
+  addChoice(*command, "--mode", o->mode, "practice or assessment", {"practice", "assessment"});
+  addChoice(*command, "--purpose", o->declaration.purpose, "training, study, demo", {"training", "study", "demo"});
+  addChoice(*command, "--handedness", o->declaration.handedness, "right, left, unknown", {"right", "left", "unknown"});
+  addChoice(*command, "--outcome", o->outcome, "completed, abandoned, stopped", {"completed", "abandoned", "stopped"});
+  command->add_option("--start", o->declaration.startUtc, "when it began: 2026-01-31T12:00:00Z")
+      ->check(wordOf("start"));
+  command->add_flag("--json", o->json, "print the result as JSON");
 }
 
 }  // namespace calot::apps

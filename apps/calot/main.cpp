@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
-#include <string>
-#include <vector>
 
 #include "apps/calot/command.h"
-#include "apps/calot/environment.h"
 #include "apps/calot/help.h"
 #include "apps/common/help_json.h"
-#include "apps/common/program.h"
 #include "recorder/attempt.h"
 #include "recorder/compliance_cache.h"
 #include "recorder/prepared_scene.h"

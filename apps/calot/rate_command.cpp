@@ -2,21 +2,10 @@
 // calot rate: what people judge, by forms.
 // calot rate pack: films and a form for raters who know neither whose attempt they see nor its group.
 
-#include "apps/calot/rate_command.h"
-
-#include <fmt/format.h>
 #include <algorithm>
 #include <chrono>
-#include <filesystem>
-#include <iostream>
 #include <map>
-#include <memory>
-#include <nlohmann/json.hpp>
-#include <optional>
 #include <set>
-#include <string>
-#include <system_error>
-#include <vector>
 
 #include "analytics/assessment/pack_answers.h"
 #include "analytics/assessment/rating_form.h"
@@ -30,11 +19,8 @@
 #include "analytics/report/rater_page.h"
 #include "analytics/report/rating_tables.h"
 #include "apps/calot/command.h"
-#include "apps/calot/environment.h"
 #include "apps/calot/import_command.h"
-#include "apps/common/program.h"
 #include "gui/film/film.h"
-#include "recorder/base/errors.h"
 #include "recorder/base/file_bytes.h"
 #include "recorder/base/json_reader.h"
 #include "recorder/base/text_words.h"
@@ -45,7 +31,6 @@ namespace calot::apps {
 namespace {
 
 using Access = analytics::CohortDatabase::Access;
-using Json = nlohmann::ordered_json;
 using Given = std::vector<std::pair<std::string, std::string>>;
 
 struct RateOptions {
@@ -56,7 +41,7 @@ struct RateOptions {
 
 [[noreturn]] void fail(const std::string& what) { throw Error(ErrorKind::invalid, "rate: " + what); }
 
-int listForms(const RateOptions& o) {
+void listForms(const RateOptions& o) {
   Json rows = Json::array();
   for (const std::filesystem::path& file : listAssets("forms")) {
     const analytics::RatingForm form = analytics::readRatingForm(file);
@@ -80,7 +65,6 @@ int listForms(const RateOptions& o) {
                     {"items", items}});
   }
   if (o.json) printResult("forms", {{"forms", rows}});
-  return static_cast<int>(ExitCode::yes);
 }
 
 /// A JSON object of items and scores; null where an item was left blank.
@@ -110,7 +94,7 @@ Given readAnswers(const std::vector<std::string>& items) {
   return given;
 }
 
-int store(const RateOptions& o) {
+void storeAnswers(const RateOptions& o) {
   const analytics::RatingForm form = analytics::readRatingForm(findAsset(o.form, "forms", "form"));
   if (form.ofAttempts && (o.attempt.empty() || o.rater.empty() || !o.participant.empty()))
     fail(fmt::format("form {} is about an attempt: name --attempt and --rater", form.name));
@@ -128,10 +112,9 @@ int store(const RateOptions& o) {
   std::cout << fmt::format("{}: {} version {} of {}, {} of {} items answered\n", o.database, form.name, form.version,
                            form.ofAttempts ? "attempt " + o.attempt : "participant " + o.participant,
                            rating.answers.size(), form.items().size());
-  return static_cast<int>(ExitCode::yes);
 }
 
-int show(const RateOptions& o) {
+void showRatings(const RateOptions& o) {
   const analytics::CohortDatabase cohort(o.database, Access::read);
   const analytics::AssessmentDatabase database(o.database, Access::read);
   std::map<std::string, std::string> groupOf;
@@ -150,7 +133,7 @@ int show(const RateOptions& o) {
       analytics::reportForms(database, groupOf, {groups.begin(), groups.end()}, attemptOf);
   if (o.json) {
     printResult("ratings", {{"forms", analytics::ratingsJson(reports)}});
-    return static_cast<int>(ExitCode::yes);
+    return;
   }
   if (reports.empty()) std::cout << "no ratings\n";
   for (const analytics::FormReport& report : reports) {
@@ -158,89 +141,41 @@ int show(const RateOptions& o) {
     for (const std::string& note : analytics::ratingNotes(report)) analytics::printWrapped(note, std::cout);
     if (report.filled > 0) std::cout << '\n';
   }
-  return static_cast<int>(ExitCode::yes);
 }
 
-}  // namespace
-
-void addRate(CLI::App& app, Run& run) {
-  const auto o = std::make_shared<RateOptions>();
-  CLI::App* command = app.add_subcommand("rate", "Store and summarise what raters and participants judge, by forms");
-  addCohortOption(*command, o->database);
-  command->add_flag("--forms", o->forms, "List the forms that come with the program");
-  command->add_option("--form", o->form, "The form that was filled in: its name (calot rate --forms), or a JSON file");
-  command->add_option("--attempt", o->attempt, "Uuid of the attempt that was rated");
-  command->add_option("--rater", o->rater, "Pseudonym of who rated it");
-  command->add_option("--participant", o->participant, "Pseudonym of the participant who filled in a questionnaire");
-  command
-      ->add_option("--answer", o->answers,
-                   "ITEM=SCORE for each item, - where it was left blank: A=4,B=- or one option each")
-      ->delimiter(',')
-      ->allow_extra_args(false);
-  command->add_option("--answers", o->answersFile, "The same as a JSON object of items and scores, null for blank");
-  command->add_option("--manifest", o->manifest,
-                      "A CSV table of completed forms: attempt, file or participant, rater, and one column an item");
-  command->add_option("--take", o->taken, "The answers to a pack as the rater's page saved them");
-  command->add_flag("--force", o->force, "Replace what the same rater or participant has given before");
-  command->add_flag("--json", o->json, "Print JSON");
-  const CLI::App* pack = addRatePack(*command, run);
-  command->callback([o, pack, &run] {
-    if (pack->parsed()) return;
-    run = [o] {
-      if (o->forms) return listForms(*o);
-      if (o->database.empty()) fail("name a cohort database, or ask for --forms");
-      const bool one = !(o->attempt + o->rater + o->participant + o->answersFile).empty() || !o->answers.empty();
-      if (!o->manifest.empty() || !o->taken.empty()) {
-        if (one || (!o->manifest.empty() && !o->taken.empty()) || (!o->taken.empty() && !o->form.empty()))
-          fail("--manifest and --take say themselves what was rated, by whom and how");
-        return o->manifest.empty() ? takePackAnswers(o->database, o->taken, o->force)
-                                   : storeRatingManifest(o->database, o->manifest, o->form, o->force, o->json);
-      }
-      if (!o->form.empty()) return store(*o);
-      if (one) fail("name the form that was filled in with --form");
-      return show(*o);
-    };
-  });
-}
-
-int storeRatingManifest(const std::string& cohort, const std::string& manifest, const std::string& form, bool force,
-                        bool json) {
-  using Access = analytics::CohortDatabase::Access;
+ExitCode storeRatingManifest(const RateOptions& o) {
   const auto find = [](const std::string& name) { return findAsset(name, "forms", "form"); };
   std::vector<Error> faults;
-  const analytics::RatingManifest read =
-      analytics::readRatingManifest(manifest, form, find, analytics::CohortDatabase(cohort, Access::read), faults);
+  const analytics::RatingManifest read = analytics::readRatingManifest(
+      o.manifest, o.form, find, analytics::CohortDatabase(o.database, Access::read), faults);
   if (!faults.empty()) return refuseRows(faults);
-  analytics::AssessmentDatabase database(cohort, Access::write);
-  const analytics::StoredRatings stored = analytics::storeRatings(database, read, force, faults);
+  analytics::AssessmentDatabase database(o.database, Access::write);
+  const analytics::StoredRatings stored = analytics::storeRatings(database, read, o.force, faults);
   if (!faults.empty()) return refuseRows(faults);
-  if (json) {
-    const nlohmann::ordered_json row{{"manifest", manifest},
-                                     {"ratings", read.rows.size()},
-                                     {"added", stored.added},
-                                     {"unchanged", stored.unchanged},
-                                     {"replaced", stored.replaced}};
+  if (o.json) {
+    const Json row{{"manifest", o.manifest},
+                   {"ratings", read.rows.size()},
+                   {"added", stored.added},
+                   {"unchanged", stored.unchanged},
+                   {"replaced", stored.replaced}};
     printResult("rate-manifest", row);
   } else {
-    std::cout << fmt::format("{}: {} ratings: {} added, {} unchanged, {} replaced\n", manifest, read.rows.size(),
+    std::cout << fmt::format("{}: {} ratings: {} added, {} unchanged, {} replaced\n", o.manifest, read.rows.size(),
                              stored.added, stored.unchanged, stored.replaced);
   }
-  return static_cast<int>(ExitCode::yes);
+  return ExitCode::yes;
 }
 
-int takePackAnswers(const std::string& cohort, const std::string& file, bool force) {
-  const analytics::PackAnswers answers =
-      analytics::readPackAnswers(file, [&](const std::string& id) { return analytics::readRatingPack(cohort, id); });
-  analytics::storePackAnswers(cohort, answers.pack, answers.rater, answers.ratings, force);
-  std::cout << fmt::format("{}: {} ratings by {} with {} version {} stored", file, answers.ratings.size(),
+void takePackAnswers(const RateOptions& o) {
+  const analytics::PackAnswers answers = analytics::readPackAnswers(
+      o.taken, [&](const std::string& id) { return analytics::readRatingPack(o.database, id); });
+  analytics::storePackAnswers(o.database, answers.pack, answers.rater, answers.ratings, o.force);
+  std::cout << fmt::format("{}: {} ratings by {} with {} version {} stored", o.taken, answers.ratings.size(),
                            answers.rater, answers.form.name, answers.form.version);
   if (answers.notJudged > 0) std::cout << fmt::format(", {} films could not be judged", answers.notJudged);
   if (answers.withdrawn > 0) std::cout << fmt::format(", {} films of withdrawn attempts left out", answers.withdrawn);
   std::cout << '\n';
-  return static_cast<int>(ExitCode::yes);
 }
-
-namespace {
 
 /// Where the film of an attempt comes from.
 struct FilmOrigin {
@@ -248,15 +183,6 @@ struct FilmOrigin {
   std::filesystem::path file;
   bool isRecording = false;  ///< to be rendered
 };
-
-/// Films of attempts.
-/// @param films a folder, in which a film has the uuid or the name of the recording or motion file (`.mp4`, `.mkv`,
-/// `.webm`, `.mov`), and recordings without a film are rendered; or a CSV table with the columns `attempt` and `film`
-/// @param chosen uuids or their beginnings; empty: every attempt that is not excluded, or every row of the table
-/// @throws calot::Error (damaged) for an attempt without film, or a wrong row; (refused) for an attempt that is not
-/// there
-std::vector<FilmOrigin> findFilms(const analytics::CohortDatabase& cohort, const std::filesystem::path& films,
-                                  const std::vector<std::string>& chosen);
 
 namespace fs = std::filesystem;
 using analytics::AttemptRow;
@@ -332,6 +258,12 @@ std::vector<FilmOrigin> filmsInTable(const analytics::CohortDatabase& cohort, co
   return found;
 }
 
+/// Films of attempts.
+/// @param films a folder, in which a film has the uuid or the name of the recording or motion file (`.mp4`, `.mkv`,
+/// `.webm`, `.mov`), and recordings without a film are rendered; or a CSV table with the columns `attempt` and `film`
+/// @param chosen uuids or their beginnings; empty: every attempt that is not excluded, or every row of the table
+/// @throws calot::Error (damaged) for an attempt without film, or a wrong row; (refused) for an attempt that is not
+/// there
 std::vector<FilmOrigin> findFilms(const analytics::CohortDatabase& cohort, const fs::path& films,
                                   const std::vector<std::string>& chosen) {
   std::error_code ignored;
@@ -349,8 +281,6 @@ std::vector<FilmOrigin> findFilms(const analytics::CohortDatabase& cohort, const
   }
   return found;
 }
-
-namespace fs = std::filesystem;
 
 struct PackOptions {
   std::string database, form, films, output;
@@ -402,12 +332,12 @@ analytics::RatingPage pageOf(const analytics::RatingPack& pack, const analytics:
   return page;
 }
 
-int packForRaters(const PackOptions& o) {
+void packForRaters(const PackOptions& o) {
   checkRaters(o.raters);
   const analytics::RatingForm form = analytics::readRatingForm(findAsset(o.form, "forms", "form"));
   if (!form.ofAttempts) throw Error(ErrorKind::invalid, fmt::format("rate: form {} is not about attempts", form.name));
   const std::vector<FilmOrigin> films =
-      findFilms(analytics::CohortDatabase(o.database, analytics::CohortDatabase::Access::read), o.films, o.attempts);
+      findFilms(analytics::CohortDatabase(o.database, Access::read), o.films, o.attempts);
   std::vector<std::string> attempts;
   std::map<std::string, const FilmOrigin*> originOf;
   for (const FilmOrigin& film : films) {
@@ -448,31 +378,62 @@ int packForRaters(const PackOptions& o) {
       "{}: {} films for {} rater{} with {} version {}; give each the folder of their name, and "
       "store what comes back with calot rate {} --take answers-RATER.json\n",
       o.output, films.size(), o.raters.size(), o.raters.size() == 1 ? "" : "s", form.name, form.version, o.database);
-  return static_cast<int>(ExitCode::yes);
+}
+
+ExitCode rate(const RateOptions& o) {
+  const bool one = !(o.attempt + o.rater + o.participant + o.answersFile).empty() || !o.answers.empty();
+  const bool byFile = !o.manifest.empty() || !o.taken.empty();
+  if (!o.forms && o.database.empty()) fail("name a cohort database, or ask for --forms");
+  if (!o.forms && byFile && (one || (!o.manifest.empty() && !o.taken.empty()) || (!o.taken.empty() && !o.form.empty())))
+    fail("--manifest and --take say themselves what was rated, by whom and how");
+  if (o.forms) {
+    listForms(o);
+  } else if (!o.manifest.empty()) {
+    return storeRatingManifest(o);
+  } else if (byFile) {
+    takePackAnswers(o);
+  } else if (!o.form.empty()) {
+    storeAnswers(o);
+  } else if (one) {
+    fail("name the form that was filled in with --form");
+  } else {
+    showRatings(o);
+  }
+  return ExitCode::yes;
 }
 
 }  // namespace
 
-CLI::App* addRatePack(CLI::App& rate, Run& run) {
-  const auto o = std::make_shared<PackOptions>();
-  CLI::App* command = rate.add_subcommand(
-      "pack", "Pack films and a form for raters, under random names and in random order; the key stays in the cohort");
-  addCohortOption(*command, o->database)->required();
-  command->add_option("--form", o->form, "The form to fill in: its name, or a file")->required();
-  command
-      ->add_option("--films", o->films,
+void addRate(CLI::App& app, Run& run) {
+  const auto [command, o] =
+      addCommand(app, run, "rate", "Store and summarise what raters and participants judge, by forms", rate);
+  addCohortOption(*command, o->database);
+  command->add_flag("--forms", o->forms, "List the forms that come with the program");
+  command->add_option("--form", o->form, "The form that was filled in: its name (calot rate --forms), or a JSON file");
+  command->add_option("--attempt", o->attempt, "Uuid of the attempt that was rated");
+  command->add_option("--rater", o->rater, "Pseudonym of who rated it");
+  command->add_option("--participant", o->participant, "Pseudonym of the participant who filled in a questionnaire");
+  addList(*command, "--answer", o->answers,
+          "ITEM=SCORE for each item, - where it was left blank: A=4,B=- or one option each");
+  command->add_option("--answers", o->answersFile, "The same as a JSON object of items and scores, null for blank");
+  command->add_option("--manifest", o->manifest,
+                      "A CSV table of completed forms: attempt, file or participant, rater, and one column an item");
+  command->add_option("--take", o->taken, "The answers to a pack as the rater's page saved them");
+  command->add_flag("--force", o->force, "Replace what the same rater or participant has given before");
+  command->add_flag("--json", o->json, "Print JSON");
+
+  const auto [pack, p] = addCommand(
+      *command, run, "pack",
+      "Pack films and a form for raters, under random names and in random order; the key stays in the cohort",
+      packForRaters);
+  addCohortOption(*pack, p->database)->required();
+  pack->add_option("--form", p->form, "The form to fill in: its name, or a file")->required();
+  pack->add_option("--films", p->films,
                    "A folder with the attempts' films or recordings, or a CSV table with columns attempt and film")
       ->required();
-  command->add_option("--raters", o->raters, "Pseudonyms of the raters: R1,R2")
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->required();
-  command->add_option("--attempts", o->attempts, "Uuids, U1,U2 (default: all that are not excluded, or the table's)")
-      ->delimiter(',')
-      ->allow_extra_args(false);
-  command->add_option("-o,--output", o->output, "The pack's folder, which must not exist")->required();
-  command->callback([o, &run] { run = [o] { return packForRaters(*o); }; });
-  return command;
+  addList(*pack, "--raters", p->raters, "Pseudonyms of the raters: R1,R2")->required();
+  addList(*pack, "--attempts", p->attempts, "Uuids, U1,U2 (default: all that are not excluded, or the table's)");
+  pack->add_option("-o,--output", p->output, "The pack's folder, which must not exist")->required();
 }
 
 }  // namespace calot::apps

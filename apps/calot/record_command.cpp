@@ -1,19 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// calot record and calot branch: an attempt from its start, or from a moment of another one.
 
-#include "apps/calot/record_command.h"
-
-#include <fmt/format.h>
 #include <cmath>
-#include <iostream>
-#include <memory>
-#include <nlohmann/json.hpp>
 
 #include "apps/calot/command.h"
-#include "apps/calot/environment.h"
-#include "apps/calot/help.h"
 #include "apps/calot/replay_report.h"
 #include "apps/calot/source_options.h"
-#include "recorder/base/errors.h"
 #include "recorder/branch.h"
 #include "recorder/formats/scene_file.h"
 #include "recorder/live/worker_pool.h"
@@ -27,8 +19,84 @@
 #include "recorder/words.h"
 
 namespace calot::apps {
-
 namespace {
+
+struct FinishedRun {
+  std::string attempt;  ///< uuid
+  std::string file;
+  double stepSeconds = 0.0;
+  recorder::RunReport report;
+  std::string why;     ///< the source's word on why it failed, or empty
+  bool paced = false;  ///< or live: deadlines mean something
+  bool live = false;
+};
+
+void printRunJson(const FinishedRun& run, double seconds) {
+  const recorder::RunReport& r = run.report;
+  Json out{{"attempt", run.attempt},
+           {"file", run.file},
+           {"outcome", wordFor(r.outcome)},
+           {"steps", r.steps},
+           {"seconds", seconds},
+           {"wall_seconds", r.wallSeconds},
+           {"missed_tolerance", missesJson(r.misses)},
+           {"ticks", r.ticks},
+           {"missed_deadlines", r.missedDeadlines},
+           {"largest_lateness_s", r.maxLateness},
+           {"clock_stretched_s", r.stretched},
+           {"pauses", r.pauses},
+           {"paused_s", r.paused}};
+  if (!run.why.empty()) out["source_status"] = run.why;
+  if (run.live) {
+    out["real_time_thread"] = r.realTime;
+    out["tick_cpu_mean_s"] = r.tickMean;
+    out["tick_cpu_p999_s"] = r.tickP999;
+    out["tick_cpu_largest_s"] = r.tickLargest;
+    out["arenas_grown"] = r.arenasGrown;
+    out["force_disagreements"] = r.disagreements;
+  }
+  printResult("record", out);
+}
+
+void printRun(const FinishedRun& run, double seconds) {
+  const recorder::RunReport& r = run.report;
+  const bool failed = r.outcome == recorder::Outcome::technicalFailure && !run.why.empty();
+  fmt::print("{}: attempt {}, {:.2f} s, {}{}{}\n", run.file, run.attempt, seconds, wordFor(r.outcome),
+             failed ? ": " : "", failed ? run.why : "");
+  if (r.misses.any > 0) fmt::print("{}: {}\n", run.file, describe(r.misses));
+  if (run.paced) {
+    fmt::print("{}: {} of {} ticks missed their deadline, at most {:.1f} ms late, clock stretched by {:.3f} s\n",
+               run.live ? "live" : "paced", r.missedDeadlines, r.ticks, 1e3 * r.maxLateness, r.stretched);
+  }
+  if (run.live) {
+    fmt::print(
+        "haptic tick: {:.1f} us of CPU on average, {:.1f} us at 99.9 %, {:.1f} us at most; {}; {} arenas grown\n",
+        1e6 * r.tickMean, 1e6 * r.tickP999, 1e6 * r.tickLargest,
+        r.realTime ? "real-time thread" : "ordinary thread (no permission for real time)", r.arenasGrown);
+  }
+  if (r.pauses > 0) fmt::print("{} pauses of the source, {:.1f} s in all\n", r.pauses, r.paused);
+}
+
+/// Prints it on stdout. @throws Error (failure) for what must not be missed
+void reportRun(const FinishedRun& run, bool json) {
+  Progress::erase();
+  const double seconds = static_cast<double>(run.report.steps) * run.stepSeconds;
+  if (json) {
+    printRunJson(run, seconds);
+  } else {
+    printRun(run, seconds);
+  }
+  if (run.report.disagreements > 0) {
+    throw Error(
+        ErrorKind::failure,
+        fmt::format("{}: {} ticks got other forces on the haptic thread than when computed again; the recording "
+                    "will not replay",
+                    run.file, run.report.disagreements));
+  }
+  if (!run.report.fault.empty()) {
+    throw Error(ErrorKind::failure, fmt::format("{}: {}", run.file, run.report.fault));
+  }
+}
 
 struct RecordOptions {
   SourceOptions source;
@@ -40,7 +108,7 @@ struct RecordOptions {
   bool paced = false, live = false, force = false, json = false;
 };
 
-int record(const RecordOptions& o) {
+void record(const RecordOptions& o) {
   if (!std::isfinite(o.seconds)) throw Error(ErrorKind::invalid, "--seconds: a number is wanted");
   stopOnSignals();
   refuseExisting(o.output, o.force);
@@ -85,47 +153,8 @@ int record(const RecordOptions& o) {
   prepared->save();
   Progress::erase();
   if (!o.json) tellDevice(*source);
-  return tell({header.attempt, o.output, stepSeconds, report, source->statusText(), run.paced || o.live, o.live},
-              o.json);
+  reportRun({header.attempt, o.output, stepSeconds, report, source->statusText(), run.paced || o.live, o.live}, o.json);
 }
-
-}  // namespace
-
-void addRecord(CLI::App& app, Run& run) {
-  auto o = std::make_shared<RecordOptions>();
-  CLI::App* command = app.add_subcommand("record", "Runs an attempt and records it.");
-  command->add_option("--scene", o->scene, "name of a scene (calot scenes), or a scene file")->required();
-  addSource(*command, o->source);
-  command->add_option("--seed", o->seed, "of performer and simulation")->check(wholeNumber)->capture_default_str();
-  command->add_option("--seconds", o->seconds, "stop after so much attempt time; 0: when the source ends")
-      ->check(CLI::Range(0.0, 36000.0));
-  command->add_option("--participant", o->participant, "pseudonym")->check([](const std::string& p) {
-    return p.size() > 64 ? std::string("longer than 64 characters") : std::string();
-  });
-  command->add_option("--station", o->station, "name of this training station");
-  addStationKey(*command, o->stationKey);
-  command->add_option("--purpose", o->purpose, "training, study, demo, golden")
-      ->check(oneOf({"training", "study", "demo", "golden"}))
-      ->capture_default_str();
-  command->add_option("--handedness", o->handedness, "right, left, unknown")
-      ->check(oneOf({"right", "left", "unknown"}))
-      ->capture_default_str();
-  command->add_option("--mode", o->mode, "practice or assessment")
-      ->check(oneOf({"practice", "assessment"}))
-      ->capture_default_str();
-  command->add_flag("--paced", o->paced, "run at real time: tick n no earlier than n ms after the start");
-  command->add_flag("--live", o->live, "run at real time with the haptic ticks on a thread of their own, 1 kHz");
-  addBroadPhase(*command, o->broadPhase);
-  command->add_option("--threads", o->threads, "of the simulation; 0: all")
-      ->check(CLI::Range(0U, 64U))
-      ->capture_default_str();
-  command->add_option("-o,--output", o->output, "the recording")->required();
-  command->add_flag("--force", o->force, "replace the output if it is there");
-  command->add_flag("--json", o->json, "print the result as JSON");
-  command->callback([o, &run] { run = [o] { return record(*o); }; });
-}
-
-namespace {
 
 struct BranchOptions {
   SourceOptions source;
@@ -151,7 +180,7 @@ class LastPose final : public recorder::Observer {
   TickSamples last;
 };
 
-int branch(const BranchOptions& o) {
+void branch(const BranchOptions& o) {
   if (!std::isfinite(o.seconds)) throw Error(ErrorKind::invalid, "--seconds: a number is wanted");
   stopOnSignals();
   const double at = parseTime(o.at);
@@ -206,16 +235,40 @@ int branch(const BranchOptions& o) {
     fmt::print("{}: branch of {} after its step {}\n", o.output, header.parent, forkStep);
     tellDevice(*source);
   }
-  return tell(
-      {header.attempt, o.output, model.stepSeconds(), report, source->statusText(), run.paced || o.live, o.live},
-      o.json);
+  reportRun({header.attempt, o.output, model.stepSeconds(), report, source->statusText(), run.paced || o.live, o.live},
+            o.json);
 }
 
 }  // namespace
 
+void addRecord(CLI::App& app, Run& run) {
+  const auto [command, o] = addCommand(app, run, "record", "Runs an attempt and records it.", record);
+  command->add_option("--scene", o->scene, "name of a scene (calot scenes), or a scene file")->required();
+  addSource(*command, o->source);
+  command->add_option("--seed", o->seed, "of performer and simulation")->check(wholeNumber)->capture_default_str();
+  command->add_option("--seconds", o->seconds, "stop after so much attempt time; 0: when the source ends")
+      ->check(CLI::Range(0.0, 36000.0));
+  command->add_option("--participant", o->participant, "pseudonym")->check([](const std::string& p) {
+    return p.size() > 64 ? std::string("longer than 64 characters") : std::string();
+  });
+  command->add_option("--station", o->station, "name of this training station");
+  addStationKey(*command, o->stationKey);
+  addChoice(*command, "--purpose", o->purpose, "training, study, demo, golden",
+            {"training", "study", "demo", "golden"});
+  addChoice(*command, "--handedness", o->handedness, "right, left, unknown", {"right", "left", "unknown"});
+  addChoice(*command, "--mode", o->mode, "practice or assessment", {"practice", "assessment"});
+  command->add_flag("--paced", o->paced, "run at real time: tick n no earlier than n ms after the start");
+  command->add_flag("--live", o->live, "run at real time with the haptic ticks on a thread of their own, 1 kHz");
+  addBroadPhase(*command, o->broadPhase);
+  addThreads(*command, o->threads, "of the simulation; 0: all");
+  command->add_option("-o,--output", o->output, "the recording")->required();
+  command->add_flag("--force", o->force, "replace the output if it is there");
+  command->add_flag("--json", o->json, "print the result as JSON");
+}
+
 void addBranch(CLI::App& app, Run& run) {
-  auto o = std::make_shared<BranchOptions>();
-  CLI::App* command = app.add_subcommand("branch", "Goes back to a moment of a recording and on from there, recorded.");
+  const auto [command, o] =
+      addCommand(app, run, "branch", "Continues a recording from a chosen moment as a new recording.", branch);
   command->add_option("recording", o->parent, "the parent")->required();
   command->add_option("--at", o->at, "where the branch leaves it: seconds (12.5) or minutes and seconds (1:02.5)")
       ->required();
@@ -228,84 +281,10 @@ void addBranch(CLI::App& app, Run& run) {
   command->add_flag("--live", o->live, "run at real time after the fork, the haptic ticks on a thread of their own");
   addStationKey(*command, o->stationKey);
   addBroadPhase(*command, o->broadPhase);
-  command->add_option("--threads", o->threads, "of the simulation; 0: all")
-      ->check(CLI::Range(0U, 64U))
-      ->capture_default_str();
+  addThreads(*command, o->threads, "of the simulation; 0: all");
   command->add_option("-o,--output", o->output, "the branch, a recording")->required();
   command->add_flag("--force", o->force, "replace the output if it is there");
   command->add_flag("--json", o->json, "print the result as JSON");
-  command->callback([o, &run] { run = [o] { return branch(*o); }; });
-}
-
-namespace {
-
-void printJson(const FinishedRun& run, double seconds) {
-  const recorder::RunReport& r = run.report;
-  nlohmann::ordered_json out{{"attempt", run.attempt},
-                             {"file", run.file},
-                             {"outcome", wordFor(r.outcome)},
-                             {"steps", r.steps},
-                             {"seconds", seconds},
-                             {"wall_seconds", r.wallSeconds},
-                             {"missed_tolerance", missesJson(r.misses)},
-                             {"ticks", r.ticks},
-                             {"missed_deadlines", r.missedDeadlines},
-                             {"largest_lateness_s", r.maxLateness},
-                             {"clock_stretched_s", r.stretched},
-                             {"pauses", r.pauses},
-                             {"paused_s", r.paused}};
-  if (!run.why.empty()) out["source_status"] = run.why;
-  if (run.live) {
-    out["real_time_thread"] = r.realTime;
-    out["tick_cpu_mean_s"] = r.tickMean;
-    out["tick_cpu_p999_s"] = r.tickP999;
-    out["tick_cpu_largest_s"] = r.tickLargest;
-    out["arenas_grown"] = r.arenasGrown;
-    out["force_disagreements"] = r.disagreements;
-  }
-  printResult("record", out);
-}
-
-void printText(const FinishedRun& run, double seconds) {
-  const recorder::RunReport& r = run.report;
-  const bool failed = r.outcome == recorder::Outcome::technicalFailure && !run.why.empty();
-  fmt::print("{}: attempt {}, {:.2f} s, {}{}{}\n", run.file, run.attempt, seconds, wordFor(r.outcome),
-             failed ? ": " : "", failed ? run.why : "");
-  if (r.misses.any > 0) fmt::print("{}: {}\n", run.file, describe(r.misses));
-  if (run.paced) {
-    fmt::print("{}: {} of {} ticks missed their deadline, at most {:.1f} ms late, clock stretched by {:.3f} s\n",
-               run.live ? "live" : "paced", r.missedDeadlines, r.ticks, 1e3 * r.maxLateness, r.stretched);
-  }
-  if (run.live) {
-    fmt::print(
-        "haptic tick: {:.1f} us of CPU on average, {:.1f} us at 99.9 %, {:.1f} us at most; {}; {} arenas grown\n",
-        1e6 * r.tickMean, 1e6 * r.tickP999, 1e6 * r.tickLargest,
-        r.realTime ? "real-time thread" : "ordinary thread (no permission for real time)", r.arenasGrown);
-  }
-  if (r.pauses > 0) fmt::print("{} pauses of the source, {:.1f} s in all\n", r.pauses, r.paused);
-}
-
-}  // namespace
-
-int tell(const FinishedRun& run, bool json) {
-  Progress::erase();
-  const double seconds = static_cast<double>(run.report.steps) * run.stepSeconds;
-  if (json) {
-    printJson(run, seconds);
-  } else {
-    printText(run, seconds);
-  }
-  if (run.report.disagreements > 0) {
-    throw Error(
-        ErrorKind::failure,
-        fmt::format("{}: {} ticks got other forces on the haptic thread than when computed again; the recording "
-                    "will not replay",
-                    run.file, run.report.disagreements));
-  }
-  if (!run.report.fault.empty()) {
-    throw Error(ErrorKind::failure, fmt::format("{}: {}", run.file, run.report.fault));
-  }
-  return 0;
 }
 
 }  // namespace calot::apps

@@ -1,24 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // calot regrade: the derived values of a cohort, computed anew.
 
-#include "apps/calot/regrade_command.h"
-
-#include <fmt/format.h>
-#include <iostream>
 #include <map>
-#include <memory>
-#include <optional>
-#include <string>
-#include <vector>
 
 #include "analytics/checkpoints/registry.h"
 #include "analytics/regrade.h"
-#include "analytics/report/report_text.h"
 #include "apps/calot/command.h"
-#include "apps/calot/environment.h"
 #include "apps/calot/replay_report.h"
-#include "apps/common/program.h"
-#include "recorder/base/errors.h"
 
 namespace calot::apps {
 namespace {
@@ -36,57 +24,39 @@ std::vector<std::filesystem::path> placesOf(const RegradeOptions& o) {
   return {folder.empty() ? std::filesystem::path(".") : folder};
 }
 
-int regrade(const RegradeOptions& o) {
+ExitCode regrade(const RegradeOptions& o) {
   Progress progress("regrading, recordings", o.json);
   const analytics::Regrade regrade = analytics::regrade(
       o.cohort, placesOf(o), o.jobs, [&](std::uint64_t done, std::uint64_t of) { progress.show(done, of); });
   Progress::erase();
-  return static_cast<int>(reportRegrade(o.cohort, regrade, "regrade", o.json));
+  return reportRegrade(o.cohort, regrade, o.json);
 }
 
 }  // namespace
 
 void addRegrade(CLI::App& app, Run& run) {
-  const auto o = std::make_shared<RegradeOptions>();
-  CLI::App* command =
-      app.add_subcommand("regrade", "Compute the derived values of a cohort anew, and show what changed");
+  const auto [command, o] =
+      addCommand(app, run, "regrade", "Compute the derived values of a cohort anew, and show what changed", regrade);
   addCohortOption(*command, o->cohort)->required();
   command->add_option("recordings", o->places, "Recordings, or folders that hold them; default: the database's folder");
-  command->add_option("--jobs", o->jobs, "Recordings at a time; 0: one for each processor")
-      ->check(CLI::Range(0U, 64U))
-      ->capture_default_str();
+  addThreads(*command, o->jobs, "Recordings at a time; 0: one for each processor", "--jobs");
   command->add_flag("--json", o->json, "Print JSON");
-  command->callback([o, &run] { run = [o] { return regrade(*o); }; });
 }
 
 namespace {
 
 using analytics::Regraded;
-using nlohmann::ordered_json;
 
-const char* nameOf(Regraded how) {
-  switch (how) {
-    case Regraded::unchanged:
-      return "unchanged";
-    case Regraded::changed:
-      return "changed";
-    case Regraded::missing:
-      return "missing";
-    case Regraded::motion:
-      return "motion";
-    case Regraded::unreadable:
-      return "unreadable";
-    case Regraded::conflict:
-      return "conflict";
-  }
-  return "";
+const char* regradedName(Regraded how) {
+  constexpr const char* names[] = {"unchanged", "changed", "missing", "motion", "unreadable", "conflict"};
+  return names[static_cast<std::size_t>(how)];
 }
 
 std::string titleOf(const analytics::CheckpointValue& v) {
   return v.subject.empty() ? v.name : v.name + " " + v.subject;
 }
 
-std::string shown(const std::optional<analytics::CheckpointValue>& v) {
+std::string shownValue(const std::optional<analytics::CheckpointValue>& v) {
   if (!v) return "-";
   if (!v->value) return v->availability == analytics::Availability::notApplicable ? "n/a" : nameOf(v->availability);
   const analytics::CheckpointDefinition* definition = analytics::findCheckpoint(v->name);
@@ -110,43 +80,38 @@ std::string otherwise(const analytics::ValueChange& c) {
   return text;
 }
 
-ordered_json regradeJson(const analytics::Regrade& regrade) {
-  ordered_json out;
-  out["attempts"] = ordered_json::array();
+Json regradeJson(const analytics::Regrade& regrade) {
+  Json out;
+  out["attempts"] = Json::array();
   for (const analytics::RegradedAttempt& a : regrade.attempts) {
-    ordered_json row = {{"attempt", a.uuid}, {"file", a.file}, {"result", nameOf(a.how)}};
+    Json row = {{"attempt", a.uuid}, {"file", a.file}, {"result", regradedName(a.how)}};
     if (!a.message.empty()) row["message"] = a.message;
     if (!a.remedies.empty()) row["advice"] = advice(a.remedies);
-    row["changes"] = ordered_json::array();
+    row["changes"] = Json::array();
     for (const analytics::ValueChange& c : a.changes) {
-      ordered_json change = {{"name", c.any().name}, {"subject", c.any().subject}};
-      change["before"] = c.before ? apps::jsonOf(std::vector{*c.before}).front() : ordered_json();
-      change["now"] = c.now ? apps::jsonOf(std::vector{*c.now}).front() : ordered_json();
+      Json change = {{"name", c.any().name}, {"subject", c.any().subject}};
+      change["before"] = c.before ? apps::jsonOf(std::vector{*c.before}).front() : Json();
+      change["now"] = c.now ? apps::jsonOf(std::vector{*c.now}).front() : Json();
       row["changes"].push_back(change);
     }
     out["attempts"].push_back(row);
   }
-  out["not_read"] = ordered_json::array();
+  out["not_read"] = Json::array();
   for (const Error& fault : regrade.notRead) out["not_read"].push_back(messageOf(fault));
   return out;
 }
 
 void printRegrade(const analytics::Regrade& regrade) {
-  using Align = analytics::TextTable::Align;
   std::map<Regraded, std::uint64_t> counts;
   std::vector<std::string> order;
   std::map<std::string, std::uint64_t> attemptsOf;
-  analytics::TextTable table({{"attempt", Align::left},
-                              {"checkpoint", Align::left},
-                              {"before", Align::right},
-                              {"now", Align::right},
-                              {"", Align::left}});
+  analytics::TextTable table = tableOf({"attempt", "checkpoint", ">before", ">now", ""});
   for (const analytics::RegradedAttempt& a : regrade.attempts) {
     ++counts[a.how];
     for (const analytics::ValueChange& c : a.changes) {
       const std::string title = titleOf(c.any());
       if (attemptsOf[title]++ == 0) order.push_back(title);
-      table.add({a.uuid.substr(0, 8), title, shown(c.before), shown(c.now), otherwise(c)});
+      table.add({a.uuid.substr(0, 8), title, shownValue(c.before), shownValue(c.now), otherwise(c)});
     }
   }
   if (table.rows() > 0) {
@@ -158,7 +123,7 @@ void printRegrade(const analytics::Regrade& regrade) {
   std::cout << fmt::format("{} attempts: {} changed, {} unchanged", regrade.attempts.size(), counts[Regraded::changed],
                            counts[Regraded::unchanged]);
   for (const Regraded how : {Regraded::missing, Regraded::motion, Regraded::unreadable, Regraded::conflict}) {
-    if (counts[how] > 0) std::cout << fmt::format(", {} {}", counts[how], nameOf(how));
+    if (counts[how] > 0) std::cout << fmt::format(", {} {}", counts[how], regradedName(how));
   }
   std::cout << '\n';
   for (const Error& fault : regrade.notRead) std::cout << "not read: " << messageOf(fault) << '\n';
@@ -167,9 +132,9 @@ void printRegrade(const analytics::Regrade& regrade) {
 
 }  // namespace
 
-ExitCode reportRegrade(const std::string& cohort, const analytics::Regrade& regrade, const char* command, bool json) {
+ExitCode reportRegrade(const std::string& cohort, const analytics::Regrade& regrade, bool json) {
   if (json) {
-    printResult(command, regradeJson(regrade));
+    printResult("regrade", regradeJson(regrade));
   } else {
     printRegrade(regrade);
   }
@@ -177,7 +142,7 @@ ExitCode reportRegrade(const std::string& cohort, const analytics::Regrade& regr
   for (const analytics::RegradedAttempt& a : regrade.attempts) {
     codes.push_back(codeOf(a.fault));
     if (a.fault)
-      fmt::print(stderr, "calot: {}: attempt {}: {}: {}\n", cohort, a.uuid, nameOf(a.how),
+      fmt::print(stderr, "calot: {}: attempt {}: {}: {}\n", cohort, a.uuid, regradedName(a.how),
                  advised(a.message, a.remedies));
   }
   return worstOf(codes);

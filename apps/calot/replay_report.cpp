@@ -2,16 +2,11 @@
 
 #include "apps/calot/replay_report.h"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <iterator>
-#include <optional>
 
 #include "analytics/checkpoints/motion.h"
 #include "analytics/cohort/registers.h"
-#include "apps/calot/environment.h"
-#include "apps/common/program.h"
-#include "recorder/base/errors.h"
 #include "recorder/replay_words.h"
 
 namespace calot::apps {
@@ -32,7 +27,7 @@ void printReport(const recorder::ReplayReport& r) {
   fmt::print(stderr, "calot: {}: {}\n", r.path.string(), advised(r.message, r.remedies));
 }
 
-nlohmann::ordered_json missesJson(const recorder::StepMisses& m) {
+Json missesJson(const recorder::StepMisses& m) {
   return {{"steps", m.any}, {"solver", m.solver}, {"contact", m.contact}, {"held_back", m.heldBack}};
 }
 
@@ -79,21 +74,13 @@ ExitCode worstOf(const std::vector<recorder::ReplayReport>& reports) {
 }
 
 const char* importedName(analytics::Imported imported) {
-  switch (imported) {
-    case analytics::Imported::added:
-      return "added";
-    case analytics::Imported::unchanged:
-      return "unchanged";
-    case analytics::Imported::extended:
-      return "extended";
-  }
-  return "";
+  constexpr const char* names[] = {"added", "unchanged", "extended"};
+  return names[static_cast<std::size_t>(imported)];
 }
 
 namespace {
 
-nlohmann::ordered_json intervalJson(const analytics::ValueInterval& i) {
-  using Json = nlohmann::ordered_json;
+Json intervalJson(const analytics::ValueInterval& i) {
   if (!i.lower) return {{"lower", nullptr}, {"upper", nullptr}, {"reason", i.reason}};
   return Json{{"lower", *i.lower},           {"upper", *i.upper},           {"limit", i.limit()},
               {"step_effect", i.stepEffect}, {"mesh_effect", i.meshEffect}, {"constants_spread", i.constantsSpread}};
@@ -101,12 +88,12 @@ nlohmann::ordered_json intervalJson(const analytics::ValueInterval& i) {
 
 }  // namespace
 
-nlohmann::ordered_json jsonOf(const std::vector<analytics::CheckpointValue>& values,
-                              const std::vector<analytics::ValueInterval>& intervals) {
-  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+Json jsonOf(const std::vector<analytics::CheckpointValue>& values,
+            const std::vector<analytics::ValueInterval>& intervals) {
+  Json list = Json::array();
   for (const analytics::CheckpointValue& v : values) {
-    nlohmann::ordered_json row = {{"name", v.name}, {"subject", v.subject}, {"version", v.version}};
-    row["value"] = v.value ? nlohmann::ordered_json(*v.value) : nlohmann::ordered_json();
+    Json row = {{"name", v.name}, {"subject", v.subject}, {"version", v.version}};
+    row["value"] = v.value ? Json(*v.value) : Json();
     row["unit"] = v.unit;
     row["origin"] = nameOf(v.origin);
     if (v.metric) row["sha256"] = v.metric->sha256;

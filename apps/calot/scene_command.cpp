@@ -2,24 +2,10 @@
 // calot scene: what helps to make a scene of one's own.
 // calot scenes: what can be simulated.
 
-#include "apps/calot/scene_command.h"
-
-#include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <iostream>
-#include <memory>
-#include <nlohmann/json.hpp>
-#include <string>
-#include <utility>
 
-#include "analytics/report/report_text.h"
 #include "apps/calot/command.h"
-#include "apps/calot/environment.h"
-#include "apps/calot/help.h"
-#include "apps/common/program.h"
-#include "recorder/base/errors.h"
 #include "recorder/base/file_bytes.h"
 #include "recorder/base/text_output.h"
 #include "recorder/formats/mesh_file.h"
@@ -31,110 +17,14 @@
 namespace calot::apps {
 namespace {
 
-nlohmann::ordered_json checkJson(const std::string& file, const recorder::SceneCheck& check) {
-  nlohmann::ordered_json faults = nlohmann::ordered_json::array(), costs = nlohmann::ordered_json::array();
-  for (const Error& fault : check.faults)
-    faults.push_back({{"file", fault.where().file}, {"place", fault.where().place}, {"fault", fault.fault()}});
-  for (const recorder::ContactCost& c : check.costs) {
-    costs.push_back({{"organ", c.organ},
-                     {"triangles", c.triangles},
-                     {"mean_edge_m", c.meanEdge},
-                     {"tetrahedra", c.tetrahedra},
-                     {"cell_size_m", c.cellSize},
-                     {"sensible_triangles", c.sensibleTriangles},
-                     {"fine", c.isFine()}});
-  }
-  return {{"file", file},     {"scene", check.scene}, {"sound", check.faults.empty()},
-          {"faults", faults}, {"notes", check.notes}, {"surfaces", costs}};
-}
-
-void printCosts(const recorder::SceneCheck& check) {
-  using Align = analytics::TextTable::Align;
-  analytics::TextTable table({{"organ", Align::left},
-                              {"triangles", Align::right},
-                              {"edge (mm)", Align::right},
-                              {"tetrahedra", Align::right},
-                              {"cell (mm)", Align::right},
-                              {"surface", Align::left}});
-  bool fine = false;
-  for (const recorder::ContactCost& c : check.costs) {
-    table.add({c.organ, std::to_string(c.triangles), fmt::format("{:.2f}", 1000.0 * c.meanEdge),
-               std::to_string(c.tetrahedra), fmt::format("{:.2f}", 1000.0 * c.cellSize),
-               c.isFine() ? fmt::format("fine: {} triangles show as much", c.sensibleTriangles) : "right"});
-    fine = fine || c.isFine();
-  }
-  table.print(std::cout, terminalColumns());
-  if (fine) std::cout << "calot mesh SURFACE --surface-output F.obj --surface-triangles N makes a coarser surface\n";
-  std::cout << std::flush;
-}
-
-int checkOne(const std::string& name, bool json) {
-  const std::filesystem::path file = recorder::findScene(name, assetFolders());
-  const recorder::SceneCheck check = recorder::checkScene(file);
-  if (json) {
-    printResult("scene-check", checkJson(file.string(), check));
-  } else {
-    for (const Error& fault : check.faults) fmt::print("fault: {}\n", fault.what());
-    for (const std::string& note : check.notes) fmt::print("note: {}\n", note);
-    std::fflush(stdout);
-    if (!check.costs.empty()) printCosts(check);
-  }
-  if (check.faults.empty()) {
-    if (!json) fmt::print("{}: sound, {} notes\n", file.string(), check.notes.size());
-    return static_cast<int>(ExitCode::yes);
-  }
-  throw Error(ErrorKind::damaged, fmt::format("{}: {} faults", file.string(), check.faults.size()));
-}
-
-}  // namespace
-
-void addScene(CLI::App& app, Run& run) {
-  CLI::App* command = app.add_subcommand("scene", "Make a scene of one's own: a template, and a check");
-  command->require_subcommand(1);
-
-  struct CheckOptions {
-    std::string scene;
-    bool json = false;
-  };
-  const auto c = std::make_shared<CheckOptions>();
-  CLI::App* check = command->add_subcommand(
-      "check", "Say all faults of a scene at once, what catches nothing in it, and surfaces that are too fine");
-  check->add_option("scene", c->scene, "name of a scene (calot scenes), or a scene file")->required();
-  check->add_flag("--json", c->json, "print the result as JSON");
-  check->callback([c, &run] { run = [c] { return checkOne(c->scene, c->json); }; });
-
-  const auto t = std::make_shared<SceneTemplate>();
-  CLI::App* made = command->add_subcommand(
-      "template", "Write a scene of one organ that can be recorded at once, and be changed from there");
-  made->add_option("surface", t->surface, "the organ's closed surface, a .obj, .stl or .ply file (calot mesh --repair)")
-      ->required();
-  made->add_option("--unit", t->unit, "of its coordinates: m, cm or mm")->required()->check(oneOf({"m", "cm", "mm"}));
-  made->add_option("-o,--output", t->output, "the scene, FOLDER/scenes/NAME.json; the surface goes into FOLDER/organs")
-      ->required();
-  made->add_option("--tetrahedra", t->tetrahedra, "of the organ")->check(CLI::Range(12, 100000))->capture_default_str();
-  made->add_flag("--force", t->force, "replace files that are there");
-  made->callback([t, &run] {
-    run = [t] {
-      for (const std::filesystem::path& file : writeSceneTemplate(*t)) fmt::print("{}\n", file.string());
-      return static_cast<int>(ExitCode::yes);
-    };
-  });
-}
-
-namespace {
-
 using nlohmann::json;
 
 std::string versionOf(const SceneDescription& scene) {
   return fmt::format("{}.{}", scene.majorVersion, scene.minorVersion);
 }
 
-void printTable(const std::vector<recorder::LoadedScene>& scenes) {
-  using Align = analytics::TextTable::Align;
-  analytics::TextTable table({{"scene", Align::left},
-                              {"version", Align::right},
-                              {"organs (tetrahedra)", Align::left},
-                              {"summary", Align::left}});
+void printScenes(const std::vector<recorder::LoadedScene>& scenes) {
+  analytics::TextTable table = tableOf({"scene", ">version", "organs (tetrahedra)", "summary"});
   for (const recorder::LoadedScene& scene : scenes) {
     std::string organs;
     for (const OrganDescription& organ : scene.description.organs) {
@@ -178,7 +68,7 @@ void addCounts(const Model& model, json& row) {
   row["ties"] = model.ties().size();
 }
 
-void printJson(std::vector<recorder::LoadedScene> scenes) {
+void printScenesJson(std::vector<recorder::LoadedScene> scenes) {
   json list = json::array();
   for (recorder::LoadedScene& scene : scenes) {
     json row = {{"name", scene.description.name},
@@ -194,42 +84,85 @@ void printJson(std::vector<recorder::LoadedScene> scenes) {
   printResult("scenes", {{"scenes", list}});
 }
 
-}  // namespace
-
-void addScenes(CLI::App& app, Run& run) {
-  CLI::App* command = app.add_subcommand("scenes", "List the scenes that can be simulated");
-  const auto asJson = std::make_shared<bool>(false);
-  command->add_flag("--json", *asJson, "Print JSON, with what each scene is built of");
-  command->callback([&run, asJson] {
-    run = [asJson] {
-      const std::vector<std::filesystem::path> files = recorder::listScenes(assetFolders());
-      if (files.empty())
-        throw Error(ErrorKind::invalid, "no scenes were found; set CALOT_ASSETS to the folder that holds \"scenes\"");
-      std::vector<recorder::LoadedScene> scenes;
-      // A scene that cannot be read is named, and the others are listed all the same.
-      bool damaged = false;
-      for (const std::filesystem::path& file : files) {
-        try {
-          scenes.push_back(recorder::loadScene(file));
-          for (const std::string& warning : scenes.back().warnings) {
-            fmt::print(stderr, "calot: warning: {}\n", warning);
-          }
-        } catch (const Error& fault) {
-          if (fault.kind() != ErrorKind::damaged) throw;
-          fmt::print(stderr, "calot: {}\n", messageOf(fault));
-          damaged = true;
-        }
-      }
-      *asJson ? printJson(std::move(scenes)) : printTable(scenes);
-      return static_cast<int>(damaged ? ExitCode::damaged : ExitCode::yes);
-    };
-  });
+ExitCode listScenes(const JsonOption& o) {
+  const std::vector<std::filesystem::path> files = recorder::listScenes(assetFolders());
+  if (files.empty())
+    throw Error(ErrorKind::invalid, "no scenes were found; set CALOT_ASSETS to the folder that holds \"scenes\"");
+  std::vector<recorder::LoadedScene> scenes;
+  bool damaged = false;  // such a scene is named, and the others are listed all the same
+  for (const std::filesystem::path& file : files) {
+    try {
+      scenes.push_back(recorder::loadScene(file));
+      for (const std::string& warning : scenes.back().warnings) fmt::print(stderr, "calot: warning: {}\n", warning);
+    } catch (const Error& fault) {
+      if (fault.kind() != ErrorKind::damaged) throw;
+      fmt::print(stderr, "calot: {}\n", messageOf(fault));
+      damaged = true;
+    }
+  }
+  o.json ? printScenesJson(std::move(scenes)) : printScenes(scenes);
+  return damaged ? ExitCode::damaged : ExitCode::yes;
 }
 
-namespace {
+struct SceneCheckOptions {
+  std::string scene;
+  bool json = false;
+};
+
+Json checkJson(const std::string& file, const recorder::SceneCheck& check) {
+  Json faults = Json::array(), costs = Json::array();
+  for (const Error& fault : check.faults)
+    faults.push_back({{"file", fault.where().file}, {"place", fault.where().place}, {"fault", fault.fault()}});
+  for (const recorder::ContactCost& c : check.costs) {
+    costs.push_back({{"organ", c.organ},
+                     {"triangles", c.triangles},
+                     {"mean_edge_m", c.meanEdge},
+                     {"tetrahedra", c.tetrahedra},
+                     {"cell_size_m", c.cellSize},
+                     {"sensible_triangles", c.sensibleTriangles},
+                     {"fine", c.isFine()}});
+  }
+  return {{"file", file},     {"scene", check.scene}, {"sound", check.faults.empty()},
+          {"faults", faults}, {"notes", check.notes}, {"surfaces", costs}};
+}
+
+void printCosts(const recorder::SceneCheck& check) {
+  analytics::TextTable table = tableOf({"organ", ">triangles", ">edge (mm)", ">tetrahedra", ">cell (mm)", "surface"});
+  bool fine = false;
+  for (const recorder::ContactCost& c : check.costs) {
+    table.add({c.organ, std::to_string(c.triangles), fmt::format("{:.2f}", 1000.0 * c.meanEdge),
+               std::to_string(c.tetrahedra), fmt::format("{:.2f}", 1000.0 * c.cellSize),
+               c.isFine() ? fmt::format("fine: {} triangles show as much", c.sensibleTriangles) : "right"});
+    fine = fine || c.isFine();
+  }
+  table.print(std::cout, terminalColumns());
+  if (fine) std::cout << "calot mesh SURFACE --surface-output F.obj --surface-triangles N makes a coarser surface\n";
+  std::cout << std::flush;
+}
+
+void checkScene(const SceneCheckOptions& o) {
+  const std::filesystem::path file = recorder::findScene(o.scene, assetFolders());
+  const recorder::SceneCheck check = recorder::checkScene(file);
+  if (o.json) {
+    printResult("scene-check", checkJson(file.string(), check));
+  } else {
+    for (const Error& fault : check.faults) fmt::print("fault: {}\n", fault.what());
+    for (const std::string& note : check.notes) fmt::print("note: {}\n", note);
+    std::fflush(stdout);
+    if (!check.costs.empty()) printCosts(check);
+  }
+  if (!check.faults.empty())
+    throw Error(ErrorKind::damaged, fmt::format("{}: {} faults", file.string(), check.faults.size()));
+  if (!o.json) fmt::print("{}: sound, {} notes\n", file.string(), check.notes.size());
+}
+
+struct SceneTemplate {
+  std::string surface, unit, output;
+  int tetrahedra = 1000;
+  bool force = false;
+};
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
 
 /// To a hundredth of a millimetre: a file that people change.
 double rounded(double x) { return std::round(1e5 * x) / 1e5 + 0.0; }
@@ -273,9 +206,10 @@ Json sceneOf(const std::string& name, const std::string& file, const SceneTempla
   return scene;
 }
 
-}  // namespace
-
-std::vector<fs::path> writeSceneTemplate(const SceneTemplate& wanted) {
+/// Writes a scene file of one organ in the middle of the workspace, held on its side away from the endoscope, with two
+/// graspers, and copies the surface beside it. The surface is placed by the scene's translation; its file stays as it
+/// is. @throws Error where the surface is open or of no organ's size, or something is there
+void writeSceneTemplate(const SceneTemplate& wanted) {
   const fs::path scene = wanted.output;
   if (scene.extension() != ".json")
     throw Error(ErrorKind::invalid, Where{wanted.output}, "a scene's name ends in .json");
@@ -312,7 +246,36 @@ std::vector<fs::path> writeSceneTemplate(const SceneTemplate& wanted) {
   }
   recorder::writeText(scene, sceneOf(name, "organs/" + surface.filename().string(), wanted, found.box).dump(2) + "\n",
                       wanted.force);
-  return {scene, surface};
+  fmt::print("{}\n{}\n", scene.string(), surface.string());
+}
+
+}  // namespace
+
+void addScenes(CLI::App& app, Run& run) {
+  const auto [command, o] = addCommand(app, run, "scenes", "List the scenes that can be simulated", listScenes);
+  command->add_flag("--json", o->json, "Print JSON, with what each scene is built of");
+}
+
+void addScene(CLI::App& app, Run& run) {
+  CLI::App* command = app.add_subcommand("scene", "Make a scene of one's own: a template, and a check");
+  command->require_subcommand(1);
+
+  const auto [check, c] = addCommand(
+      *command, run, "check",
+      "Say all faults of a scene at once, what catches nothing in it, and surfaces that are too fine", checkScene);
+  check->add_option("scene", c->scene, "name of a scene (calot scenes), or a scene file")->required();
+  check->add_flag("--json", c->json, "print the result as JSON");
+
+  const auto [made, t] = addCommand(
+      *command, run, "template", "Write a scene of one organ that can be recorded at once, and be changed from there",
+      writeSceneTemplate);
+  made->add_option("surface", t->surface, "the organ's closed surface, a .obj, .stl or .ply file (calot mesh --repair)")
+      ->required();
+  made->add_option("--unit", t->unit, "of its coordinates: m, cm or mm")->required()->check(oneOf({"m", "cm", "mm"}));
+  made->add_option("-o,--output", t->output, "the scene, FOLDER/scenes/NAME.json; the surface goes into FOLDER/organs")
+      ->required();
+  addNumber(*made, "--tetrahedra", t->tetrahedra, "of the organ", 12, 100000);
+  made->add_flag("--force", t->force, "replace files that are there");
 }
 
 }  // namespace calot::apps

@@ -3,17 +3,9 @@
 
 #include "apps/calot/study_command.h"
 
-#include <fmt/format.h>
 #include <algorithm>
-#include <CLI/CLI.hpp>
 #include <cmath>
-#include <iostream>
-#include <memory>
-#include <optional>
 #include <set>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "analytics/cohort/check.h"
 #include "analytics/cohort/withdraw.h"
@@ -21,253 +13,13 @@
 #include "analytics/report/study_output.h"
 #include "analytics/report/study_tables.h"
 #include "apps/calot/command.h"
-#include "apps/calot/environment.h"
-#include "apps/calot/help.h"
-#include "apps/common/program.h"
 #include "recorder/attempt.h"
-#include "recorder/base/errors.h"
 #include "recorder/base/text_output.h"
+#ifdef CALOT_PDF
+#include "gui/report/pdf_report.h"
+#endif
 
 namespace calot::apps {
-namespace {
-
-struct DesignOptions {
-  std::string design;  ///< empty: implied by other options, else two groups
-  std::string strata, against, finishedColumn;
-  std::optional<double> criterion;
-  std::size_t run = 1;
-  double errorRatio = 1.0;
-};
-
-/// Adds --design and what single designs need. @pre addStudySource() was called
-void addDesignOptions(CLI::App& command, DesignOptions& options);
-
-/// Chosen or implied: three groups, strata. @throws Error (invalid) for options that the design does not take, or
-/// lacks.
-analytics::Design designOf(const DesignOptions& options, const StudySource& source);
-
-/// @throws Error as analytics::cohortDesignData(), tableDesignData() and makeDesignReport().
-analytics::DesignReport designReportOf(const DesignOptions& options, StudySource& source);
-
-using analytics::Design;
-
-/// An option that belongs to some designs alone.
-struct DesignOption {
-  const char* name;
-  bool given;
-  std::vector<Design> designs;
-};
-
-[[noreturn]] void failDesign(const std::string& what) { throw Error(ErrorKind::invalid, "study: " + what); }
-
-std::string helpOfDesigns() {
-  std::string text = "Designs (--design):\n";
-  for (const analytics::DesignEntry& e : analytics::designs())
-    text += fmt::format("  {:<18}{}? {}\n", e.name, e.question, e.method);
-  return text +
-         "Implied: groups by three names in --groups, strata by --strata. The options above choose whose attempts\n"
-         "and which figures (--family, of a table --outcome); --attempt-rule makes one value of several where a "
-         "design\n"
-         "takes one from each participant.";
-}
-
-Design chosenDesign(const DesignOptions& o, const StudySource& source) {
-  if (!o.design.empty()) return *analytics::designOf(o.design);
-  if (source.choices.groups.size() > 2) return Design::severalGroups;
-  return o.strata.empty() ? Design::twoGroups : Design::strata;
-}
-
-void addDesignOptions(CLI::App& command, DesignOptions& o) {
-  std::vector<std::string> names;
-  for (const analytics::DesignEntry& e : analytics::designs()) names.emplace_back(e.name);
-  command.add_option("--design", o.design, "What is asked of the data; see below (default: two-groups)")
-      ->check(oneOf(names));
-  command.add_option("--strata", o.strata,
-                     "Strata of the designs strata and repeated: of a cohort site or arm, of a table a column");
-  command.add_option("--against", o.against,
-                     "Figure that others are held against (correlation, agreement): a checkpoint, a column, or of a "
-                     "cohort \"rating FORM\"");
-  command.add_option("--criterion", o.criterion,
-                     "Value that one figure is to reach (learning), in its display unit; adds attempts to "
-                     "the criterion");
-  command.add_option("--in-a-row", o.run, "Attempts in a row that must meet the criterion (learning)")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
-  command.add_option("--finished-column", o.finishedColumn,
-                     "Of a table: whether the attempt was finished, 1 or 0 (time-to-criterion)");
-  command
-      .add_option("--error-ratio", o.errorRatio,
-                  "Error variance of the second method over that of the first (agreement)")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  command.get_option("--groups")->description("The groups to compare, A,B; three or more for --design groups");
-  command.footer(helpOfDesigns());
-}
-
-analytics::Design designOf(const DesignOptions& o, const StudySource& source) {
-  const Design design = chosenDesign(o, source);
-  const std::string name = analytics::entryOf(design).name;
-  const std::vector<DesignOption> own{{"--strata", !o.strata.empty(), {Design::strata, Design::repeated}},
-                                      {"--against", !o.against.empty(), {Design::correlation, Design::agreement}},
-                                      {"--criterion", o.criterion.has_value(), {Design::learning}},
-                                      {"--in-a-row", o.run != 1, {Design::learning}},
-                                      {"--finished-column", !o.finishedColumn.empty(), {Design::timeToCriterion}},
-                                      {"--error-ratio", o.errorRatio != 1.0, {Design::agreement}}};
-  for (const DesignOption& option : own) {
-    if (option.given && std::find(option.designs.begin(), option.designs.end(), design) == option.designs.end())
-      failDesign(fmt::format("{} is of --design {}, not of {}", option.name,
-                             analytics::entryOf(option.designs.front()).name, name));
-  }
-  if (design == Design::twoGroups) return design;
-  if (!source.protocol.empty()) failDesign(fmt::format("a protocol is of two groups, not of --design {}", name));
-  if (!source.elsewhere.baselineOccasion.empty())
-    failDesign(fmt::format("--baseline-occasion is of --design two-groups, not of {}", name));
-  if (design == Design::strata && o.strata.empty()) failDesign("--design strata needs --strata");
-  if (design == Design::correlation && o.against.empty()) failDesign("--design correlation needs --against");
-  if (design == Design::timeToCriterion && !source.table.empty() && o.finishedColumn.empty())
-    failDesign("--design time-to-criterion of a table needs --finished-column");
-  if (!o.criterion && o.run != 1) failDesign("--in-a-row needs --criterion");
-  if (o.criterion && !std::isfinite(*o.criterion)) failDesign("--criterion: a finite number is wanted");
-  if (source.table.empty() && !o.strata.empty() && o.strata != "site" && o.strata != "arm")
-    failDesign("--strata of a cohort: site or arm");
-  if (!source.table.empty() && source.elsewhere.occasionColumns.empty() && design == Design::agreement &&
-      o.against.empty())
-    failDesign("--design agreement of a table needs --against, or --occasion-column of the device");
-  return design;
-}
-
-analytics::DesignReport designReportOf(const DesignOptions& o, StudySource& source) {
-  analytics::DesignChoices choices;
-  static_cast<analytics::StudyChoices&>(choices) = source.choices;
-  choices.design = designOf(o, source);
-  if (!source.attemptRule.empty())
-    choices.attemptRule = source.attemptRule == "first" ? analytics::AttemptRule::first : analytics::AttemptRule::mean;
-  choices.strata = o.strata;
-  choices.against = o.against;
-  choices.finishedColumn = o.finishedColumn;
-  choices.criterion = o.criterion;
-  choices.run = o.run;
-  choices.errorRatio = o.errorRatio;
-  if (!source.table.empty())
-    return analytics::makeDesignReport(
-        analytics::tableDesignData(readCsvTable(source.table), source.elsewhere, choices), choices);
-  if (source.database.empty()) throw Error(ErrorKind::invalid, "name a cohort database, or a table with --table");
-  source.cohort.grouping = source.groupBy == "performer" ? analytics::Grouping::performer : analytics::Grouping::group;
-  if (!source.cohortName.empty()) source.cohort.cohort = analytics::CohortInUse{source.cohortName, {}};
-  const auto read = analytics::CohortDatabase::Access::read;
-  const analytics::DesignData data =
-      analytics::cohortDesignData(analytics::CohortDatabase(source.database, read),
-                                  analytics::AssessmentDatabase(source.database, read), source.cohort, choices);
-  return analytics::makeDesignReport(data, choices);
-}
-
-struct ParsedStudyOptions {
-  StudySource source;
-  DesignOptions design;
-  std::string csv, html, pdf;
-  bool json = false, force = false, all = false;
-};
-
-/// Notes in the cohort that attempts went into files: a withdrawal lists them.
-void noteExports(const ParsedStudyOptions& options, const std::vector<std::string>& attempts) {
-  const std::vector<std::pair<std::string, std::string>> written{
-      {"study-csv", options.csv}, {"study-html", options.html}, {"study-pdf", options.pdf}};
-  try {
-    for (const auto& [kind, file] : written) {
-      if (!file.empty()) analytics::recordExport(options.source.database, kind, file, attempts);
-    }
-  } catch (const Error& e) {
-    std::cerr << "calot: warning: what was written is not noted for withdrawals: " << messageOf(e) << '\n';
-  }
-}
-
-bool isExported(const ParsedStudyOptions& options) {
-  return !options.source.database.empty() && !(options.csv + options.html + options.pdf).empty();
-}
-
-/// Attempts of the participants who are in the study's rows.
-std::vector<std::string> attemptsIn(const analytics::Study& study, const std::string& path) {
-  std::set<std::string> units;
-  for (const analytics::StudyRow& row : study.rows) {
-    for (const auto& group : row.participants) units.insert(group.begin(), group.end());
-  }
-  const bool masked = study.protocol && study.protocol->masked;  // names nobody: any attempt may be in it
-  std::vector<std::string> attempts;
-  const analytics::CohortDatabase database(path, analytics::CohortDatabase::Access::read);
-  for (const analytics::AttemptRow& a : database.listAttempts()) {
-    if (masked || units.count(a.participant.empty() ? "attempt " + a.uuid : a.participant) > 0)
-      attempts.push_back(a.uuid);
-  }
-  return attempts;
-}
-
-void print(const analytics::Study& study, bool all) {
-  analytics::printStudy(study, std::cout, all ? analytics::StudyDetail::all : analytics::StudyDetail::first);
-  if (all) return;
-  const auto others = std::count_if(study.rows.begin(), study.rows.end(), [](const analytics::StudyRow& row) {
-    return !row.leading && !analytics::hasNoValue(row);
-  });
-  std::cout << fmt::format("{} more figures, and the methods: --all; as a report: --pdf, --html\n", others);
-}
-
-int runTwoGroups(ParsedStudyOptions& options) {
-  Progress progress("computing the study", options.json);
-  const analytics::Study study = studyOf(options.source, [&](double share, const char*) { progress.showShare(share); });
-  Progress::erase();
-  if (!options.csv.empty()) analytics::writeStudyCsv(study, options.csv, options.force);
-  writeReport(analytics::studyDocument(study), options.html, options.pdf, options.force);
-  if (isExported(options)) noteExports(options, attemptsIn(study, options.source.database));
-  if (options.json) {
-    printResult("study", nlohmann::ordered_json::parse(analytics::studyJson(study)));
-  } else {
-    print(study, options.all);
-  }
-  return static_cast<int>(ExitCode::yes);
-}
-
-int runDesign(ParsedStudyOptions& options) {
-  if (!options.csv.empty())
-    throw Error(ErrorKind::invalid, "study: --csv is of --design two-groups; the others have --json");
-  if (options.source.masked) throw Error(ErrorKind::invalid, "study: --masked is of --design two-groups");
-  const analytics::DesignReport report = designReportOf(options.design, options.source);
-  writeReport(analytics::designDocument(report), options.html, options.pdf, options.force);
-  if (isExported(options)) noteExports(options, report.attempts);
-  if (options.json) {
-    printResult("design", nlohmann::ordered_json::parse(analytics::designJson(report)));
-  } else {
-    analytics::printDesign(report, std::cout);
-  }
-  return static_cast<int>(ExitCode::yes);
-}
-
-}  // namespace
-
-void addStudy(CLI::App& app, Run& run) {
-  const auto options = std::make_shared<ParsedStudyOptions>();
-  CLI::App* command = app.add_subcommand(
-      "study", "Compare groups of a cohort, or of a table from elsewhere, in two groups or another design");
-  addStudySource(*command, options->source);
-  command->add_flag("--masked", options->source.masked,
-                    "Call the protocol's groups \"group 1\" and \"group 2\" until its analysis is locked");
-  addDesignOptions(*command, options->design);
-  command->add_flag("--json", options->json, "Print JSON");
-  command->add_flag("--all", options->all, "Print every figure and the methods, not only the first result");
-  command->add_option("--csv", options->csv, "Write study.csv, values.csv, flow.csv and coverage.csv into this folder");
-  command->add_option("--html", options->html, "Write one self-contained page with figures");
-  addPdfOption(*command, options->pdf, "Write the same on A4 pages");
-  command->add_flag("--force", options->force, "Replace files that are there");
-  command->callback([options, &run] {
-    run = [options] {
-      for (const std::string& file : {options->html, options->pdf}) {
-        if (!file.empty()) recorder::refuseOutput(file, options->force);
-      }
-      if (!options->source.database.empty()) analytics::refuseUnsound(options->source.database);
-      return designOf(options->design, options->source) == analytics::Design::twoGroups ? runTwoGroups(*options)
-                                                                                        : runDesign(*options);
-    };
-  });
-}
-
 namespace {
 
 void addCohortOptions(CLI::App& command, StudySource& options, CLI::Option& table) {
@@ -308,20 +60,23 @@ void addTableOptions(CLI::App& command, StudySource& options, CLI::Option& table
   command.add_option("--outcome", study.outcomes, "Column to compare; NAME:lower or NAME:higher says what is better")
       ->allow_extra_args(false)
       ->needs(&table);
-  command.add_option("--occasion-column", study.occasionColumns, "Column of the occasion; several: A,B")
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->needs(&table);
+  addList(command, "--occasion-column", study.occasionColumns, "Column of the occasion; several: A,B")->needs(&table);
   command.add_option("--occasion", study.occasion, "The occasion to compare; of several columns: a/b")->needs(&table);
   command.add_option("--baseline-occasion", study.baselineOccasion, "The occasion whose value is the baseline")
       ->needs(&table);
 }
 
+/// The words of the command line as the library has them.
+void settle(StudySource& source) {
+  if (!source.attemptRule.empty())
+    source.choices.attemptRule =
+        source.attemptRule == "first" ? analytics::AttemptRule::first : analytics::AttemptRule::mean;
+  source.cohort.grouping = source.groupBy == "performer" ? analytics::Grouping::performer : analytics::Grouping::group;
+  if (!source.cohortName.empty()) source.cohort.cohort = analytics::CohortInUse{source.cohortName, {}};
+}
+
 analytics::Study plainStudyOf(StudySource& options, const analytics::StudyProgress& progress) {
-  if (!options.attemptRule.empty()) {
-    options.choices.attemptRule =
-        options.attemptRule == "first" ? analytics::AttemptRule::first : analytics::AttemptRule::mean;
-  }
+  settle(options);
   if (!options.table.empty()) {
     static_cast<analytics::StudyChoices&>(options.elsewhere) = options.choices;
     if (!options.protocol.empty())
@@ -330,9 +85,6 @@ analytics::Study plainStudyOf(StudySource& options, const analytics::StudyProgre
   }
   if (options.database.empty()) throw Error(ErrorKind::invalid, "name a cohort database, or a table with --table");
   static_cast<analytics::StudyChoices&>(options.cohort) = options.choices;
-  options.cohort.grouping =
-      options.groupBy == "performer" ? analytics::Grouping::performer : analytics::Grouping::group;
-  if (!options.cohortName.empty()) options.cohort.cohort = analytics::CohortInUse{options.cohortName, {}};
   const auto read = analytics::CohortDatabase::Access::read;
   const analytics::AssessmentDatabase assessment(options.database, read);
   if (!options.protocol.empty()) options.cohort = protocolStudyOptions(options, assessment);
@@ -370,29 +122,16 @@ void addStudySource(CLI::App& command, StudySource& source) {
   CLI::Option* table = command.add_option("--table", source.table, "A CSV file instead of a cohort");
   addCohortOptions(command, source, *table);
   addTableOptions(command, source, *table);
-  command.add_option("--groups", source.choices.groups, "The two groups to compare, A,B")
-      ->delimiter(',')
-      ->allow_extra_args(false);
+  addList(command, "--groups", source.choices.groups, "The two groups to compare, A,B");
   command.add_option("--better", source.choices.better, "The group that is expected to do better (the hypothesis)");
   command
       .add_option("--attempt-rule", source.attemptRule,
                   "One value of a participant's several attempts: the first, or the mean")
       ->check(oneOf({"first", "mean"}));
-  command
-      .add_option("--family", source.choices.family, "Rows whose p values are adjusted for each other (default: all)")
-      ->delimiter(',')
-      ->allow_extra_args(false);
+  addList(command, "--family", source.choices.family, "Rows whose p values are adjusted for each other (default: all)");
   for (const char* name : {"--groups", "--better", "--attempt-rule", "--family"})
     command.get_option(name)->excludes(command.get_option("--protocol"));
 }
-
-}  // namespace calot::apps
-
-#ifdef CALOT_PDF
-#include "gui/report/pdf_report.h"
-#endif
-
-namespace calot::apps {
 
 void addPdfOption(CLI::App& command, std::string& file, const std::string& help) {
   [[maybe_unused]] CLI::Option* option = command.add_option("--pdf", file, help);
@@ -407,6 +146,221 @@ void writeReport(const analytics::ReportDocument& document, const std::string& h
 #ifdef CALOT_PDF
   if (!pdf.empty()) recorder::writeText(pdf, gui::pdfReport(document, recorder::softwareName()), force);
 #endif
+}
+
+namespace {
+
+using analytics::Design;
+
+struct DesignOptions {
+  std::string design;  ///< empty: implied by other options, else two groups
+  analytics::DesignChoices choices;
+};
+
+/// An option that belongs to some designs alone.
+struct DesignOption {
+  const char* name;
+  bool given;
+  std::vector<Design> designs;
+};
+
+[[noreturn]] void failDesign(const std::string& what) { throw Error(ErrorKind::invalid, "study: " + what); }
+
+std::string helpOfDesigns() {
+  std::string text = "Designs (--design):\n";
+  for (const analytics::DesignEntry& e : analytics::designs())
+    text += fmt::format("  {:<18}{}? {}\n", e.name, e.question, e.method);
+  return text +
+         "Implied: groups by three names in --groups, strata by --strata. The options above choose whose attempts\n"
+         "and which figures (--family, of a table --outcome); --attempt-rule makes one value of several where a "
+         "design\n"
+         "takes one from each participant.";
+}
+
+Design chosenDesign(const DesignOptions& o, const StudySource& source) {
+  if (!o.design.empty()) return *analytics::designOf(o.design);
+  if (source.choices.groups.size() > 2) return Design::severalGroups;
+  return o.choices.strata.empty() ? Design::twoGroups : Design::strata;
+}
+
+void addDesignOptions(CLI::App& command, DesignOptions& o) {
+  std::vector<std::string> names;
+  for (const analytics::DesignEntry& e : analytics::designs()) names.emplace_back(e.name);
+  command.add_option("--design", o.design, "What is asked of the data; see below (default: two-groups)")
+      ->check(oneOf(names));
+  command.add_option("--strata", o.choices.strata,
+                     "Strata of the designs strata and repeated: of a cohort site or arm, of a table a column");
+  command.add_option("--against", o.choices.against,
+                     "Figure that others are held against (correlation, agreement): a checkpoint, a column, or of a "
+                     "cohort \"rating FORM\"");
+  command.add_option("--criterion", o.choices.criterion,
+                     "Value that one figure is to reach (learning), in its display unit; adds attempts to "
+                     "the criterion");
+  addNumber(command, "--in-a-row", o.choices.run, "Attempts in a row that must meet the criterion (learning)", 1, 1000);
+  command.add_option("--finished-column", o.choices.finishedColumn,
+                     "Of a table: whether the attempt was finished, 1 or 0 (time-to-criterion)");
+  command
+      .add_option("--error-ratio", o.choices.errorRatio,
+                  "Error variance of the second method over that of the first (agreement)")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command.get_option("--groups")->description("The groups to compare, A,B; three or more for --design groups");
+  command.footer(helpOfDesigns());
+}
+
+/// Chosen or implied: three groups, strata. @throws Error (invalid) for options that the design does not take, or
+/// lacks.
+Design designOf(const DesignOptions& o, const StudySource& source) {
+  const Design design = chosenDesign(o, source);
+  const std::string name = analytics::entryOf(design).name;
+  const std::vector<DesignOption> own{
+      {"--strata", !o.choices.strata.empty(), {Design::strata, Design::repeated}},
+      {"--against", !o.choices.against.empty(), {Design::correlation, Design::agreement}},
+      {"--criterion", o.choices.criterion.has_value(), {Design::learning}},
+      {"--in-a-row", o.choices.run != 1, {Design::learning}},
+      {"--finished-column", !o.choices.finishedColumn.empty(), {Design::timeToCriterion}},
+      {"--error-ratio", o.choices.errorRatio != 1.0, {Design::agreement}}};
+  for (const DesignOption& option : own) {
+    if (option.given && std::find(option.designs.begin(), option.designs.end(), design) == option.designs.end())
+      failDesign(fmt::format("{} is of --design {}, not of {}", option.name,
+                             analytics::entryOf(option.designs.front()).name, name));
+  }
+  if (design == Design::twoGroups) return design;
+  if (!source.protocol.empty()) failDesign(fmt::format("a protocol is of two groups, not of --design {}", name));
+  if (!source.elsewhere.baselineOccasion.empty())
+    failDesign(fmt::format("--baseline-occasion is of --design two-groups, not of {}", name));
+  if (design == Design::strata && o.choices.strata.empty()) failDesign("--design strata needs --strata");
+  if (design == Design::correlation && o.choices.against.empty()) failDesign("--design correlation needs --against");
+  if (design == Design::timeToCriterion && !source.table.empty() && o.choices.finishedColumn.empty())
+    failDesign("--design time-to-criterion of a table needs --finished-column");
+  if (!o.choices.criterion && o.choices.run != 1) failDesign("--in-a-row needs --criterion");
+  if (o.choices.criterion && !std::isfinite(*o.choices.criterion)) failDesign("--criterion: a finite number is wanted");
+  if (source.table.empty() && !o.choices.strata.empty() && o.choices.strata != "site" && o.choices.strata != "arm")
+    failDesign("--strata of a cohort: site or arm");
+  if (!source.table.empty() && source.elsewhere.occasionColumns.empty() && design == Design::agreement &&
+      o.choices.against.empty())
+    failDesign("--design agreement of a table needs --against, or --occasion-column of the device");
+  return design;
+}
+
+/// @throws Error as analytics::cohortDesignData(), tableDesignData() and makeDesignReport().
+analytics::DesignReport designReportOf(const DesignOptions& o, StudySource& source) {
+  settle(source);
+  analytics::DesignChoices choices = o.choices;
+  static_cast<analytics::StudyChoices&>(choices) = source.choices;
+  choices.design = designOf(o, source);
+  if (!source.table.empty())
+    return analytics::makeDesignReport(
+        analytics::tableDesignData(readCsvTable(source.table), source.elsewhere, choices), choices);
+  if (source.database.empty()) throw Error(ErrorKind::invalid, "name a cohort database, or a table with --table");
+  const auto read = analytics::CohortDatabase::Access::read;
+  const analytics::DesignData data =
+      analytics::cohortDesignData(analytics::CohortDatabase(source.database, read),
+                                  analytics::AssessmentDatabase(source.database, read), source.cohort, choices);
+  return analytics::makeDesignReport(data, choices);
+}
+
+struct StudyCommandOptions {
+  StudySource source;
+  DesignOptions design;
+  std::string csv, html, pdf;
+  bool json = false, force = false, all = false;
+};
+
+/// Notes in the cohort that attempts went into files: a withdrawal lists them.
+void noteExports(const StudyCommandOptions& options, const std::vector<std::string>& attempts) {
+  const std::vector<std::pair<std::string, std::string>> written{
+      {"study-csv", options.csv}, {"study-html", options.html}, {"study-pdf", options.pdf}};
+  try {
+    for (const auto& [kind, file] : written) {
+      if (!file.empty()) analytics::recordExport(options.source.database, kind, file, attempts);
+    }
+  } catch (const Error& e) {
+    std::cerr << "calot: warning: what was written is not noted for withdrawals: " << messageOf(e) << '\n';
+  }
+}
+
+bool isExported(const StudyCommandOptions& options) {
+  return !options.source.database.empty() && !(options.csv + options.html + options.pdf).empty();
+}
+
+/// Attempts of the participants who are in the study's rows.
+std::vector<std::string> attemptsIn(const analytics::Study& study, const std::string& path) {
+  std::set<std::string> units;
+  for (const analytics::StudyRow& row : study.rows) {
+    for (const auto& group : row.participants) units.insert(group.begin(), group.end());
+  }
+  const bool masked = study.protocol && study.protocol->masked;  // names nobody: any attempt may be in it
+  std::vector<std::string> attempts;
+  const analytics::CohortDatabase database(path, analytics::CohortDatabase::Access::read);
+  for (const analytics::AttemptRow& a : database.listAttempts()) {
+    if (masked || units.count(a.participant.empty() ? "attempt " + a.uuid : a.participant) > 0)
+      attempts.push_back(a.uuid);
+  }
+  return attempts;
+}
+
+void printStudy(const analytics::Study& study, bool all) {
+  analytics::printStudy(study, std::cout, all ? analytics::StudyDetail::all : analytics::StudyDetail::first);
+  if (all) return;
+  const auto others = std::count_if(study.rows.begin(), study.rows.end(), [](const analytics::StudyRow& row) {
+    return !row.leading && !analytics::hasNoValue(row);
+  });
+  std::cout << fmt::format("{} more figures, and the methods: --all; as a report: --pdf, --html\n", others);
+}
+
+void runTwoGroups(StudyCommandOptions& options) {
+  Progress progress("computing the study", options.json);
+  const analytics::Study study = studyOf(options.source, [&](double share, const char*) { progress.showShare(share); });
+  Progress::erase();
+  if (!options.csv.empty()) analytics::writeStudyCsv(study, options.csv, options.force);
+  writeReport(analytics::studyDocument(study), options.html, options.pdf, options.force);
+  if (isExported(options)) noteExports(options, attemptsIn(study, options.source.database));
+  if (options.json) {
+    printResult("study", Json::parse(analytics::studyJson(study)));
+  } else {
+    printStudy(study, options.all);
+  }
+}
+
+void runDesign(StudyCommandOptions& options) {
+  if (!options.csv.empty())
+    throw Error(ErrorKind::invalid, "study: --csv is of --design two-groups; the others have --json");
+  if (options.source.masked) throw Error(ErrorKind::invalid, "study: --masked is of --design two-groups");
+  const analytics::DesignReport report = designReportOf(options.design, options.source);
+  writeReport(analytics::designDocument(report), options.html, options.pdf, options.force);
+  if (isExported(options)) noteExports(options, report.attempts);
+  if (options.json) {
+    printResult("design", Json::parse(analytics::designJson(report)));
+  } else {
+    analytics::printDesign(report, std::cout);
+  }
+}
+
+void study(StudyCommandOptions& o) {
+  for (const std::string& file : {o.html, o.pdf}) {
+    if (!file.empty()) recorder::refuseOutput(file, o.force);
+  }
+  if (!o.source.database.empty()) analytics::refuseUnsound(o.source.database);
+  return designOf(o.design, o.source) == Design::twoGroups ? runTwoGroups(o) : runDesign(o);
+}
+
+}  // namespace
+
+void addStudy(CLI::App& app, Run& run) {
+  const auto [command, options] =
+      addCommand(app, run, "study",
+                 "Compare groups of a cohort, or of a table from elsewhere, in two groups or another design", study);
+  addStudySource(*command, options->source);
+  command->add_flag("--masked", options->source.masked,
+                    "Call the protocol's groups \"group 1\" and \"group 2\" until its analysis is locked");
+  addDesignOptions(*command, options->design);
+  command->add_flag("--json", options->json, "Print JSON");
+  command->add_flag("--all", options->all, "Print every figure and the methods, not only the first result");
+  command->add_option("--csv", options->csv, "Write study.csv, values.csv, flow.csv and coverage.csv into this folder");
+  command->add_option("--html", options->html, "Write one self-contained page with figures");
+  addPdfOption(*command, options->pdf, "Write the same on A4 pages");
+  command->add_flag("--force", options->force, "Replace files that are there");
 }
 
 }  // namespace calot::apps
