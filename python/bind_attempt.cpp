@@ -45,17 +45,12 @@ py::tuple runOf(DrivenAttempt& attempt, const Numbers& actions) {
 void recordOf(DrivenAttempt& attempt, const std::filesystem::path& path, const std::string& controller,
               const std::string& version, const std::string& participant, const std::string& station,
               const std::string& purpose, const std::string& handedness, bool force) {
-  RecordWish wish;
-  wish.target = path;
-  wish.controller = controller;
-  wish.version = version;
-  wish.settings.participant = participant;
-  wish.settings.station = station;
-  wish.settings.purpose = purpose;
-  wish.settings.handedness = handedness;
-  wish.force = force;
-  const py::gil_scoped_release release;
-  attempt.record(wish);
+  recorder::AttemptSettings settings;
+  settings.participant = participant;
+  settings.station = station;
+  settings.purpose = purpose;
+  settings.handedness = handedness;
+  withoutLock([&] { attempt.record(path, settings, recorder::controllerProvenance(controller, version), force); });
 }
 
 py::dict sceneOf(const DrivenAttempt& attempt) {

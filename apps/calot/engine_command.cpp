@@ -121,7 +121,7 @@ void build(const BuildOptions& o) {
   std::error_code ignored;
   if (!fs::is_regular_file(script, ignored))
     throw Error(ErrorKind::invalid, fmt::format("{} is no clone of the source: name one with --source", o.source));
-  refuseExisting(o.output, o.force);
+  recorder::refuseOutput(o.output, o.force);
   std::vector<std::string> command{"python3", script.string(), "build", std::to_string(o.version), "-o", o.output};
   if (o.module) command.emplace_back("--module");
   std::vector<char*> arguments;
@@ -138,7 +138,7 @@ struct TranscriptOptions {
 };
 
 void transcribe(const TranscriptOptions& o) {
-  refuseExisting(o.output, o.force);
+  recorder::refuseOutput(o.output, o.force);
   recorder::probe(o.recording);
   recorder::Recording recording(o.recording);
   if (o.steps < 2 || o.steps > recording.stepCount())

@@ -136,8 +136,7 @@ class FittingFormatter final : public CLI::Formatter {
     return out.str();
   }
 
-  /// Where the manual is on this machine is told to whoever reads here, and not by --help-json, of which pages are made
-  /// that are read elsewhere.
+  /// The manual's place on this machine: for people here, not for --help-json, whose pages are read elsewhere.
   std::string make_footer(const CLI::App* command) const override {
     std::string footer = CLI::Formatter::make_footer(command);
     if (command->get_parent() != nullptr) return footer;
@@ -161,7 +160,7 @@ std::string examplesOf(const std::string& command) {
   return text.empty() ? text : (text.find('\n', 1) == std::string::npos ? "Example:" : "Examples:") + text;
 }
 
-void dress(CLI::App& command, const std::string& words, const std::shared_ptr<CLI::FormatterBase>& formatter) {
+void formatCommand(CLI::App& command, const std::string& words, const std::shared_ptr<CLI::FormatterBase>& formatter) {
   command.formatter(formatter);
   std::string footer = command.get_footer();
   if (const std::string those = examplesOf(words); !those.empty()) footer += (footer.empty() ? "" : "\n\n") + those;
@@ -170,15 +169,15 @@ void dress(CLI::App& command, const std::string& words, const std::shared_ptr<CL
     if (each->get_name().empty()) {
       each->formatter(formatter);  // a group of options
     } else {
-      dress(*each, words.empty() ? each->get_name() : words + " " + each->get_name(), formatter);
+      formatCommand(*each, words.empty() ? each->get_name() : words + " " + each->get_name(), formatter);
     }
   }
 }
 
 }  // namespace
 
-void dressHelp(CLI::App& app) {
-  dress(app, "", std::make_shared<FittingFormatter>(terminalColumns()));
+void formatHelp(CLI::App& app) {
+  formatCommand(app, "", std::make_shared<FittingFormatter>(terminalColumns()));
   app.footer("calot COMMAND --help has the options of each command, and an example.");
 }
 
@@ -202,7 +201,11 @@ bool takesWords(const CLI::App& command) {
   return std::any_of(options.begin(), options.end(), [](const CLI::Option* each) { return each->get_positional(); });
 }
 
-std::string namesText(const std::vector<std::string>& names) { return fmt::format("{}", fmt::join(names, ", ")); }
+std::vector<std::string> namesOf(const std::vector<const CLI::App*>& commands) {
+  std::vector<std::string> names;
+  for (const CLI::App* each : commands) names.push_back(each->get_name());
+  return names;
+}
 
 }  // namespace
 
@@ -228,12 +231,11 @@ std::string wrongWord(const CLI::App& app, const std::vector<std::string>& words
       at = *chosen;
       name += " " + word;
     } else if (!takesWords(*at)) {
-      std::vector<std::string> known;
-      for (const CLI::App* each : commands) known.push_back(each->get_name());
+      const std::vector<std::string> known = namesOf(commands);
       const bool top = at == &app;
       what = fmt::format("there is no command '{}{}'{}{}", top ? "" : name.substr(app.get_name().size() + 1) + " ",
                          recorder::shown(word), recorder::didYouMean(word, known),
-                         top ? "" : "; there are " + namesText(known));
+                         top ? "" : fmt::format("; there are {}", fmt::join(known, ", ")));
       break;
     }
   }
@@ -242,9 +244,7 @@ std::string wrongWord(const CLI::App& app, const std::vector<std::string>& words
     if (const std::vector<const CLI::App*> commands = subcommandsOf(*at);
         at != &app && !commands.empty() && fault.get_exit_code() == static_cast<int>(CLI::ExitCodes::RequiredError) &&
         at->get_subcommands().empty() && at->get_require_subcommand_min() > 0) {
-      std::vector<std::string> known;
-      for (const CLI::App* each : commands) known.push_back(each->get_name());
-      what = fmt::format("{} is followed by one of {}", name, namesText(known));
+      what = fmt::format("{} is followed by one of {}", name, fmt::join(namesOf(commands), ", "));
     }
   }
   return fmt::format("{} (try: {} --help)", what, name);

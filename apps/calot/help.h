@@ -10,7 +10,7 @@
 namespace calot::apps {
 
 /// Sets form and examples of the program's help and of all its commands'. After all commands were added.
-void dressHelp(CLI::App& app);
+void formatHelp(CLI::App& app);
 
 /// One line about the first word of a command line that is no command or option where it stands, with the nearest one;
 /// else the parser's own message. Ends with the help to look at.

@@ -21,7 +21,7 @@ int main(int argc, char** argv) {
 #define CALOT_ADD_COMMAND(name) apps::add##name(app, run);
   CALOT_COMMAND_LIST(CALOT_ADD_COMMAND)
 #undef CALOT_ADD_COMMAND
-  apps::dressHelp(app);
+  apps::formatHelp(app);
   apps::addHelpJson(app);
   try {
     app.parse(argc, argv);

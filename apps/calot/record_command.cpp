@@ -6,6 +6,7 @@
 #include "apps/calot/command.h"
 #include "apps/calot/replay_report.h"
 #include "apps/calot/source_options.h"
+#include "recorder/base/text_output.h"
 #include "recorder/branch.h"
 #include "recorder/formats/scene_file.h"
 #include "recorder/live/worker_pool.h"
@@ -111,7 +112,7 @@ struct RecordOptions {
 void record(const RecordOptions& o) {
   if (!std::isfinite(o.seconds)) throw Error(ErrorKind::invalid, "--seconds: a number is wanted");
   stopOnSignals();
-  refuseExisting(o.output, o.force);
+  recorder::refuseOutput(o.output, o.force);
   std::optional<recorder::StationKey> key = stationKeyOf(o.stationKey);
   recorder::LoadedScene scene = recorder::loadScene(recorder::findScene(o.scene, assetFolders()));
   for (const std::string& warning : scene.warnings) fmt::print(stderr, "calot: warning: {}\n", warning);
@@ -152,7 +153,7 @@ void record(const RecordOptions& o) {
   writer.finish();
   prepared->save();
   Progress::erase();
-  if (!o.json) tellDevice(*source);
+  if (!o.json) printDevice(*source);
   reportRun({header.attempt, o.output, stepSeconds, report, source->statusText(), run.paced || o.live, o.live}, o.json);
 }
 
@@ -233,7 +234,7 @@ void branch(const BranchOptions& o) {
   Progress::erase();
   if (!o.json) {
     fmt::print("{}: branch of {} after its step {}\n", o.output, header.parent, forkStep);
-    tellDevice(*source);
+    printDevice(*source);
   }
   reportRun({header.attempt, o.output, model.stepSeconds(), report, source->statusText(), run.paced || o.live, o.live},
             o.json);

@@ -3,6 +3,7 @@
 #include "analytics/cohort/withdraw.h"
 #include "apps/calot/command.h"
 #include "gui/film/film.h"
+#include "recorder/base/text_output.h"
 #include "recorder/recording/probe.h"
 #include "recorder/recording/reader.h"
 
@@ -38,7 +39,7 @@ void render(const RenderOptions& o) {
     throw Error(ErrorKind::invalid,
                 fmt::format("{}: pictures are written as .png, films as .mp4 or .mkv", output.string()));
   }
-  refuseExisting(output, o.force);
+  recorder::refuseOutput(output, o.force);
   refuseMixed(o, film);
   gui::FilmSettings settings;
   settings.size = gui::parsePictureSize(o.size);

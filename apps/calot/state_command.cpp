@@ -23,7 +23,7 @@ struct StateOptions {
 };
 
 void state(const StateOptions& o) {
-  refuseExisting(o.output, o.force);
+  recorder::refuseOutput(o.output, o.force);
   recorder::probe(o.recording);
   recorder::Recording recording(o.recording);
   if (o.step >= recording.stepCount()) {

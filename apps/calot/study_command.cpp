@@ -23,34 +23,29 @@ namespace calot::apps {
 namespace {
 
 void addCohortOptions(CLI::App& command, StudySource& options, CLI::Option& table) {
-  std::vector<CLI::Option*> added;
-  added.push_back(addCohortOption(command, options.database));
-  CLI::Option* protocol = command.add_option(
-      "--protocol", options.protocol,
-      "The study's protocol, a file or the name of one that comes with the program; it makes the choices");
-  added.push_back(command.add_option("--cohort-name", options.cohortName,
-                                     "Only attempts of the participants of this cohort (calot cohort name)"));
-  added.push_back(command
-                      .add_option("--group-by", options.groupBy,
-                                  "What makes the groups: the participants' group or the performers' profile")
-                      ->check(oneOf({"performer", "group"}))
-                      ->capture_default_str());
-  added.push_back(command.add_flag("--include-synthetic", options.cohort.includeSynthetic,
-                                   "Take in what performers made (watermarked)"));
-  added.push_back(
-      command.add_flag("--include-practice", options.cohort.includePractice, "Take in attempts in practice mode"));
-  added.push_back(
-      command.add_flag("--include-branches", options.cohort.includeBranches, "Take in branches of other attempts"));
-  command
-      .add_flag("--phases", options.cohort.includePhases,
-                "The checkpoints of each phase of the procedure, too (else the phases' durations, and what --family or "
-                "the protocol names)")
-      ->excludes(&table);
-  added.push_back(command.add_option("--key", options.cohort.key, "Only attempts of this comparability key"));
-  added.push_back(command.add_flag("--mix-keys", options.cohort.mixKeys,
-                                   "Compare across scenes, devices and versions, and say so"));
-  for (CLI::Option* option : added) option->excludes(&table);
-  for (CLI::Option* option : {added[2], added[3], added[4], added[5]}) option->excludes(protocol);
+  CLI::Option* cohort = addCohortOption(command, options.database);
+  command.add_option("--protocol", options.protocol,
+                     "The study's protocol, a file or the name of one that comes with the program; it makes the "
+                     "choices");
+  command.add_option("--cohort-name", options.cohortName,
+                     "Only attempts of the participants of this cohort (calot cohort name)");
+  addChoice(command, "--group-by", options.groupBy,
+            "What makes the groups: the participants' group or the performers' profile", {"performer", "group"});
+  command.add_flag("--include-synthetic", options.cohort.includeSynthetic,
+                   "Take in what performers made (watermarked)");
+  command.add_flag("--include-practice", options.cohort.includePractice, "Take in attempts in practice mode");
+  command.add_flag("--include-branches", options.cohort.includeBranches, "Take in branches of other attempts");
+  command.add_flag("--phases", options.cohort.includePhases,
+                   "The checkpoints of each phase of the procedure, too (else the phases' durations, and what --family "
+                   "or the protocol names)");
+  command.add_option("--key", options.cohort.key, "Only attempts of this comparability key");
+  command.add_flag("--mix-keys", options.cohort.mixKeys, "Compare across scenes, devices and versions, and say so");
+  cohort->excludes(&table);
+  for (const char* name : {"--cohort-name", "--group-by", "--include-synthetic", "--include-practice",
+                           "--include-branches", "--phases", "--key", "--mix-keys"})
+    command.get_option(name)->excludes(&table);
+  for (const char* name : {"--group-by", "--include-synthetic", "--include-practice", "--include-branches"})
+    command.get_option(name)->excludes(command.get_option("--protocol"));
 }
 
 void addTableOptions(CLI::App& command, StudySource& options, CLI::Option& table) {
