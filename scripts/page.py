@@ -44,6 +44,15 @@ POLICY = ("default-src 'none'; script-src 'sha256-{script}' 'wasm-unsafe-eval'; 
           "connect-src 'none'; base-uri 'none'; form-action 'none'")
 
 
+def write_shaders(file):
+    """The renderer's shaders as constants, as CMake makes them."""
+    constants = "".join(f'const char* const {shader.stem} = R"~~glsl({shader.read_text()})~~glsl";\n'
+                        for shader in sorted((ROOT / "gui/render/shaders").glob("*.glsl")))
+    text = (ROOT / "gui/render/shader_sources.cpp.in").read_text().replace("@calot_shaders@", constants)
+    if not file.exists() or file.read_text() != text:
+        file.write_text(text)
+
+
 def build_modules(work, jobs):
     """Compiles what changed, and links the modules."""
     include = work / "include"
@@ -51,9 +60,12 @@ def build_modules(work, jobs):
     flags = " ".join([*FLAGS, f"-I{ROOT}", f"-isystem {include}"])
     lines = ["rule compile", f"  command = clang++-14 {flags} -MMD -MF $out.d -c $in -o $out", "  depfile = $out.d", "  deps = gcc", "rule link",
              f"  command = clang++-14 {' '.join(LINK)} $in -o $out"]
+    shaders = work / "shader_sources.cpp"
+    write_shaders(shaders)
+    lines.append(f"build shader_sources.o: compile {shaders}")
     made = set()
     for name, patterns in MODULES.items():
-        objects = []
+        objects = ["shader_sources.o"] if name == "picture" else []
         for source in matching(ROOT, patterns):
             objects.append(str(source.relative_to(ROOT).with_suffix(".o")))
             if objects[-1] not in made:
