@@ -37,7 +37,7 @@ MODULES = {
               "sim/scene/step_result.cpp", "sim/tissue/connective/connective_kind.cpp",
               *[p for p in source_patterns(ROOT, "module") if "recorder/formats/" in p or "recorder/base/" in p]],
     "picture": ["gui/page/wasm/thrown.cpp", "gui/page/wasm/web_context.cpp", "gui/page/wasm/picture_module.cpp", "gui/render/*.cpp",
-                "- gui/render/graphics.cpp", "- gui/render/png_file.cpp",
+                "- gui/render/graphics.cpp", "- gui/render/image.cpp",
                 "- gui/render/renderer.cpp", "recorder/engine/wire_forms.cpp", "sim/instruments/*.cpp", "sim/math/*.cpp"],
 }
 POLICY = ("default-src 'none'; script-src 'sha256-{script}' 'wasm-unsafe-eval'; style-src 'sha256-{style}'; worker-src blob:; img-src data:; "

@@ -20,7 +20,7 @@
 #include "apps/calot/environment.h"
 #include "apps/calot/source_options.h"
 #include "gui/film/lettering.h"
-#include "gui/render/png_file.h"
+#include "gui/render/image.h"
 #include "recorder/base/errors.h"
 #include "recorder/base/text_output.h"
 #include "recorder/sources/devices/calibration_fit.h"

@@ -15,7 +15,7 @@
 #include "gui/film/film_source.h"
 #include "gui/film/film_writer.h"
 #include "gui/film/look_ahead.h"
-#include "gui/render/png_file.h"
+#include "gui/render/image.h"
 #include "gui/render/renderer.h"
 #include "recorder/base/errors.h"
 #include "recorder/engine_choice.h"

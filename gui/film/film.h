@@ -9,7 +9,7 @@
 #include <string>
 
 #include "gui/film/overlay.h"
-#include "gui/render/png_file.h"
+#include "gui/render/image.h"
 #include "gui/render/renderer.h"
 
 namespace calot::gui {

@@ -42,13 +42,13 @@ bool isClosed(const std::vector<Index3>& triangle) {
   return sum == 0 && !triangle.empty();
 }
 
-void SurfaceForm::update(const std::vector<Vec3>& rest, const std::vector<Index3>& triangle) {
-  const bool sameTriangles = same(triangle, triangle_);
-  if (sameTriangles && same(rest, rest_)) return;
-  if (!sameTriangles) closed_ = isClosed(triangle);
-  rest_ = rest;
-  triangle_ = triangle;
-  restNormal_ = vertexNormals(rest, triangle);
+void SurfaceForm::update(const SurfaceView& surface) {
+  const bool sameTriangles = same(triangle, surface.triangle);
+  if (sameTriangles && same(rest, surface.rest)) return;
+  if (!sameTriangles) closed = isClosed(surface.triangle);
+  rest = surface.rest;
+  triangle = surface.triangle;
+  restNormal = vertexNormals(rest, triangle);
 }
 
 namespace {
@@ -137,16 +137,16 @@ void DrawListMaker::addPart(DrawPart part, const std::vector<Index3>& triangles)
 
 void DrawListMaker::addSurface(const SurfaceView& surface, SurfaceForm& form, std::span<const OpenEnd> open,
                                double time) {
-  form.update(surface.rest, surface.triangle);
+  form.update(surface);
   const std::vector<Vec3> normal = vertexNormals(surface.position, surface.triangle);
   begin();
   for (std::size_t v = 0; v < surface.position.size(); ++v)
-    addVertex(point(surface.position[v]), direction(normal[v]), surface.rest[v], form.restNormal()[v],
+    addVertex(point(surface.position[v]), direction(normal[v]), surface.rest[v], form.restNormal[v],
               surface.charred.empty() ? 0.0F : std::clamp(surface.charred[v], 0.0F, maxCharred),
               stained(surface.face.empty() ? 0.0F : surface.face[v], surface.position[v], open, time));
   DrawPart part;
   part.appearance = appearanceOf(surface.appearance);
-  part.oneSided = form.closed();
+  part.oneSided = form.closed;
   if (surface.charred.empty() && surface.face.empty() && open.empty()) {
     addPart(part, surface.triangle);
     return;
@@ -177,16 +177,6 @@ void DrawListMaker::addMesh(const Mesh& mesh, Appearance appearance, const Pose&
   addPart(part, mesh.triangle);
 }
 
-void DrawListMaker::addSurroundings(const SceneView& view) {
-  surroundings_.update(view);
-  const Pose still{Vec3::Zero(), Quat::Identity()};
-  const Viscera& viscera = surroundings_.viscera();
-  addMesh(viscera.bowel, Appearance::bowel, still, false);
-  addMesh(viscera.omentum, Appearance::omentum, still, false);
-  addMesh(surroundings_.ligament(), Appearance::cavity, still, false);
-  addMesh(surroundings_.wall(), Appearance::cavity, still, false);
-}
-
 const DrawList& DrawListMaker::make(const SceneView& view, const Sight& sight, bool surroundings,
                                     std::span<const Puff> smoke) {
   sight_ = sight;
@@ -202,16 +192,20 @@ const DrawList& DrawListMaker::make(const SceneView& view, const Sight& sight, b
   list_.referenceDistance = referenceDistance(list_.vertex);
   for (const ClipView& clip : view.clip) addMesh(makeClip(clip), Appearance::titanium, clip.pose, true);
   for (const OpenEnd& end : open)
-    addMesh(makeDrop(end, view.time), end.bile ? Appearance::bile : Appearance::blood, {end.position, Quat::Identity()},
-            false);
+    addMesh(makeDrop(end, view.time), end.bile ? Appearance::bile : Appearance::blood, {end.position});
   for (const InstrumentView& instrument : view.instrument) {
     if (instrument.kind == InstrumentKind::none) continue;
-    for (const InstrumentPart& part : makeInstrument(instrument))
-      addMesh(part.mesh, part.appearance, instrument.pose, false);
+    for (const InstrumentPart& part : makeInstrument(instrument)) addMesh(part.mesh, part.appearance, instrument.pose);
   }
   // Scenes list large organs first, which lie behind. Drawn in reverse, hidden ones cost little.
   std::reverse(list_.part.begin(), list_.part.end());
-  if (surroundings) addSurroundings(view);
+  if (surroundings) {
+    surroundings_.update(view);
+    addMesh(surroundings_.viscera.bowel, Appearance::bowel);
+    addMesh(surroundings_.viscera.omentum, Appearance::omentum);
+    addMesh(surroundings_.ligament, Appearance::cavity);
+    addMesh(surroundings_.wall, Appearance::cavity);
+  }
   list_.sheets = makeSheetList(view);
   list_.smoke = makeSmokeList(view.camera, view.down, smoke);
   return list_;

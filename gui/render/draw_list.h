@@ -22,18 +22,13 @@ namespace calot::gui {
 [[nodiscard]] bool isClosed(const std::vector<Index3>& triangle);
 
 /// Data of a surface reused between pictures while its reference shape and triangles stay unchanged.
-class SurfaceForm {
- public:
-  /// Computes the members below unless they are up to date for this surface.
-  void update(const std::vector<Vec3>& rest, const std::vector<Index3>& triangle);
+struct SurfaceForm {
+  std::vector<Vec3> rest, restNormal;
+  std::vector<Index3> triangle;
+  bool closed = false;
 
-  [[nodiscard]] const std::vector<Vec3>& restNormal() const { return restNormal_; }
-  [[nodiscard]] bool closed() const { return closed_; }
-
- private:
-  std::vector<Vec3> rest_, restNormal_;
-  std::vector<Index3> triangle_;
-  bool closed_ = false;
+  /// Computes the members unless they are up to date for this surface.
+  void update(const SurfaceView& surface);
 };
 
 /// Appearances known to the shader. Their numbers are in shader_material.cpp.
@@ -101,8 +96,7 @@ class DrawListMaker {
 
  private:
   void addSurface(const SurfaceView& surface, SurfaceForm& form, std::span<const OpenEnd> open, double time);
-  void addMesh(const Mesh& mesh, Appearance appearance, const Pose& pose, bool lengthwise);
-  void addSurroundings(const SceneView& view);
+  void addMesh(const Mesh& mesh, Appearance appearance, const Pose& pose = {}, bool lengthwise = false);
 
   void begin() { base_ = static_cast<std::uint32_t>(list_.vertex.size()); }
   [[nodiscard]] Vec3 point(const Vec3& p_W) const { return toCamera_ * (p_W - origin_); }

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#define GL_GLEXT_PROTOTYPES  // for the functions' types
+#include <GL/gl.h>
+#include <GL/glext.h>
+
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -8,9 +12,39 @@
 #include <string>
 #include <vector>
 
-#include "gui/render/gl_functions.h"
+#include "gui/render/graphics.h"
+
+/// The OpenGL 4.5 functions that the renderer uses.
+#define CALOT_GL_FUNCTIONS(ENTRY)                                                                                      \
+  ENTRY(ActiveTexture)                                                                                                 \
+  ENTRY(AttachShader)                                                                                                  \
+  ENTRY(BindBuffer) ENTRY(BindFramebuffer) ENTRY(BindTexture) ENTRY(BindVertexArray) ENTRY(BlendFunc)                  \
+      ENTRY(BufferData) ENTRY(CheckFramebufferStatus) ENTRY(Clear) ENTRY(ClearColor) ENTRY(ColorMask)                  \
+          ENTRY(CompileShader) ENTRY(CreateProgram) ENTRY(CreateShader) ENTRY(CullFace) ENTRY(DeleteBuffers)           \
+              ENTRY(DeleteFramebuffers) ENTRY(DeleteProgram) ENTRY(DeleteShader) ENTRY(DeleteTextures)                 \
+                  ENTRY(DeleteVertexArrays) ENTRY(DepthFunc) ENTRY(DepthMask) ENTRY(Disable) ENTRY(DrawArrays)         \
+                      ENTRY(DrawBuffers) ENTRY(DrawElements) ENTRY(Enable) ENTRY(EnableVertexAttribArray)              \
+                          ENTRY(FramebufferTexture2D) ENTRY(FrontFace) ENTRY(GenBuffers) ENTRY(GenFramebuffers)        \
+                              ENTRY(GenTextures) ENTRY(GenVertexArrays) ENTRY(GenerateMipmap) ENTRY(GetError)          \
+                                  ENTRY(GetProgramInfoLog) ENTRY(GetProgramiv) ENTRY(GetShaderInfoLog)                 \
+                                      ENTRY(GetShaderiv) ENTRY(GetString) ENTRY(GetUniformLocation) ENTRY(LinkProgram) \
+                                          ENTRY(PixelStorei) ENTRY(ReadPixels) ENTRY(Scissor) ENTRY(ShaderSource)      \
+                                              ENTRY(TexImage2D) ENTRY(TexImage3D) ENTRY(TexParameteri)                 \
+                                                  ENTRY(TexStorage2D) ENTRY(Uniform1f) ENTRY(Uniform1i)                \
+                                                      ENTRY(Uniform2f) ENTRY(Uniform3f) ENTRY(UniformMatrix4fv)        \
+                                                          ENTRY(UseProgram) ENTRY(VertexAttribPointer) ENTRY(Viewport)
 
 namespace calot::gui {
+
+/// They are loaded through the context: no loader library works with every off-screen context.
+struct GlFunctions {
+#define CALOT_GL_MEMBER(Name) decltype(&gl##Name) Name = nullptr;
+  CALOT_GL_FUNCTIONS(CALOT_GL_MEMBER)
+#undef CALOT_GL_MEMBER
+
+  /// @pre the context is current. @throws calot::Error (failure) naming the first function that is missing.
+  explicit GlFunctions(const GraphicsContext& context);
+};
 
 /// A framebuffer with colour textures and an optional depth texture; all sampled with clamping to the edge.
 class RenderTarget {

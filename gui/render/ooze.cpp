@@ -25,14 +25,6 @@ constexpr double fresh = 0.22;                      // share of the stain that c
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-/// The triangles around a middle.
-struct Fan {
-  Vec3 area = Vec3::Zero();  // twice that
-  void add(const std::vector<Vec3>& p, const Index3& t) {
-    area += (p[at(t[1])] - p[at(t[0])]).cross(p[at(t[2])] - p[at(t[0])]);
-  }
-};
-
 /// Pointed above, round below.
 Mesh drop(double radius) {
   constexpr int rings = 10, around = 14;
@@ -56,15 +48,17 @@ std::vector<OpenEnd> openEnds(const SceneView& view) {
         if (surface.face[at(t[a])] >= 2.0F) return t[a];
       return -1;
     };
-    std::map<int, Fan> fans;  // by the vertex in the middle
+    std::map<int, Vec3> areas;  // twice that of the triangles around a vertex in the middle
     if (!surface.face.empty())
       for (const Index3& t : surface.triangle)
-        if (const int middle = middleOf(t); middle >= 0) fans[middle].add(surface.position, t);
-    for (const auto& [middle, fan] : fans) {
-      if (!(fan.area.norm() > 0.0)) continue;
-      const double radius = std::sqrt(0.5 * fan.area.norm() / std::numbers::pi);
-      ends.push_back(
-          {surface.position[at(middle)], fan.area.normalized(), radius, view.down, carriesBile(surface.role)});
+        if (const int middle = middleOf(t); middle >= 0) {
+          const auto p = [&](int corner) { return surface.position[at(t[corner])]; };
+          areas.try_emplace(middle, Vec3::Zero()).first->second += (p(1) - p(0)).cross(p(2) - p(0));
+        }
+    for (const auto& [middle, area] : areas) {
+      if (!(area.norm() > 0.0)) continue;
+      const double radius = std::sqrt(0.5 * area.norm() / std::numbers::pi);
+      ends.push_back({surface.position[at(middle)], area.normalized(), radius, view.down, carriesBile(surface.role)});
     }
   }
   return ends;
@@ -76,9 +70,7 @@ Mesh makeDrop(const OpenEnd& end, double time) {
   const double share = std::min(1.0, age / hanging);
   const double radius = end.radius * (smallest + (largest - smallest) * share);
   const double fallen = age > hanging ? 0.5 * gravity * (age - hanging) * (age - hanging) : 0.0;
-  Mesh mesh = drop(radius);
-  return moved(std::move(mesh), upright(end.down),
-               0.35 * end.radius * end.outwards + (0.7 * radius + fallen) * end.down);
+  return moved(drop(radius), upright(end.down), 0.35 * end.radius * end.outwards + (0.7 * radius + fallen) * end.down);
 }
 
 double stainAt(const OpenEnd& end, const Vec3& p_W, double time) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// OpenGL as the renderer calls it (gui/render/gl_functions.h), over WebGL 2: numbers stand for its objects.
+// OpenGL as the renderer calls it (gui/render/gl_objects.h), over WebGL 2: numbers stand for its objects.
 
 const precision = ['float', 'int', 'sampler2D', 'sampler3D', 'sampler2DShadow'].map((type) => `precision highp ${type};\n`).join('');
 
