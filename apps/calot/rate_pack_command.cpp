@@ -25,6 +25,7 @@
 #include "apps/calot/rate_files.h"
 #include "apps/common/exit_code.h"
 #include "gui/film/film.h"
+#include "gui/film/film_writer.h"
 #include "recorder/base/errors.h"
 #include "recorder/base/text_words.h"
 #include "recorder/recording/probe.h"
