@@ -44,7 +44,7 @@ void Replay::open(const std::filesystem::path& file, const std::string& attempt)
                                      Qt::QueuedConnection);
                                });
                              }});
-  player_->setSpeed(speed_);
+  setSpeed(speed_);
 }
 
 void Replay::close() {
@@ -78,32 +78,6 @@ void Replay::take(const Back& back) {
   }
   if (!std::exchange(open_, true)) emit opened();
   emit positionChanged();
-}
-
-void Replay::seek(double time) {
-  if (player_) player_->seek(time);
-}
-void Replay::stepBy(int steps) {
-  if (player_) player_->stepBy(steps);
-}
-void Replay::play() {
-  if (player_) player_->play();
-}
-void Replay::playFrom(double time) {
-  if (player_) player_->playFrom(time);
-}
-void Replay::pause() {
-  if (player_) player_->pause();
-}
-void Replay::togglePlaying() {
-  if (open_ && position_.playing)
-    pause();
-  else
-    play();
-}
-void Replay::setSpeed(double speed) {
-  speed_ = speed;
-  if (player_) player_->setSpeed(speed);
 }
 
 namespace {

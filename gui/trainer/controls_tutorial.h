@@ -34,9 +34,10 @@ class ControlsTutorial {
     std::optional<Hand> driven;
   };
   struct Lesson {
-    const char* name;  ///< "the wheel"
-    const char* ask;   ///< one sentence
-    bool (*used)(const Begin& begin, const TrainingStatus& now, std::optional<Hand> driven);
+    const char* name;                                                                     ///< "the wheel"
+    const char* ask;                                                                      ///< one sentence
+    bool (*byHand)(const AttemptFigures::Hand& before, const AttemptFigures::Hand& now);  ///< either did it; or null:
+    bool (*used)(const Begin& begin, const TrainingStatus& now, std::optional<Hand> driven) = nullptr;
   };
   static std::vector<Lesson> lessonsFor(bool mouse);
 

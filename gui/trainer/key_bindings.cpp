@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "gui/trainer/key_bindings.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <algorithm>
 #include <array>
 #include <Qt>
+#include <string_view>
 #include <utility>
 
 #include "sim/instruments/instruments.h"
@@ -15,117 +18,67 @@ using recorder::ScopeControl;
 
 namespace {
 
+using Kind = KeyAction::Kind;
+
 // Letters that lie at one place on all keyboards of Latin letters but the French.
-constexpr std::array<std::pair<int, MouseControl>, 14> controls{{{Qt::Key_Right, MouseControl::right},
-                                                                 {Qt::Key_Left, MouseControl::left},
-                                                                 {Qt::Key_Down, MouseControl::down},
-                                                                 {Qt::Key_Up, MouseControl::up},
-                                                                 {Qt::Key_PageUp, MouseControl::in},
-                                                                 {Qt::Key_PageDown, MouseControl::out},
-                                                                 {Qt::Key_W, MouseControl::rollRight},
-                                                                 {Qt::Key_Q, MouseControl::rollLeft},
-                                                                 {Qt::Key_S, MouseControl::openJaw},
-                                                                 {Qt::Key_A, MouseControl::closeJaw},
-                                                                 {Qt::Key_D, MouseControl::cut},
-                                                                 {Qt::Key_F, MouseControl::coagulate},
-                                                                 {Qt::Key_E, MouseControl::fire},
-                                                                 {Qt::Key_Shift, MouseControl::fine}}};
+constexpr std::array<std::pair<int, KeyAction>, 31> bindings{{
+    {Qt::Key_Right, {.control = MouseControl::right}},
+    {Qt::Key_Left, {.control = MouseControl::left}},
+    {Qt::Key_Down, {.control = MouseControl::down}},
+    {Qt::Key_Up, {.control = MouseControl::up}},
+    {Qt::Key_PageUp, {.control = MouseControl::in}},
+    {Qt::Key_PageDown, {.control = MouseControl::out}},
+    {Qt::Key_W, {.control = MouseControl::rollRight}},
+    {Qt::Key_Q, {.control = MouseControl::rollLeft}},
+    {Qt::Key_S, {.control = MouseControl::openJaw}},
+    {Qt::Key_A, {.control = MouseControl::closeJaw}},
+    {Qt::Key_D, {.control = MouseControl::cut}},
+    {Qt::Key_F, {.control = MouseControl::coagulate}},
+    {Qt::Key_E, {.control = MouseControl::fire}},
+    {Qt::Key_Shift, {.control = MouseControl::fine}},
+    {Qt::Key_L, {.kind = Kind::scope, .scope = ScopeControl::right}},
+    {Qt::Key_J, {.kind = Kind::scope, .scope = ScopeControl::left}},
+    {Qt::Key_I, {.kind = Kind::scope, .scope = ScopeControl::up}},
+    {Qt::Key_K, {.kind = Kind::scope, .scope = ScopeControl::down}},
+    {Qt::Key_O, {.kind = Kind::scope, .scope = ScopeControl::in}},
+    {Qt::Key_U, {.kind = Kind::scope, .scope = ScopeControl::out}},
+    {Qt::Key_G, {.kind = Kind::scope, .scope = ScopeControl::cableRight}},
+    {Qt::Key_T, {.kind = Kind::scope, .scope = ScopeControl::cableLeft}},
+    {Qt::Key_N, {.kind = Kind::scope, .scope = ScopeControl::headRight}},
+    {Qt::Key_B, {.kind = Kind::scope, .scope = ScopeControl::headLeft}},
+    {Qt::Key_V, {.kind = Kind::scopePedal}},
+    {Qt::Key_X, {.kind = Kind::retraction, .more = true}},
+    {Qt::Key_C, {.kind = Kind::retraction}},
+    {Qt::Key_Space, {.kind = Kind::switchHand}},
+    {Qt::Key_R, {.kind = Kind::toggleLock}},
+    {Qt::Key_P, {.kind = Kind::pause}},
+    {Qt::Key_Escape, {.kind = Kind::pause}},
+}};
 
-constexpr std::array<std::pair<int, ScopeControl>, 10> scopeControls{{{Qt::Key_L, ScopeControl::right},
-                                                                      {Qt::Key_J, ScopeControl::left},
-                                                                      {Qt::Key_I, ScopeControl::up},
-                                                                      {Qt::Key_K, ScopeControl::down},
-                                                                      {Qt::Key_O, ScopeControl::in},
-                                                                      {Qt::Key_U, ScopeControl::out},
-                                                                      {Qt::Key_G, ScopeControl::cableRight},
-                                                                      {Qt::Key_T, ScopeControl::cableLeft},
-                                                                      {Qt::Key_N, ScopeControl::headRight},
-                                                                      {Qt::Key_B, ScopeControl::headLeft}}};
+/// Keys of the instruments, in the order of their list, for the hand that is driven and for the other one: digits,
+/// whose codes are their letters. A new instrument takes the next pair, so that no key ever changes its meaning.
+constexpr std::string_view drivenKeys = "12349", otherKeys = "56780";
 
-/// Keys of the instruments, in the order of their list: for the hand that is driven, and for the other one. A new
-/// instrument takes the next pair, so that no key ever changes its meaning.
-constexpr std::array<std::pair<int, int>, 5> instrumentKeys{{{Qt::Key_1, Qt::Key_5},
-                                                             {Qt::Key_2, Qt::Key_6},
-                                                             {Qt::Key_3, Qt::Key_7},
-                                                             {Qt::Key_4, Qt::Key_8},
-                                                             {Qt::Key_9, Qt::Key_0}}};
-
-/// Instrument that a key mounts, if any.
-std::optional<KeyAction> mountOf(int key) {
-  for (std::size_t i = 0; i < std::min(instruments().size(), instrumentKeys.size()); ++i) {
-    const auto& [driven, other] = instrumentKeys[i];
-    if (key != driven && key != other) continue;
-    KeyAction action;
-    action.kind = KeyAction::Kind::mount;
-    action.instrument = instruments()[i]->kind;
-    action.otherHand = key == other;
-    return action;
-  }
-  return std::nullopt;
-}
-
-/// "1 2 3 4 9", "5 6 7 8 0" and "grasper, hook, clip applier, scissors, probe". Keys are digits, whose codes are their
-/// letters.
-struct InstrumentHelp {
-  std::string driven, other, names;
-};
-InstrumentHelp instrumentHelp() {
-  InstrumentHelp out;
-  const auto append = [](std::string& list, const char* between, const std::string& item) {
-    list += (list.empty() ? std::string() : between) + item;
-  };
-  for (std::size_t i = 0; i < std::min(instruments().size(), instrumentKeys.size()); ++i) {
-    append(out.driven, " ", std::string(1, static_cast<char>(instrumentKeys[i].first)));
-    append(out.other, " ", std::string(1, static_cast<char>(instrumentKeys[i].second)));
-    append(out.names, ", ", instruments()[i]->word);
-  }
-  return out;
-}
+std::size_t keyedInstruments() { return std::min(instruments().size(), drivenKeys.size()); }
 
 }  // namespace
 
 std::optional<KeyAction> actionOf(int key) {
-  KeyAction action;
-  const auto* const control =
-      std::find_if(controls.begin(), controls.end(), [key](const auto& entry) { return entry.first == key; });
-  if (control != controls.end()) {
-    action.control = control->second;
-    return action;
-  }
-  const auto* const scope =
-      std::find_if(scopeControls.begin(), scopeControls.end(), [key](const auto& entry) { return entry.first == key; });
-  if (scope != scopeControls.end()) {
-    action.kind = KeyAction::Kind::scope;
-    action.scope = scope->second;
-    return action;
-  }
-  if (const std::optional<KeyAction> mount = mountOf(key)) return mount;
-  switch (key) {
-    case Qt::Key_V:
-      action.kind = KeyAction::Kind::scopePedal;
-      return action;
-    case Qt::Key_X:
-    case Qt::Key_C:
-      action.kind = KeyAction::Kind::retraction;
-      action.more = key == Qt::Key_X;
-      return action;
-    case Qt::Key_Space:
-      action.kind = KeyAction::Kind::switchHand;
-      return action;
-    case Qt::Key_R:
-      action.kind = KeyAction::Kind::toggleLock;
-      return action;
-    case Qt::Key_P:
-    case Qt::Key_Escape:
-      action.kind = KeyAction::Kind::pause;
-      return action;
-    default:
-      return std::nullopt;
-  }
+  const auto* const bound =
+      std::find_if(bindings.begin(), bindings.end(), [key](const auto& entry) { return entry.first == key; });
+  if (bound != bindings.end()) return bound->second;
+  for (std::size_t i = 0; i < keyedInstruments(); ++i)
+    if (key == drivenKeys[i] || key == otherKeys[i])
+      return KeyAction{.kind = Kind::mount, .instrument = instruments()[i]->kind, .otherHand = key == otherKeys[i]};
+  return std::nullopt;
 }
 
 std::vector<KeyHelp> keyHelp(bool mouse, bool scope, bool pauses) {
-  const InstrumentHelp instruments = instrumentHelp();
+  const std::size_t keyed = keyedInstruments();
+  const std::string driven = fmt::format("{}", fmt::join(drivenKeys.substr(0, keyed), " "));
+  const std::string other = fmt::format("{}", fmt::join(otherKeys.substr(0, keyed), " "));
+  std::string names;
+  for (std::size_t i = 0; i < keyed; ++i) names += std::string(i == 0 ? "" : ", ") + instruments()[i]->word;
   std::vector<KeyHelp> out;
   if (mouse) {
     out = {{"Mouse, arrows", "move the tip"},
@@ -140,10 +93,10 @@ std::vector<KeyHelp> keyHelp(bool mouse, bool scope, bool pauses) {
            {"Space", "the other hand"},
            {"Shift", "slowly"},
            {"Ctrl", "move the mouse alone"},
-           {instruments.driven, instruments.names},
-           {instruments.other, "the same for the other hand"}};
+           {driven, names},
+           {other, "the same for the other hand"}};
   } else {
-    out = {{instruments.driven, "right hand: " + instruments.names}, {instruments.other, "the same for the left hand"}};
+    out = {{driven, "right hand: " + names}, {other, "the same for the left hand"}};
   }
   out.push_back({"X, C", "assistant: retract more, less", true});
   if (scope) {

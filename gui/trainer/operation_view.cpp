@@ -104,40 +104,34 @@ void OperationView::releaseAll() {
   if (scope_) scope_->release();
 }
 
-void OperationView::press(const KeyAction& action) {
+void OperationView::act(const KeyAction& action, bool held) {
   switch (action.kind) {
     case KeyAction::Kind::control:
-      if (mouse_) mouse_->hold(action.control, true);
+      if (mouse_) mouse_->hold(action.control, held);
+      break;
+    case KeyAction::Kind::scope:
+      if (scope_) scope_->hold(action.scope, held);
+      break;
+    case KeyAction::Kind::scopePedal:
+      if (scope_) scope_->pressPedal(held);
       break;
     case KeyAction::Kind::switchHand:
-      if (!mouse_) break;
+      if (!mouse_ || !held) break;
       mouse_->switchHand();
       emit handSwitched();
       break;
     case KeyAction::Kind::toggleLock:
-      if (mouse_) mouse_->toggleLock();
+      if (mouse_ && held) mouse_->toggleLock();
       break;
     case KeyAction::Kind::mount:
-      emit mountRequested(action.instrument, action.otherHand);
+      if (held) emit mountRequested(action.instrument, action.otherHand);
       break;
     case KeyAction::Kind::retraction:
-      emit retractionRequested(action.more);
-      break;
-    case KeyAction::Kind::scope:
-      if (scope_) scope_->hold(action.scope, true);
-      break;
-    case KeyAction::Kind::scopePedal:
-      if (scope_) scope_->pressPedal(true);
+      if (held) emit retractionRequested(action.more);
       break;
     case KeyAction::Kind::pause:
       break;  // at any time
   }
-}
-
-void OperationView::release(const KeyAction& action) {
-  if (mouse_ && action.kind == KeyAction::Kind::control) mouse_->hold(action.control, false);
-  if (scope_ && action.kind == KeyAction::Kind::scope) scope_->hold(action.scope, false);
-  if (scope_ && action.kind == KeyAction::Kind::scopePedal) scope_->pressPedal(false);
 }
 
 void OperationView::keyPressEvent(QKeyEvent* event) {
@@ -148,7 +142,7 @@ void OperationView::keyPressEvent(QKeyEvent* event) {
   }
   if (event->isAutoRepeat()) return;
   if (action->kind != KeyAction::Kind::pause) {
-    if (active_) press(*action);
+    if (active_) act(*action, true);
     return;
   }
   emit pauseRequested();
@@ -161,7 +155,7 @@ void OperationView::keyReleaseEvent(QKeyEvent* event) {
   const std::optional<KeyAction> action = actionOf(event->key());
   if (event->isAutoRepeat()) return;
   if (action)
-    release(*action);
+    act(*action, false);
   else
     ScenePictureWidget::keyReleaseEvent(event);
 }

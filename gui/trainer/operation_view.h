@@ -79,8 +79,7 @@ class OperationView : public ScenePictureWidget {
   void resizeEvent(QResizeEvent* event) override;
 
  private:
-  void press(const KeyAction& action);
-  void release(const KeyAction& action);
+  void act(const KeyAction& action, bool held);
   void releaseAll();
   void holdButton(Qt::MouseButton button, bool held);
   void holdPointer(bool hold);

@@ -115,13 +115,7 @@ QString pointerText(const TrainingStatus& status, recorder::Mode mode, Pointer p
 }  // namespace
 
 QString clockText(double seconds) {
-  // Tenths that are over: a clock does not round up.
-  const auto tenths = static_cast<qlonglong>(std::floor(10.0 * std::max(seconds, 0.0) + 1e-6));
-  return QString("%1:%2%3%4")
-      .arg(tenths / 600)
-      .arg(tenths / 10 % 60, 2, 10, QChar('0'))
-      .arg(QLocale().decimalPoint())
-      .arg(tenths % 10);
+  return QString::fromStdString(timeText(seconds)).replace('.', QLocale().decimalPoint());
 }
 
 QString mistakeText(const Mistake& mistake) {
