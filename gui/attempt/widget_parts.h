@@ -6,6 +6,7 @@
 #include <QComboBox>
 #include <QLabel>
 #include <QPushButton>
+#include <QScrollArea>
 
 namespace calot::gui::parts {
 
@@ -28,6 +29,22 @@ inline void embolden(QWidget* widget) {
   QFont bold = widget->font();
   bold.setBold(true);
   widget->setFont(bold);
+}
+
+inline void enlarge(QWidget* widget, double factor) {
+  QFont large = widget->font();
+  large.setPointSizeF(factor * large.pointSizeF());
+  widget->setFont(large);
+}
+
+/// Letters may be so large that not all of a page fits: it is scrolled up and down.
+inline QScrollArea* scrolled(QWidget* page) {
+  auto* const scroll = new QScrollArea;
+  scroll->setFrameShape(QFrame::NoFrame);
+  scroll->setWidgetResizable(true);
+  scroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+  scroll->setWidget(page);
+  return scroll;
 }
 
 inline QPushButton* button(const char* text, const char* name) {

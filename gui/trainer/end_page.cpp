@@ -5,7 +5,6 @@
 #include <QLabel>
 #include <QListWidget>
 #include <QPushButton>
-#include <QScrollArea>
 #include <utility>
 
 #include "analytics/assess.h"
@@ -136,9 +135,7 @@ QWidget* EndPage::buildReplay() {
 }
 
 QWidget* EndPage::buildWords() {
-  QFont large = font();
-  large.setPointSizeF(1.5 * large.pointSizeF());
-  title_->setFont(large);
+  parts::enlarge(title_, 1.5);
   parts::embolden(verdict_);
   parts::embolden(syntheticMark_);
   syntheticMark_->setText("SYNTHETIC: made by a performer, no person's attempt");
@@ -149,12 +146,7 @@ QWidget* EndPage::buildWords() {
   for (QLabel* const label : {title_, syntheticMark_, outcome_, verdict_, norm_, previous_, figures_, storeText_})
     layout->addWidget(label);
   layout->addStretch(1);
-  auto* const scroll = new QScrollArea;
-  scroll->setFrameShape(QFrame::NoFrame);
-  scroll->setWidgetResizable(true);
-  scroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
-  scroll->setWidget(inside);
-  return scroll;
+  return parts::scrolled(inside);
 }
 
 QWidget* EndPage::buildButtons() {

@@ -39,19 +39,17 @@ OperationView::OperationView(std::shared_ptr<recorder::MouseInput> mouse, std::s
     : ScenePictureWidget(parent, drawersAtOnce, wantedRate),
       mouse_(std::move(mouse)),
       scope_(std::move(scope)),
-      over_(parts::named("over", new QLabel(this))) {
+      over_(parts::plainLabel("over", false)) {
   setObjectName("operation");
   setAccessibleName("Picture of the operation");
   setAccessibleDescription("Mouse and keyboard drive an instrument here; Escape frees the mouse, Tab leaves.");
   setFocusPolicy(Qt::StrongFocus);
   setMouseTracking(true);
-  over_->setTextFormat(Qt::PlainText);
+  over_->setParent(this);
   over_->setAlignment(Qt::AlignCenter);
   over_->setAttribute(Qt::WA_TransparentForMouseEvents);
-  QFont large = font();
-  large.setPointSizeF(6.0 * large.pointSizeF());
-  large.setBold(true);
-  over_->setFont(large);
+  parts::enlarge(over_, 6.0);
+  parts::embolden(over_);
   over_->setStyleSheet("QLabel { background: rgba(0, 0, 0, 120); color: #ffffff; }");
   over_->hide();
 }

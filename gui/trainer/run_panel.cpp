@@ -11,7 +11,6 @@
 #include <QProgressBar>
 #include <QPushButton>
 #include <QRegularExpression>
-#include <QScrollArea>
 #include <QStackedWidget>
 
 #include "gui/attempt/theme.h"
@@ -54,16 +53,6 @@ QWidget* keyPage(bool mouse, bool scope, bool pauses) {
   return page;
 }
 
-/// Letters may be so large that not all keys fit.
-QWidget* scrolled(QWidget* page) {
-  auto* const scroll = new QScrollArea;
-  scroll->setFrameShape(QFrame::NoFrame);
-  scroll->setWidgetResizable(true);
-  scroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
-  scroll->setWidget(page);
-  return scroll;
-}
-
 }  // namespace
 
 RunPanel::RunPanel(recorder::Mode mode, bool mouse, bool scope, QWidget* parent)
@@ -82,7 +71,7 @@ RunPanel::RunPanel(recorder::Mode mode, bool mouse, bool scope, QWidget* parent)
       assistant_(plainLabel("assistant")),
       progress_(parts::named("progress", new QProgressBar)),
       lower_(new QStackedWidget),
-      keys_(scrolled(keyPage(mouse, scope, mode == recorder::Mode::practice))),
+      keys_(parts::scrolled(keyPage(mouse, scope, mode == recorder::Mode::practice))),
       mistakes_(new QWidget),
       mistakesTitle_(plainLabel("mistakesTitle")),
       list_(parts::named("mistakes", new QListWidget)),
@@ -95,9 +84,7 @@ RunPanel::RunPanel(recorder::Mode mode, bool mouse, bool scope, QWidget* parent)
   setMaximumWidth(theme::inType(320));
   parts::embolden(stage_);
   parts::embolden(phase_);
-  QFont large = font();
-  large.setPointSizeF(2.0 * large.pointSizeF());
-  time_->setFont(large);
+  parts::enlarge(time_, 2.0);
   hint_->setStyleSheet(hintStyle);
   result_->setTextInteractionFlags(Qt::TextSelectableByMouse | Qt::TextSelectableByKeyboard);
   progress_->setRange(0, 100);

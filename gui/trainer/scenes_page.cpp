@@ -88,9 +88,7 @@ ScenesPage::ScenesPage(bool practice, bool demonstrates, QWidget* parent)
       tutorial_(parts::named("tutorial", new QPushButton("&Learn the controls"))),
       demonstration_(parts::named("demonstration", new QPushButton("&Watch a demonstration"))) {
   auto* const title = new QLabel("Welcome to the trainer");
-  QFont large = font();
-  large.setPointSizeF(1.6 * large.pointSizeF());
-  title->setFont(large);
+  parts::enlarge(title, 1.6);
   auto* const text = new QLabel(
       practice
           ? "Choose what to practise; the tasks become harder from the top. Every attempt is recorded; you can pause, "
