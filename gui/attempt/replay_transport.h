@@ -9,7 +9,7 @@
 #include <QObject>
 #include <QWidget>
 
-#include "gui/attempt/background.h"
+#include "gui/attempt/long_work.h"
 #include "gui/attempt/replay_player.h"
 
 namespace calot::gui {

@@ -6,6 +6,7 @@
 #include <png.h>
 #include <unistd.h>
 #include <charconv>
+#include <filesystem>
 #include <string>
 #include <system_error>
 
@@ -14,13 +15,12 @@
 
 namespace calot::gui {
 
-void writePng(const Image& image, const std::filesystem::path& file) {
-  std::filesystem::path temporary = file;
-  temporary += fmt::format(".{}.part", ::getpid());
+void writePng(const Image& image, const std::string& file) {
+  const std::string temporary = fmt::format("{}.{}.part", file, ::getpid());
   const auto fail = [&](const std::string& why) {
     std::error_code ignored;
     std::filesystem::remove(temporary, ignored);
-    throw Error(ErrorKind::failure, Where{file.string()}, fmt::format("cannot write the picture: {}", why));
+    throw Error(ErrorKind::failure, Where{file}, fmt::format("cannot write the picture: {}", why));
   };
   if (image.width <= 0 || image.height <= 0 ||
       image.rgba.size() != 4 * static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height))

@@ -13,7 +13,7 @@
 #include "gui/attempt/replay_transport.h"
 #include "gui/attempt/theme.h"
 #include "gui/attempt/widget_parts.h"
-#include "gui/trainer/trainer_texts.h"
+#include "gui/trainer/run_panel.h"
 #include "gui/view/scene_picture_widget.h"
 #include "gui/words/problem_words.h"
 #include "recorder/base/errors.h"
@@ -93,8 +93,7 @@ EndPage::EndPage(Setup setup, QWidget* parent)
   connect(moments_, &QListWidget::currentRowChanged, this, [this](int at) { back_->setEnabled(at >= 0); });
   connect(replay_.get(), &Replay::failed, this, [this](const QString& reason) { picture_->showText(reason); });
   connect(back_, &QPushButton::clicked, this, [this] {
-    if (const QListWidgetItem* const item = moments_->currentItem(); item != nullptr)
-      emit backRequested(item->data(Qt::UserRole).toDouble());
+    if (const auto time = chosenBranch(*moments_)) emit backRequested(*time);
   });
   connect(again_, &QPushButton::clicked, this, &EndPage::againRequested);
   connect(next_, &QPushButton::clicked, this, &EndPage::nextRequested);
@@ -185,27 +184,17 @@ void EndPage::showAttempt(const TrainingStatus& status, const QString& result, d
     again_->setFocus();
     return;
   }
-  showMistakes(status, stepSeconds);
+  listMistakes(*moments_, *status.figures.mistakes, stepSeconds);
+  moments_->setCurrentRow(0);
+  momentsTitle_->setText(moments_->count() > 0 ? "What went wrong: a click shows it again." : "Nothing went wrong.");
   picture_->showText("Opening the replay …");
   replay_->open(file_, attempt_);
   read();
   (moments_->count() > 0 ? static_cast<QWidget*>(moments_) : again_)->setFocus();
 }
 
-void EndPage::showMistakes(const TrainingStatus& status, double stepSeconds) {
-  moments_->clear();
-  for (const Mistake& mistake : *status.figures.mistakes) {
-    auto* const item = new QListWidgetItem(mistakeText(mistake), moments_);
-    item->setData(Qt::UserRole, mistake.branchTime(stepSeconds));
-  }
-  moments_->setVisible(moments_->count() > 0);
-  momentsTitle_->setText(moments_->count() > 0 ? "What went wrong: a click shows it again." : "Nothing went wrong.");
-  if (moments_->count() > 0) moments_->setCurrentRow(0);
-}
-
 void EndPage::replayMoment() {
-  if (const QListWidgetItem* const item = moments_->currentItem(); item != nullptr)
-    replay_->playFrom(item->data(Qt::UserRole).toDouble());
+  if (const auto time = chosenBranch(*moments_)) replay_->playFrom(*time);
 }
 
 void EndPage::read() {

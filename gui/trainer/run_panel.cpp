@@ -55,6 +55,20 @@ QWidget* keyPage(bool mouse, bool scope, bool pauses) {
 
 }  // namespace
 
+void listMistakes(QListWidget& list, const std::vector<Mistake>& mistakes, double stepSeconds) {
+  list.clear();
+  for (const Mistake& mistake : mistakes) {
+    auto* const item = new QListWidgetItem(mistakeText(mistake), &list);
+    item->setData(Qt::UserRole, mistake.branchTime(stepSeconds));
+  }
+  list.setVisible(!mistakes.empty());
+}
+
+std::optional<double> chosenBranch(const QListWidget& list) {
+  const QListWidgetItem* const item = list.currentItem();
+  return item == nullptr ? std::nullopt : std::optional(item->data(Qt::UserRole).toDouble());
+}
+
 RunPanel::RunPanel(recorder::Mode mode, bool mouse, bool scope, QWidget* parent)
     : QWidget(parent),
       mode_(mode),
@@ -185,20 +199,14 @@ void RunPanel::showMistakes(const TrainingStatus& status, double stepSeconds) {
                                                           : "Nothing went wrong.");
   if (listed_ == status.figures.mistakes) return;
   listed_ = status.figures.mistakes;
-  list_->clear();
-  for (const Mistake& mistake : *listed_) {
-    auto* const item = new QListWidgetItem(mistakeText(mistake), list_);
-    item->setData(Qt::UserRole, mistake.branchTime(stepSeconds));
-  }
-  list_->setVisible(!none);
+  listMistakes(*list_, *listed_, stepSeconds);
   back_->setVisible(!none);
   // The last one is the one to be undone, mostly.
   list_->setCurrentRow(list_->count() - 1);
 }
 
 void RunPanel::goBack() {
-  if (const QListWidgetItem* const item = list_->currentItem(); item != nullptr)
-    emit backRequested(item->data(Qt::UserRole).toDouble());
+  if (const auto time = chosenBranch(*list_)) emit backRequested(*time);
 }
 
 }  // namespace calot::gui
