@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "apps/calot-organs/organ_shapes.h"
-#include "apps/calot-organs/vessel_paths.h"
 #include "apps/common/help_json.h"
 #include "apps/common/program.h"
 #include "recorder/base/errors.h"

@@ -79,11 +79,7 @@ void LongWork::Control::progress(double share, const QString& what) {
     percent_ = percent;
     what_ = what;
   }
-  back_->pass([&](LongWork& work) {
-    QMetaObject::invokeMethod(
-        &work, [back = back_, share, what] { back->pass([&](LongWork& w) { w.take(share, what); }); },
-        Qt::QueuedConnection);
-  });
+  Link<LongWork>::post(back_, [share, what](LongWork& work) { work.take(share, what); });
 }
 
 LongWork::~LongWork() { end(); }
@@ -113,19 +109,12 @@ void LongWork::start(Work work) {
     } catch (const std::exception& error) {
       text = QString::fromStdString(problemText(error));
     }
-    const auto back = control->back_;
-    back->pass([&](LongWork& object) {
-      QMetaObject::invokeMethod(
-          &object,
-          [back, &object, good, text] {
-            if (!back->stands()) return;
-            object.end();
-            if (good)
-              emit object.done(text);
-            else
-              emit object.failed(text);
-          },
-          Qt::QueuedConnection);
+    Link<LongWork>::post(control->back_, [good, text](LongWork& object) {
+      object.end();
+      if (good)
+        emit object.done(text);
+      else
+        emit object.failed(text);
     });
   });
 }

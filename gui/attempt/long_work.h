@@ -59,6 +59,18 @@ class Link {
   }
   /// True while the link stands. Object's thread only.
   [[nodiscard]] bool stands() const { return object_ != nullptr; }
+  /// Has the object's thread call with the object, unless the link is cut by then.
+  template <class Call>
+  static void post(const std::shared_ptr<Link>& link, Call call) {
+    link->pass([&](Object& object) {
+      QMetaObject::invokeMethod(
+          &object,
+          [link, call = std::move(call)]() mutable {
+            if (link->stands()) call(*link->object_);
+          },
+          Qt::QueuedConnection);
+    });
+  }
 
  private:
   std::mutex mutex_;

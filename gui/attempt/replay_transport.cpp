@@ -33,15 +33,9 @@ void Replay::open(const std::filesystem::path& file, const std::string& attempt)
                                back->pass([&](Replay& replay) { replay.hear(back, std::move(view), position); });
                              },
                              [back](const std::string& fault) {
-                               back->pass([&](Replay& replay) {
-                                 QMetaObject::invokeMethod(
-                                     &replay,
-                                     [&replay, back, text = QString::fromStdString(fault)] {
-                                       if (!back->stands()) return;
-                                       replay.open_ = false;
-                                       emit replay.failed(text);
-                                     },
-                                     Qt::QueuedConnection);
+                               Link<Replay>::post(back, [text = QString::fromStdString(fault)](Replay& replay) {
+                                 replay.open_ = false;
+                                 emit replay.failed(text);
                                });
                              }});
   setSpeed(speed_);

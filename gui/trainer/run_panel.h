@@ -7,7 +7,7 @@
 #include <QWidget>
 #include <vector>
 
-#include "gui/trainer/key_bindings.h"
+#include "gui/trainer/operation_view.h"
 #include "gui/trainer/trainer_texts.h"
 
 class QLabel;

@@ -25,29 +25,6 @@ constexpr std::chrono::milliseconds longSilence(500);
 
 }  // namespace
 
-/// A run that commands can reach.
-class TrainingSession::Registered {
- public:
-  Registered(TrainingSession& session, recorder::ControlledSource& controlled, AttemptMonitor& monitor)
-      : session_(session) {
-    const std::lock_guard lock(session_.mutex_);
-    if (session_.command_) controlled.finish(Outcome::stopped);  // it came while the run was made ready
-    session_.controlled_ = &controlled;
-    session_.monitor_ = &monitor;
-  }
-  ~Registered() {
-    const std::lock_guard lock(session_.mutex_);
-    session_.status_.figures = session_.monitor_->figures();
-    session_.controlled_ = nullptr;
-    session_.monitor_ = nullptr;
-  }
-  Registered(const Registered&) = delete;
-  Registered& operator=(const Registered&) = delete;
-
- private:
-  TrainingSession& session_;
-};
-
 TrainingSession::TrainingSession(TrainingSettings settings, std::shared_ptr<AttemptInput> input, ViewTap::Sink sink)
     : settings_(std::move(settings)), input_(std::move(input)), tap_(std::move(sink)), thread_([this] { work(); }) {}
 
@@ -264,10 +241,19 @@ void TrainingSession::run(recorder::Session& session, recorder::SampleSource& so
   };
   input_->drive(source, run);
   recorder::RunReport report;
+  const auto release = [](TrainingSession* trained) {
+    const std::lock_guard lock(trained->mutex_);
+    trained->status_.figures = trained->monitor_->figures();
+    trained->controlled_ = nullptr;
+    trained->monitor_ = nullptr;
+  };
   {
-    const Registered registered(*this, controlled, monitor);
+    const std::unique_ptr<TrainingSession, decltype(release)> reachable(this, release);  // by commands
     {
       const std::lock_guard lock(mutex_);
+      if (command_) controlled.finish(Outcome::stopped);  // it came while the run was made ready
+      controlled_ = &controlled;
+      monitor_ = &monitor;
       status_.stage = Stage::running;
       status_.file = file;
       status_.attempt = header.attempt;

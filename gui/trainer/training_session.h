@@ -110,7 +110,6 @@ class TrainingSession {
     std::optional<double> back;  ///< go back to this time; none: a new attempt
   };
   struct Interrupted {};  ///< thrown where another command came before a run began
-  class Registered;
 
   void post(Command command, recorder::Outcome ending);
   void work();
