@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Liver and gallbladder of an adult in supine position, in W (docs" "/organs.md): origin in the middle of the
-// gallbladder bed, +x to the patient's right, +y anterior, +z cranial (right-handed); metres. Sizes and their sources
-// stand in docs/organs.md.
-// Implicit shapes: functions of a point, negative inside, roughly a distance near zero. Only + - * / and sqrt, so that
-// the organs' files come out the same on every machine. Smooth unions after Quilez, "Smooth minimum" (2013).
-// The fat over Calot's triangle, in W (docs" "/organs.md): a lobulated pad around cystic duct and cystic artery,
-// between the gallbladder's neck, the hepatic duct and the underside of the liver.
-// Ducts and arteries around Calot's triangle, in W: the points that their centre lines pass. Scenes hold them as
-// `path` (a test compares), and the fat is shaped around them. Sizes and their sources stand in
-// docs/explanation/organs.md.
+// The organs of assets/organs and the vessels around Calot's triangle, in W: origin in the middle of the gallbladder
+// bed of an adult in supine position, +x to the patient's right, +y anterior, +z cranial (right-handed); metres. Sizes
+// and their sources stand in docs/explanation/organs.md.
+//
+// Organs are implicit shapes: functions of a point, negative inside, roughly a distance near zero. Only + - * / and
+// sqrt, so that their files come out the same on every machine. Smooth unions after Quilez, "Smooth minimum" (2013).
 #pragma once
 
 #include <algorithm>
@@ -210,7 +206,7 @@ inline TriangleMesh polygonize(const Implicit& f, const Box& box, double cell) {
   }
   for (Vec3& p : mesh.vertex) {
     p = projected(f, projected(f, p));
-    for (int k = 0; k < 3; ++k) p[k] = std::round(p[k] * 1e6) / 1e6 + 0.0;
+    p = toMicrometre(p);
   }
   return mesh;
 }
