@@ -18,16 +18,8 @@
 
 namespace calot::gui {
 
-Background::Background(QObject* parent) : QObject(parent), thread_([this] { loop(); }) {}
-
-Background::~Background() {
-  {
-    const std::lock_guard lock(mutex_);
-    stop_ = true;
-  }
-  wake_.notify_one();
-  thread_.join();
-}
+Background::Background(QObject* parent)
+    : QObject(parent), thread_([this](const std::stop_token& stop) { loop(stop); }) {}
 
 void Background::run(Job job) {
   {
@@ -44,15 +36,15 @@ void Background::forget() {
   ++newest_;
 }
 
-void Background::loop() {
+void Background::loop(const std::stop_token& stop) {
   stepBack(behindInterface);
   for (;;) {
     Job job;
     quint64 mine = 0;
     {
       std::unique_lock lock(mutex_);
-      wake_.wait(lock, [this] { return stop_ || next_; });
-      if (stop_) return;
+      wake_.wait(lock, stop, [this] { return static_cast<bool>(next_); });
+      if (stop.stop_requested()) return;
       job = std::exchange(next_, {});
       mine = newest_;
     }

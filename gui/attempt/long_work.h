@@ -25,20 +25,19 @@ class Background : public QObject {
 
   explicit Background(QObject* parent = nullptr);
   /// Waits for the job that is being done; its answer is dropped.
-  ~Background() override;
+  ~Background() override = default;
   void run(Job job);
   /// Drops the job that waits and the answer of the one that is being done.
   void forget();
 
  private:
-  void loop();
+  void loop(const std::stop_token& stop);
 
   std::mutex mutex_;
-  std::condition_variable wake_;
+  std::condition_variable_any wake_;
   Job next_;
-  quint64 newest_ = 0;  ///< number of the newest job; changed on the object's thread
-  bool stop_ = false;
-  std::thread thread_;  // last: it uses what is above
+  quint64 newest_ = 0;   ///< number of the newest job; changed on the object's thread
+  std::jthread thread_;  // last: it uses what is above
 };
 
 /// The way back from another thread to an object of the interface that may be gone by then, or no longer interested.

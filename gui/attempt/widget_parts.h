@@ -2,6 +2,7 @@
 // Building blocks of pages, panels and dialogs.
 #pragma once
 
+#include <initializer_list>
 #include <QBoxLayout>
 #include <QComboBox>
 #include <QLabel>
@@ -77,6 +78,11 @@ Layout* bare(QWidget* parent = nullptr) {
   auto* const made = new Layout(parent);
   made->setContentsMargins(0, 0, 0, 0);
   return made;
+}
+
+/// Puts widgets into a row or column.
+inline void fill(QBoxLayout& layout, std::initializer_list<QWidget*> widgets) {
+  for (QWidget* const widget : widgets) layout.addWidget(widget);
 }
 
 /// Hides a label that has nothing to say.

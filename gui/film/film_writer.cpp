@@ -67,6 +67,9 @@ struct FilmWriter::Impl {
   std::int64_t next = 0;
   bool finished = false;
 
+  ~Impl() {
+    if (!finished) removeQuietly(temporary);
+  }
   [[noreturn]] void fail(const std::string& why) const {
     throw Error(ErrorKind::failure, Where{file.string()}, fmt::format("cannot write the film: {}", why));
   }
@@ -167,17 +170,10 @@ FilmWriter::FilmWriter(const std::filesystem::path& file, int width, int height,
   impl_->temporary += fmt::format(".{}.part", ::getpid());
   impl_->width = width;
   impl_->height = height;
-  try {
-    impl_->open(fps);
-  } catch (...) {
-    removeQuietly(impl_->temporary);
-    throw;
-  }
+  impl_->open(fps);
 }
 
-FilmWriter::~FilmWriter() {
-  if (!impl_->finished) removeQuietly(impl_->temporary);
-}
+FilmWriter::~FilmWriter() = default;
 
 void FilmWriter::add(const Image& image) {
   assert(image.width == impl_->width && image.height == impl_->height && !impl_->finished);

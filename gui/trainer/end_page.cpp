@@ -127,8 +127,7 @@ QWidget* EndPage::buildReplay() {
   auto* const made = new QWidget;
   auto* const layout = parts::bare<QVBoxLayout>(made);
   layout->addWidget(picture_, 3);
-  layout->addWidget(new TransportBar(*replay_));
-  layout->addWidget(momentsTitle_);
+  parts::fill(*layout, {new TransportBar(*replay_), momentsTitle_});
   layout->addWidget(moments_, 1);
   return made;
 }
@@ -142,8 +141,7 @@ QWidget* EndPage::buildWords() {
   figures_->setAccessibleName("Figures that count");
   auto* const inside = new QWidget;
   auto* const layout = new QVBoxLayout(inside);
-  for (QLabel* const label : {title_, syntheticMark_, outcome_, verdict_, norm_, previous_, figures_, storeText_})
-    layout->addWidget(label);
+  parts::fill(*layout, {title_, syntheticMark_, outcome_, verdict_, norm_, previous_, figures_, storeText_});
   layout->addStretch(1);
   return parts::scrolled(inside);
 }
@@ -155,7 +153,7 @@ QWidget* EndPage::buildButtons() {
   auto* const row = parts::bare<QHBoxLayout>(made);
   row->addWidget(store_);
   row->addStretch(1);
-  for (QPushButton* const button : {back_, again_, next_, scenes_}) row->addWidget(button);
+  parts::fill(*row, {back_, again_, next_, scenes_});
   return made;
 }
 

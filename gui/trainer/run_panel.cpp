@@ -125,18 +125,11 @@ RunPanel::RunPanel(recorder::Mode mode, bool mouse, bool scope, QWidget* parent)
 
   auto* const layout = new QVBoxLayout(this);
   layout->addLayout(head);
-  layout->addWidget(progress_);
-  layout->addWidget(time_);
-  layout->addWidget(deadlines_);
+  parts::fill(*layout, {progress_, time_, deadlines_});
   layout->addSpacing(6);
-  layout->addWidget(phase_);
-  layout->addWidget(score_);
-  layout->addWidget(hint_);
-  layout->addWidget(pointer_);
-  layout->addWidget(result_);
+  parts::fill(*layout, {phase_, score_, hint_, pointer_, result_});
   layout->addSpacing(6);
-  for (QLabel* const hand : hand_) layout->addWidget(hand);
-  layout->addWidget(assistant_);
+  parts::fill(*layout, {hand_[0], hand_[1], assistant_});
   layout->addSpacing(10);
   layout->addWidget(lower_, 1);
   layout->addLayout(buttons);

@@ -213,13 +213,11 @@ ScenesPage::ScenesPage(bool practice, bool demonstrates, QWidget* parent)
   auto* const buttons = new QHBoxLayout;
   buttons->addWidget(tutorial_);
   buttons->addStretch(1);
-  buttons->addWidget(demonstration_);
-  buttons->addWidget(begin_);
+  parts::fill(*buttons, {demonstration_, begin_});
   auto* const column = new QWidget;
   column->setMaximumWidth(1300);
   auto* const inner = new QVBoxLayout(column);
-  inner->addWidget(title);
-  inner->addWidget(text);
+  parts::fill(*inner, {title, text});
   inner->addSpacing(6);
   inner->addLayout(middle, 1);
   inner->addLayout(buttons);
