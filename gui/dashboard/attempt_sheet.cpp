@@ -47,7 +47,7 @@ class MomentCatcher {
       view_.reset();
       wanted_ = time;
     }
-    player_.seek(time);
+    player_.ask({.time = time});
     std::unique_lock lock(mutex_);
     while (!view_) {
       wake_.wait_for(lock, std::chrono::milliseconds(50));

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "analytics/cohort/cohort_database.h"
-#include "gui/attempt/background.h"
+#include "gui/attempt/long_work.h"
 
 namespace calot::analytics {
 class CohortDatabase;

@@ -6,7 +6,7 @@
 #include <QMainWindow>
 #include <vector>
 
-#include "gui/attempt/background.h"
+#include "gui/attempt/long_work.h"
 #include "gui/dashboard/cohort_document.h"
 #include "gui/dashboard/cohort_writer.h"
 #include "gui/dashboard/import_queue.h"

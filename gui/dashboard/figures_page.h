@@ -5,7 +5,7 @@
 #include <QWidget>
 #include <vector>
 
-#include "gui/attempt/background.h"
+#include "gui/attempt/long_work.h"
 #include "gui/dashboard/cohort_document.h"
 #include "gui/dashboard/comparison.h"
 

@@ -10,7 +10,7 @@
 
 #include "analytics/assessment/moments.h"
 #include "gui/attempt/attempt_recording.h"
-#include "gui/attempt/background.h"
+#include "gui/attempt/long_work.h"
 
 namespace calot::gui {
 

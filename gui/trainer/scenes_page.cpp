@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "gui/trainer/scenes_page.h"
 
 #include <algorithm>
@@ -8,6 +9,7 @@
 #include <QListWidget>
 #include <QPixmap>
 #include <QPushButton>
+#include <set>
 #include <system_error>
 #include <utility>
 
@@ -15,8 +17,100 @@
 #include "gui/attempt/figure_text.h"
 #include "gui/attempt/widget_parts.h"
 #include "gui/trainer/trainer_texts.h"
+#include "gui/words/problem_words.h"
+#include "recorder/base/errors.h"
+#include "recorder/base/file_bytes.h"
+#include "recorder/formats/scene_file.h"
 
 namespace calot::gui {
+namespace {
+
+using recorder::JsonObject;
+using recorder::JsonPlace;
+using recorder::ObjectRule;
+
+constexpr std::size_t maxCourseBytes = 1U << 16U;
+constexpr std::size_t maxTasks = 50, maxName = 60, maxTitle = 80, maxGoal = 300;
+
+/// The first of these files that is there, or empty.
+std::filesystem::path firstUnder(const std::vector<std::filesystem::path>& roots, const std::filesystem::path& name) {
+  std::error_code ignored;
+  for (const std::filesystem::path& root : roots) {
+    if (std::filesystem::is_regular_file(root / name, ignored)) return root / name;
+  }
+  return {};
+}
+
+}  // namespace
+
+const std::vector<ObjectRule>& courseRules() {
+  static const std::vector<ObjectRule> rules{
+      {"", {{"format"}, {"formatVersion", true, 1, 1}, {"name"}, {"title"}, {"tasks"}}},
+      {"task", {{"scene"}, {"title"}, {"goal"}}}};
+  return rules;
+}
+
+Course readCourse(const std::filesystem::path& file) {
+  const std::vector<std::byte> bytes = recorder::readFileBytes(file, file.string(), maxCourseBytes);
+  const nlohmann::json json = recorder::parseStrictJson(bytes, file.string());
+  const JsonPlace top(json, file.string());
+  const JsonObject o = top.object(courseRules()[0]);
+  static_cast<void>(o.at("format").word<bool>({{"calot-course", true}}));
+  std::uint32_t version = 0;
+  o.read("formatVersion", version);
+  Course course;
+  o.read("name", course.name, maxName);
+  o.read("title", course.title, maxTitle);
+  std::set<std::string> scenes;
+  for (const JsonPlace& place : o.at("tasks").list(1, maxTasks)) {
+    const JsonObject t = place.object(courseRules()[1]);
+    CourseTask& task = course.tasks.emplace_back();
+    t.read("scene", task.scene, maxName);
+    t.read("title", task.title, maxTitle);
+    t.read("goal", task.goal, maxGoal);
+    if (!scenes.insert(task.scene).second) t.at("scene").fail("an earlier task has this scene");
+  }
+  return course;
+}
+
+Course findCourse(const std::vector<std::filesystem::path>& roots) {
+  const std::filesystem::path file = firstUnder(roots, "curricula/basic.json");
+  return file.empty() ? Course{} : readCourse(file);
+}
+
+std::filesystem::path scenePicture(const std::string& scene, const std::vector<std::filesystem::path>& roots) {
+  return firstUnder(roots, std::filesystem::path("curricula/pictures") / (scene + ".png"));
+}
+
+std::vector<SceneChoice> sceneChoices(const std::vector<std::filesystem::path>& roots,
+                                      std::vector<std::string>& faults) {
+  std::vector<SceneChoice> out;
+  for (const std::filesystem::path& file : recorder::listScenes(roots)) {
+    try {
+      const recorder::LoadedScene scene = recorder::loadScene(file);
+      out.push_back({scene.description.name, scene.summary, file});
+      out.back().picture = scenePicture(scene.description.name, roots);
+    } catch (const Error& fault) {
+      faults.emplace_back(problemText(fault));
+    }
+  }
+  Course course;
+  try {
+    course = findCourse(roots);
+  } catch (const Error& fault) {
+    faults.emplace_back(problemText(fault));
+  }
+  auto next = out.begin();
+  for (const CourseTask& task : course.tasks) {
+    const auto at = std::find_if(next, out.end(), [&](const SceneChoice& scene) { return scene.name == task.scene; });
+    if (at == out.end()) continue;
+    at->title = task.title;
+    at->goal = task.goal;
+    std::rotate(next, at, at + 1);
+    ++next;
+  }
+  return out;
+}
 
 using Access = analytics::CohortDatabase::Access;
 
@@ -82,15 +176,13 @@ ScenesPage::ScenesPage(bool practice, bool demonstrates, QWidget* parent)
     : QWidget(parent),
       list_(parts::named("scenes", new QListWidget)),
       past_(parts::named("past", new QListWidget)),
-      pastTitle_(new QLabel),
+      pastTitle_(parts::plainLabel("pastTitle")),
       pastSide_(new QWidget),
-      begin_(parts::named("begin", new QPushButton("&Begin"))),
-      tutorial_(parts::named("tutorial", new QPushButton("&Learn the controls"))),
-      demonstration_(parts::named("demonstration", new QPushButton("&Watch a demonstration"))) {
+      begin_(parts::button("&Begin", "begin")),
+      tutorial_(parts::button("&Learn the controls", "tutorial")),
+      demonstration_(parts::button("&Watch a demonstration", "demonstration")) {
   auto* const title = new QLabel("Welcome to the trainer");
-  QFont large = font();
-  large.setPointSizeF(1.6 * large.pointSizeF());
-  title->setFont(large);
+  parts::enlarge(title, 1.6);
   auto* const text = new QLabel(
       practice
           ? "Choose what to practise; the tasks become harder from the top. Every attempt is recorded; you can pause, "
@@ -104,17 +196,12 @@ ScenesPage::ScenesPage(bool practice, bool demonstrates, QWidget* parent)
   list_->setStyleSheet("QListWidget::item { padding: 6px; }");
   past_->setAccessibleName("Your attempts at this task");
   past_->setWordWrap(true);
-  pastTitle_->setTextFormat(Qt::PlainText);
-  pastTitle_->setWordWrap(true);
   pastTitle_->setAlignment(Qt::AlignTop | Qt::AlignLeft);  // also where there is no list below it
   tutorial_->setToolTip("Asks for one control after the other, on the first task's scene");
   demonstration_->setToolTip("A skilled performer does it: a program, no person; its recording is marked synthetic");
   demonstration_->setVisible(demonstrates);
   tutorial_->setVisible(practice);
-  for (QPushButton* const button : {begin_, tutorial_, demonstration_}) {
-    button->setEnabled(false);
-    button->setAutoDefault(true);  // Enter presses it
-  }
+  for (QPushButton* const button : {begin_, tutorial_, demonstration_}) button->setEnabled(false);
 
   auto* const side = parts::bare<QVBoxLayout>(pastSide_);
   side->addWidget(pastTitle_);
@@ -126,13 +213,11 @@ ScenesPage::ScenesPage(bool practice, bool demonstrates, QWidget* parent)
   auto* const buttons = new QHBoxLayout;
   buttons->addWidget(tutorial_);
   buttons->addStretch(1);
-  buttons->addWidget(demonstration_);
-  buttons->addWidget(begin_);
+  parts::fill(*buttons, {demonstration_, begin_});
   auto* const column = new QWidget;
   column->setMaximumWidth(1300);
   auto* const inner = new QVBoxLayout(column);
-  inner->addWidget(title);
-  inner->addWidget(text);
+  parts::fill(*inner, {title, text});
   inner->addSpacing(6);
   inner->addLayout(middle, 1);
   inner->addLayout(buttons);

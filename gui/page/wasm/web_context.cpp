@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#define GL_GLEXT_PROTOTYPES
 #include "gui/page/wasm/web_context.h"
 
 #include <string_view>
 
-#include "gui/render/gl_functions.h"
+#include "gui/render/gl_objects.h"
 
 extern "C" {
-#define CALOT_GL_IMPORT(Type, Name) \
+#define CALOT_GL_IMPORT(Name) \
   __attribute__((import_module("gl"), import_name(#Name))) decltype(gl##Name) gl##Name;
 CALOT_GL_FUNCTIONS(CALOT_GL_IMPORT)
 #undef CALOT_GL_IMPORT
@@ -21,7 +20,7 @@ class WebContext final : public gui::GraphicsContext {
   void makeCurrent() override {}
   [[nodiscard]] Function function(const char* name) const override {
     const std::string_view wanted = name;
-#define CALOT_GL_FIND(Type, Name) \
+#define CALOT_GL_FIND(Name) \
   if (wanted == "gl" #Name) return reinterpret_cast<Function>(&gl##Name);
     CALOT_GL_FUNCTIONS(CALOT_GL_FIND)
 #undef CALOT_GL_FIND

@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "gui/render/graphics_context.h"
+#include "gui/render/graphics.h"
 
 namespace calot::page {
 

@@ -1,33 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Areolar tissue: translucent films with fibres, wet, whitish yellow; brown and then black where the hook heats it.
-// Puffs of smoke in the endoscope's light.
-
-#include "gui/render/shader_sources.h"
-
-namespace calot::gui::glsl {
-
-const char* const sheetVertex = R"(
-layout(location = 0) in vec3 position;
-layout(location = 1) in vec3 normal;
-layout(location = 2) in vec3 along;
-layout(location = 3) in vec4 look;
-layout(location = 4) in float erosion;
-out vec3 vPosition;
-out vec3 vNormal;
-out vec3 vAlong;
-out vec4 vLook;
-out float vErosion;
-void main() {
-  vPosition = position;
-  vNormal = normal;
-  vAlong = along;
-  vLook = look;
-  vErosion = erosion;
-  gl_Position = project(position, focal);
-}
-)";
-
-const char* const sheetFragment = R"(
 in vec3 vPosition;
 in vec3 vNormal;
 in vec3 vAlong;
@@ -94,40 +66,3 @@ void main() {
   float gloss = (0.07 * silk + 0.5 * wet) * min(lit, 1.6) * occlusion * (1.0 - smoothstep(0.0, 0.6, burnt));
   show(diffuse * opacity + vec3(gloss * min(1.0, 1.6 * opacity)), opacity);
 }
-)";
-
-const char* const smokeVertex = R"(
-layout(location = 0) in vec3 position;
-layout(location = 1) in vec2 corner;
-layout(location = 2) in vec2 look;  // opacity, offset into the noise
-out vec3 vPosition;
-out vec2 vCorner;
-out vec2 vLook;
-void main() {
-  vPosition = position;
-  vCorner = corner;
-  vLook = look;
-  gl_Position = project(position, focal);
-}
-)";
-
-const char* const smokeFragment = R"(
-in vec3 vPosition;
-in vec2 vCorner;
-in vec2 vLook;
-
-void main() {
-  float away = dot(vCorner, vCorner);
-  float shape = clamp(1.0 - away, 0.0, 1.0);
-  vec3 place = vec3(1.3 * vCorner, 8.0 * vLook.y);
-  float wisps = 0.75 + 0.8 * noise(place).w + 0.4 * noise(2.3 * place + 1.9).w;
-  float opacity = vLook.x * shape * shape * clamp(wisps, 0.0, 1.4);
-  if (opacity < 0.004) discard;
-  // Near the lens it would be blinding, as it is; but not to the camera's last bit.
-  vec3 l;
-  float received = min(lightAt(vPosition, l), 1.6);
-  show(vec3(0.55, 0.55, 0.56) * (0.10 + 0.90 * received) * opacity, opacity);
-}
-)";
-
-}  // namespace calot::gui::glsl

@@ -1,61 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Wet tissue and brushed metal. The looks are functions of the rest position, so that they stick to the tissue however
-// it deforms. What changes slowly along the tissue (Broad) stands apart from the rest: film quality works it out for
-// every pixel, interactive quality for every vertex.
-#include "gui/render/shader_sources.h"
-
-namespace calot::gui::glsl {
-
-const char* const surfaceBroad = R"(
-// Slow noises of a look; what each one is stands at broadOf().
-struct Broad { vec4 a, b, c, d; };
-
-// Of a net of vessels: how its lines are bent (xyz), and where it is strong (w).
-vec4 netOf(vec3 p) { return vec4(noise(p * 1.3 + 3.1).xyz, smoothstep(-0.15, 0.40, noise(p * 0.55 + 7.7).w)); }
-
-// In the coordinates of a net, lines run farther along some axes than along others.
-vec3 wallNet(vec3 mm) { return mm * vec3(1.0, 0.6, 0.8) / 21.0; }
-vec3 ductNet(vec3 mm) { return mm / 3.0 + 2.0; }
-vec3 fatNet(vec3 mm) { return mm / 7.0 + 5.0; }
-
-Broad broadOf(vec3 rest) {
-  vec3 mm = rest * 1000.0;
-  Broad f = Broad(vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0));
-#if LOOK == 1    // liver: wide, middle
-  f.a = noise(mm / 43.0);
-  f.b = noise(mm / 13.0 + 0.4 * f.a.xyz);
-#elif LOOK == 2  // gallbladder: middle; wide and pale
-  f.a = noise(mm / 7.0);
-  f.b = vec4(noise(mm / 24.0 + 2.0).w, noise(mm / 17.0 + 9.0).w, 0.0, 0.0);
-#elif LOOK == 3  // cavity: middle, net; wide
-  vec4 wide = noise(mm / 61.0 + 1.0);
-  f.a = noise(mm / 27.0 + 0.5 * wide.xyz);
-  f.b = netOf(wallNet(mm));
-  f.c = vec4(wide.w, 0.0, 0.0, 0.0);
-#elif LOOK == 4  // duct: middle, net; wide
-  f.a = noise(mm / 3.4);
-  f.b = netOf(ductNet(mm));
-  f.c = vec4(noise(mm / 11.0 + 6.0).w, 0.0, 0.0, 0.0);
-#elif LOOK == 5  // artery: wide
-  f.a = noise(mm / 6.0 + 4.0);
-#elif LOOK == 6  // fat: bend, net; wide
-  f.a = noise(mm / 6.5 + 3.0);
-  f.b = netOf(fatNet(mm));
-  f.c = vec4(noise(mm / 15.0 + 8.0).w, 0.0, 0.0, 0.0);
-#elif LOOK == 7  // omentum: bend; wide, middle
-  f.a = noise(mm / 9.0 + 3.0);
-  f.b = vec4(noise(mm / 38.0 + 8.0).w, noise(mm / 17.0 + 1.0).w, 0.0, 0.0);
-#elif LOOK == 8  // bowel: middle; wide
-  f.a = noise(mm / 12.0 + 6.0);
-  f.b = vec4(noise(mm / 33.0 + 4.0).w, 0.0, 0.0, 0.0);
-#elif LOOK == 0  // plain tissue: middle
-  f.a = noise(mm / 9.0);
-#endif
-  return f;
-}
-)";
-
-const char* const surfaceMaterial = R"(
+// it deforms. What changes slowly along the tissue (surfaceBroad.glsl) stands apart: film quality computes it for every
+// pixel, interactive quality for every vertex.
 struct Material {
   vec3 albedo;     // linear
   vec3 scatter;    // how far light wraps around an edge, per channel
@@ -83,7 +29,7 @@ float vessels(vec3 p, vec4 net, float width) {
   return net.w * (1.0 - smoothstep(0.35 * w, w, away));
 }
 
-// Branching veins (vein_texture.h), from three sides; p in textures. Trunks run along y.
+// Branching veins (procedural_textures.h), from three sides; p in textures. Trunks run along y.
 uniform sampler2D veinMap;
 float veins(vec3 p, vec3 normal) {
   vec3 side = normal * normal;
@@ -297,6 +243,3 @@ Material materialOf(vec3 rest, vec3 restNormal, vec2 harm, Broad broad) {
   return m;
 #endif
 }
-)";
-
-}  // namespace calot::gui::glsl
