@@ -14,12 +14,10 @@
 #include "gui/attempt/replay_transport.h"
 #include "gui/attempt/summary_panel.h"
 #include "gui/attempt/widget_parts.h"
-#include "gui/dashboard/attempt_banner.h"
 #include "gui/dashboard/figure_panel.h"
 #include "gui/dashboard/page_parts.h"
 #include "gui/dashboard/settings.h"
-#include "gui/dashboard/timeline_bar.h"
-#include "gui/dashboard/trace_chart.h"
+#include "gui/dashboard/timeline.h"
 #include "gui/view/scene_picture_widget.h"
 
 namespace calot::gui {

@@ -8,7 +8,6 @@
 
 #include "gui/attempt/background.h"
 #include "gui/dashboard/cohort_document.h"
-#include "gui/dashboard/cohort_writer.h"
 #include "gui/dashboard/import_queue.h"
 
 class QAction;

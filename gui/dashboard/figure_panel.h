@@ -10,7 +10,6 @@
 #include "gui/dashboard/attempt_sheet.h"
 #include "gui/dashboard/checkpoint_table_model.h"
 #include "gui/dashboard/cohort_document.h"
-#include "gui/dashboard/tree_models.h"
 
 namespace calot::gui {
 

@@ -3,7 +3,7 @@
 
 #include <QWidget>
 
-#include "gui/dashboard/assess_program.h"
+#include "gui/dashboard/import_queue.h"
 
 class QLabel;
 class QPushButton;

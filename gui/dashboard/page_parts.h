@@ -6,6 +6,8 @@
 #include <QVariant>
 #include <QWidget>
 
+#include "analytics/cohort/cohort_database.h"
+
 class QAbstractItemModel;
 class QTableView;
 class QTreeView;
@@ -32,5 +34,34 @@ inline void focusBegin(QWidget& page) {
   auto* begin = qobject_cast<QWidget*>(page.property(beginProperty).value<QObject*>());
   (begin != nullptr ? begin : &page)->setFocus(Qt::OtherFocusReason);
 }
+
+}  // namespace calot::gui
+
+class QLabel;
+
+namespace calot::gui {
+
+/// Who and what an attempt is, its verification badge, and whether a performer made it. Stands over everything that is
+/// shown of one attempt.
+class AttemptBanner : public QWidget {
+  Q_OBJECT
+ public:
+  explicit AttemptBanner(QWidget* parent = nullptr);
+  void showAttempt(const analytics::AttemptRow& attempt);
+  /// For half a window: the mark of performers in one word.
+  void makeNarrow();
+  void showText(const QString& text);  ///< no attempt
+
+ protected:
+  void changeEvent(QEvent* event) override;
+
+ private:
+  void colourBadge();
+
+  analytics::Verdict verdict_ = analytics::Verdict::notChecked;
+  QLabel* watermark_;
+  QLabel* identity_;
+  QLabel* badge_;
+};
 
 }  // namespace calot::gui

@@ -1,14 +1,101 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Two recordings in step: which moment of one stands beside which moment of the other. Knows no window.
 #pragma once
 
 #include <array>
 #include <chrono>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <QWidget>
+#include <vector>
 
+#include "gui/attempt/attempt_recording.h"
+#include "gui/attempt/replay_transport.h"
 #include "gui/dashboard/cohort_document.h"
-#include "gui/dashboard/pair_side.h"
+#include "gui/dashboard/recording_reader.h"
+
+class QComboBox;
+
+namespace calot::gui {
+
+class AttemptBanner;
+class ScenePictureWidget;
+class TimelineBar;
+
+/// One of two recordings side by side: which attempt, its verification, its replay and its timeline.
+class PairSide : public QWidget {
+  Q_OBJECT
+ public:
+  /// @param name of the choice: "left" or "right"
+  explicit PairSide(const QString& name, QWidget* parent = nullptr);
+  ~PairSide() override;
+
+  /// Lists the document's attempts, the newest first, keeps the one that is chosen, and opens it.
+  /// @pre not null
+  void setDocument(std::shared_ptr<const CohortDocument> document);
+  /// Chooses an attempt; while this is hidden, at the next setDocument().
+  void choose(const std::string& uuid);
+  /// Where none is chosen: the n-th of the list, from 1 on.
+  void chooseAnother(int n);
+
+  [[nodiscard]] Replay& replay() const { return *replay_; }
+  [[nodiscard]] bool isOpen() const { return replay_->isOpen(); }
+  [[nodiscard]] double seconds() const { return seconds_; }  ///< length of the recording, once it is open
+  [[nodiscard]] const std::optional<AttemptTrack>& track() const { return track_; }
+  [[nodiscard]] QWidget* choiceBox() const;
+  [[nodiscard]] bool settled() const;
+
+ signals:
+  void changing();                  ///< another attempt is chosen, or none
+  void ready();                     ///< the recording is open, or its track has been read
+  void timeChosen(double seconds);  ///< on the timeline, of this recording
+
+ private:
+  void openChosen();
+  void showTrack(const AttemptTrack& track);
+
+  std::shared_ptr<const CohortDocument> document_;
+  QComboBox* choice_;
+  AttemptBanner* banner_;
+  ScenePictureWidget* picture_;
+  TimelineBar* timeline_;
+  std::filesystem::path file_;
+  std::string uuid_;    ///< that is chosen
+  std::string wanted_;  ///< to be chosen at the next setDocument()
+  std::string opened_;  ///< whose recording was opened
+  std::optional<AttemptTrack> track_;
+  double seconds_ = 0.0;
+  std::unique_ptr<Replay> replay_;
+  std::unique_ptr<RecordingReader> reader_;
+};
+
+/// A common time, 0 at the moment that both are aligned by: a recording's own time is common + offset.
+class PairAlignment {
+ public:
+  /// @param seconds lengths of both; @param offsets own times of the moment that they are aligned by
+  PairAlignment(std::array<double, 2> seconds, std::array<double, 2> offsets);
+
+  /// Common times in which at least one of them runs.
+  [[nodiscard]] double begin() const { return begin_; }
+  [[nodiscard]] double end() const { return end_; }
+  /// A recording's own time, clamped: where one has ended its last picture stands.
+  [[nodiscard]] double own(std::size_t which, double common) const;
+  [[nodiscard]] double common(std::size_t which, double own) const { return own - offsets_[which]; }
+  /// True if a recording runs at a common time, rather than waiting for its begin or standing at its end.
+  [[nodiscard]] bool runs(std::size_t which, double common) const;
+
+ private:
+  std::array<double, 2> seconds_, offsets_;
+  double begin_, end_;
+};
+
+/// Begin of the first stretch of a phase; none where it was never reached.
+std::optional<double> firstOf(const AttemptTrack& track, Phase phase);
+/// Phases that both have, in the procedure's order.
+std::vector<Phase> commonPhases(const AttemptTrack& a, const AttemptTrack& b);
+
+}  // namespace calot::gui
 
 class QComboBox;
 class QLabel;

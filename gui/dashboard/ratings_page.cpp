@@ -19,7 +19,6 @@
 #include "gui/attempt/attempt_recording.h"
 #include "gui/attempt/replay_transport.h"
 #include "gui/attempt/widget_parts.h"
-#include "gui/dashboard/attempt_banner.h"
 #include "gui/dashboard/page_parts.h"
 #include "gui/dashboard/settings.h"
 #include "gui/view/scene_picture_widget.h"

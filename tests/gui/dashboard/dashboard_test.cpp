@@ -22,7 +22,6 @@
 #include "analytics/cohort/embedded.h"
 #include "apps/calot-dashboard/assess_program.h"
 #include "gui/attempt/figure_text.h"
-#include "gui/dashboard/attempt_table_model.h"
 #include "gui/dashboard/attempts_page.h"
 #include "gui/dashboard/checkpoint_table_model.h"
 #include "recorder/base/errors.h"

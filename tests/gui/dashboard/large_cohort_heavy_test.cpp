@@ -22,12 +22,10 @@
 
 #include "apps/calot-dashboard/assess_program.h"
 #include "gui/dashboard/attempt_page.h"
-#include "gui/dashboard/attempt_table_model.h"
 #include "gui/dashboard/attempts_page.h"
 #include "gui/dashboard/dashboard_window.h"
 #include "gui/dashboard/figures_page.h"
 #include "gui/dashboard/study_page.h"
-#include "gui/dashboard/trainee_page.h"
 #include "tests/gui/dashboard/support/cohort.h"
 #include "tests/gui/dashboard/support/loop_watch.h"
 #include "tests/gui/dashboard/support/recorded.h"

@@ -30,7 +30,6 @@
 #include "analytics/cohort/assessment_database.h"
 #include "apps/calot-dashboard/assess_program.h"
 #include "gui/dashboard/attempt_page.h"
-#include "gui/dashboard/attempt_table_model.h"
 #include "gui/dashboard/attempts_page.h"
 #include "gui/dashboard/dashboard_window.h"
 #include "gui/dashboard/figure_panel.h"

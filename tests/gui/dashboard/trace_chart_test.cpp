@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "gui/dashboard/trace_chart.h"
+#include "gui/dashboard/timeline.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,6 @@
 #include <QImage>
 #include <QTest>
 
-#include "gui/dashboard/timeline_bar.h"
 #include "tests/gui/dashboard/support/recorded.h"
 
 namespace calot::gui {
