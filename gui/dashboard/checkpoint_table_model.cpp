@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "gui/dashboard/checkpoint_table_model.h"
 
 #include <algorithm>
@@ -29,12 +28,6 @@ const Entry* entryOf(const std::vector<Entry>& list, const analytics::Checkpoint
     return e.checkpoint == value.name && e.subject == value.subject;
   });
   return at == list.end() ? nullptr : &*at;
-}
-
-/// The moment that made most of it. @pre there is one
-const analytics::Moment& worstOf(const std::vector<analytics::Moment>& moments) {
-  return *std::max_element(moments.begin(), moments.end(),
-                           [](const analytics::Moment& a, const analytics::Moment& b) { return a.share < b.share; });
 }
 
 QString momentText(const analytics::Moment& moment) {
@@ -73,6 +66,11 @@ QString standingText(const FigureStanding& standing) {
 }
 
 }  // namespace
+
+const analytics::Moment& worstOf(const std::vector<analytics::Moment>& moments) {
+  return *std::max_element(moments.begin(), moments.end(),
+                           [](const analytics::Moment& a, const analytics::Moment& b) { return a.share < b.share; });
+}
 
 void CheckpointTableModel::setValues(std::vector<analytics::CheckpointValue> values,
                                      std::vector<analytics::ValueInterval> intervals) {
@@ -283,8 +281,7 @@ EventTreeModel::EventTreeModel(QObject* parent) : QStandardItemModel(parent) {
 }
 
 void EventTreeModel::setEvents(const std::vector<TrackEvent>& events) {
-  clear();
-  setHorizontalHeaderLabels({"Event", "Time"});
+  removeRows(0, rowCount());
   std::vector<std::vector<const TrackEvent*>> groups;
   for (const TrackEvent& event : events) {
     const auto at = std::find_if(groups.begin(), groups.end(),
@@ -315,8 +312,6 @@ void EventTreeModel::setEvents(const std::vector<TrackEvent>& events) {
 
 namespace {
 
-constexpr quintptr familyId = 0;  // of families; an entry's is its family's row + 1
-
 /// Families in the order of tables, external metrics behind them.
 int rankOf(const analytics::CheckpointValue& value) {
   const auto family = analytics::familyOf(value.name);
@@ -333,138 +328,106 @@ QString familyTitle(const analytics::CheckpointValue& value) {
 
 }  // namespace
 
-FamilyTreeModel::FamilyTreeModel(CheckpointTableModel& source, QObject* parent)
-    : QAbstractItemModel(parent), source_(source) {
-  connect(&source_, &QAbstractItemModel::modelAboutToBeReset, this, [this] { beginResetModel(); });
-  connect(&source_, &QAbstractItemModel::modelReset, this, [this] {
-    group();
-    endResetModel();
-  });
+/// A family with its rank, or one of its checkpoints with its row in the source.
+class FamilyTreeModel::Entry : public QStandardItem {
+ public:
+  explicit Entry(int place) : place_(place) {}
+  [[nodiscard]] int place() const { return place_; }
+  bool operator<(const QStandardItem& other) const override {
+    const int place = static_cast<const Entry&>(other).place_;
+    return parent() == nullptr ? place_ < place : static_cast<const FamilyTreeModel*>(model())->isBefore(place_, place);
+  }
+
+ private:
+  int place_;
+};
+
+FamilyTreeModel::FamilyTreeModel(const CheckpointTableModel& source, QObject* parent)
+    : QStandardItemModel(0, CheckpointTableModel::columnTotal, parent), source_(source) {
+  connect(&source_, &QAbstractItemModel::modelReset, this, &FamilyTreeModel::fill);
   connect(&source_, &QAbstractItemModel::dataChanged, this, [this](const QModelIndex& first, const QModelIndex& last) {
     for (int f = 0; f < rowCount(); ++f) {
       const QModelIndex family = index(f, 0);
-      if (rowCount(family) > 0)
-        emit dataChanged(index(0, first.column(), family), index(rowCount(family) - 1, last.column(), family));
+      emit dataChanged(index(0, first.column(), family), index(rowCount(family) - 1, last.column(), family));
     }
   });
-  group();
+  fill();
 }
 
-void FamilyTreeModel::group() {
-  families_.clear();
+void FamilyTreeModel::fill() {
+  removeRows(0, rowCount());
   leftOut_ = 0;
-  std::map<int, Family> byRank;
+  std::map<int, Entry*> families;  // by rank
   for (int row = 0; row < source_.rowCount(); ++row) {
     const analytics::CheckpointValue& value = source_.value(row);
     if (analytics::sceneLacks(value)) {
       ++leftOut_;
       continue;
     }
-    Family& family = byRank[rankOf(value)];
-    if (family.title.isEmpty()) family.title = familyTitle(value);
-    family.rows.push_back(row);
+    Entry*& family = families[rankOf(value)];
+    if (family == nullptr) {
+      family = new Entry(rankOf(value));
+      family->setColumnCount(CheckpointTableModel::columnTotal);
+      QFont bold;
+      bold.setBold(true);
+      family->setFont(bold);
+    }
+    family->appendRow(new Entry(row));
+    family->setText(QString("%1 (%2)").arg(familyTitle(value)).arg(family->rowCount()));
   }
-  for (auto& entry : byRank) families_.push_back(std::move(entry.second));
-  order();
-}
-
-void FamilyTreeModel::order() {
-  for (Family& family : families_) {
-    std::sort(family.rows.begin(), family.rows.end());
-    if (sortColumn_ < 0) continue;
-    const auto before = [this](int a, int b) {
-      const analytics::CheckpointValue &first = source_.value(a), &second = source_.value(b);
-      if (sortColumn_ == CheckpointTableModel::valueColumn) {
-        if (first.value.has_value() != second.value.has_value()) return first.value.has_value();
-        if (!first.value) return a < b;
-        const double x = displayedValue(first).number, y = displayedValue(second).number;
-        return sortOrder_ == Qt::AscendingOrder ? x < y : y < x;
-      }
-      if (sortColumn_ == CheckpointTableModel::normColumn) {
-        const auto rank = [this](int row) {
-          const FigureStanding* standing = source_.standing(row);
-          return standing != nullptr && standing->percentile ? *standing->percentile : 1000.0;
-        };
-        return sortOrder_ == Qt::AscendingOrder ? rank(a) < rank(b) : rank(b) < rank(a);
-      }
-      const QString x = source_.index(a, sortColumn_).data(Qt::DisplayRole).toString();
-      const QString y = source_.index(b, sortColumn_).data(Qt::DisplayRole).toString();
-      const int compared = x.localeAwareCompare(y);
-      return sortOrder_ == Qt::AscendingOrder ? compared < 0 : compared > 0;
-    };
-    std::stable_sort(family.rows.begin(), family.rows.end(), before);
-  }
+  for (const auto& [rank, family] : families) appendRow(family);
+  sort(sortColumn_, sortOrder_);
 }
 
 void FamilyTreeModel::sort(int column, Qt::SortOrder order) {
-  emit layoutAboutToBeChanged();
-  const QModelIndexList before = persistentIndexList();
-  std::vector<int> rows;
-  for (const QModelIndex& index : before) rows.push_back(sourceRow(index));
   sortColumn_ = column;
   sortOrder_ = order;
-  this->order();
-  QModelIndexList after;
-  for (qsizetype i = 0; i < before.size(); ++i) {
-    const int row = rows[static_cast<std::size_t>(i)];
-    after += row < 0 ? before[i] : indexOf(row, before[i].column());
+  QStandardItemModel::sort(0);  // by isBefore()
+}
+
+bool FamilyTreeModel::isBefore(int a, int b) const {
+  if (sortColumn_ < 0) return a < b;
+  const analytics::CheckpointValue &first = source_.value(a), &second = source_.value(b);
+  const auto inOrder = [this](const auto& x, const auto& y) {
+    return sortOrder_ == Qt::AscendingOrder ? x < y : y < x;
+  };
+  if (sortColumn_ == CheckpointTableModel::valueColumn) {
+    if (!first.value || !second.value) return first.value && !second.value;
+    return inOrder(displayedValue(first).number, displayedValue(second).number);
   }
-  changePersistentIndexList(before, after);
-  emit layoutChanged();
+  if (sortColumn_ == CheckpointTableModel::normColumn) {
+    const auto rank = [this](int row) {
+      const FigureStanding* standing = source_.standing(row);
+      return standing != nullptr ? standing->percentile.value_or(1000.0) : 1000.0;
+    };
+    return inOrder(rank(a), rank(b));
+  }
+  const auto text = [this](int row) { return source_.index(row, sortColumn_).data().toString(); };
+  return inOrder(text(a).localeAwareCompare(text(b)), 0);
 }
 
 int FamilyTreeModel::sourceRow(const QModelIndex& index) const {
-  if (!index.isValid() || index.internalId() == familyId) return -1;
-  return families_[static_cast<std::size_t>(index.internalId() - 1)].rows[static_cast<std::size_t>(index.row())];
+  if (!index.parent().isValid()) return -1;
+  return static_cast<const Entry*>(itemFromIndex(index.siblingAtColumn(0)))->place();
 }
 
 QModelIndex FamilyTreeModel::indexOf(int sourceRow, int column) const {
-  for (std::size_t f = 0; f < families_.size(); ++f) {
-    const std::vector<int>& rows = families_[f].rows;
-    const auto at = std::find(rows.begin(), rows.end(), sourceRow);
-    if (at != rows.end()) return createIndex(static_cast<int>(at - rows.begin()), column, quintptr{f + 1});
+  for (int f = 0; f < rowCount(); ++f) {
+    const QModelIndex family = index(f, 0);
+    for (int row = 0; row < rowCount(family); ++row) {
+      if (this->sourceRow(index(row, 0, family)) == sourceRow) return index(row, column, family);
+    }
   }
   return {};
 }
-
-QModelIndex FamilyTreeModel::index(int row, int column, const QModelIndex& parent) const {
-  if (!hasIndex(row, column, parent)) return {};
-  return createIndex(row, column, parent.isValid() ? static_cast<quintptr>(parent.row()) + 1 : familyId);
-}
-
-QModelIndex FamilyTreeModel::parent(const QModelIndex& child) const {
-  if (!child.isValid() || child.internalId() == familyId) return {};
-  return createIndex(static_cast<int>(child.internalId() - 1), 0, familyId);
-}
-
-int FamilyTreeModel::rowCount(const QModelIndex& parent) const {
-  if (!parent.isValid()) return static_cast<int>(families_.size());
-  if (parent.internalId() != familyId || parent.column() != 0) return 0;
-  return static_cast<int>(families_[static_cast<std::size_t>(parent.row())].rows.size());
-}
-
-int FamilyTreeModel::columnCount(const QModelIndex& /*parent*/) const { return CheckpointTableModel::columnTotal; }
 
 QVariant FamilyTreeModel::data(const QModelIndex& index, int role) const {
-  if (!index.isValid()) return {};
-  if (const int row = sourceRow(index); row >= 0) return source_.data(source_.index(row, index.column()), role);
-  const Family& family = families_[static_cast<std::size_t>(index.row())];
-  if (role == Qt::DisplayRole && index.column() == 0)
-    return QString("%1 (%2)").arg(family.title).arg(family.rows.size());
-  if (role == Qt::FontRole) {
-    QFont bold;
-    bold.setBold(true);
-    return bold;
-  }
-  return {};
+  const int row = sourceRow(index);
+  return row < 0 ? QStandardItemModel::data(index, role) : source_.index(row, index.column()).data(role);
 }
 
 QVariant FamilyTreeModel::headerData(int section, Qt::Orientation orientation, int role) const {
   return source_.headerData(section, orientation, role);
-}
-
-Qt::ItemFlags FamilyTreeModel::flags(const QModelIndex& index) const {
-  return index.isValid() ? Qt::ItemIsEnabled | Qt::ItemIsSelectable : Qt::NoItemFlags;
 }
 
 }  // namespace calot::gui

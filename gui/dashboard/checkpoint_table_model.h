@@ -15,6 +15,9 @@
 
 namespace calot::gui {
 
+/// The moment that made most of a figure. @pre there is one
+const analytics::Moment& worstOf(const std::vector<analytics::Moment>& moments);
+
 /// The checkpoints of one attempt, with where they stand in a norm and when they came about. A value that is missing
 /// says why; what a value declares stands beside it.
 class CheckpointTableModel : public QAbstractTableModel {
@@ -41,7 +44,6 @@ class CheckpointTableModel : public QAbstractTableModel {
   using QAbstractTableModel::QAbstractTableModel;
   /// Standings and moments of former values are gone.
   void setValues(std::vector<analytics::CheckpointValue> values, std::vector<analytics::ValueInterval> intervals = {});
-  [[nodiscard]] bool hasIntervals() const { return !intervals_.empty(); }
   void setStandings(std::vector<FigureStanding> standings);
   void setMoments(std::vector<analytics::FigureMoments> moments);
   /// Text of momentColumn while moments are searched for, or the reason why there are none.
@@ -94,38 +96,30 @@ class EventTreeModel : public QStandardItemModel {
 };
 
 /// The checkpoints of a table, folded by family and sorted within one. Leaves out what the scene has nothing for.
-class FamilyTreeModel : public QAbstractItemModel {
+class FamilyTreeModel : public QStandardItemModel {
   Q_OBJECT
  public:
   /// @param source outlives this
-  explicit FamilyTreeModel(CheckpointTableModel& source, QObject* parent = nullptr);
+  explicit FamilyTreeModel(const CheckpointTableModel& source, QObject* parent = nullptr);
 
   /// The source's row, or -1 of a family.
   [[nodiscard]] int sourceRow(const QModelIndex& index) const;
-  /// Where a row of the source is; invalid where it is left out.
+  /// Position of a row of the source; invalid if it is left out.
   [[nodiscard]] QModelIndex indexOf(int sourceRow, int column = 0) const;
   [[nodiscard]] int leftOut() const { return leftOut_; }  ///< checkpoints that the scene has nothing for
 
-  [[nodiscard]] QModelIndex index(int row, int column, const QModelIndex& parent = {}) const override;
-  [[nodiscard]] QModelIndex parent(const QModelIndex& child) const override;
-  [[nodiscard]] int rowCount(const QModelIndex& parent = {}) const override;
-  [[nodiscard]] int columnCount(const QModelIndex& parent = {}) const override;
   [[nodiscard]] QVariant data(const QModelIndex& index, int role) const override;
   [[nodiscard]] QVariant headerData(int section, Qt::Orientation orientation, int role) const override;
-  [[nodiscard]] Qt::ItemFlags flags(const QModelIndex& index) const override;
-  /// Families keep their order. Values go by size within one figure's kind, missing ones last.
+  /// Families keep their order. Values go by size within one figure's kind, missing ones last. @param column -1: as in
+  /// the source
   void sort(int column, Qt::SortOrder order) override;
 
  private:
-  struct Family {
-    QString title;
-    std::vector<int> rows;  ///< of the source
-  };
-  void group();
-  void order();
+  class Entry;
+  void fill();
+  [[nodiscard]] bool isBefore(int a, int b) const;  ///< rows of the source
 
-  CheckpointTableModel& source_;
-  std::vector<Family> families_;
+  const CheckpointTableModel& source_;
   int leftOut_ = 0;
   int sortColumn_ = -1;
   Qt::SortOrder sortOrder_ = Qt::AscendingOrder;

@@ -10,7 +10,6 @@
 #include <QString>
 #include <QStringList>
 #include <QThreadPool>
-#include <QUndoCommand>
 #include <string>
 #include <vector>
 
@@ -39,6 +38,7 @@ class AttemptLines {
     columnTotal
   };
 
+  static QString title(int column);
   explicit AttemptLines(std::vector<analytics::AttemptRow> attempts);
 
   [[nodiscard]] const std::vector<analytics::AttemptRow>& attempts() const { return attempts_; }
@@ -101,10 +101,11 @@ class CohortDocument {
   [[nodiscard]] const analytics::AttemptRow* attempt(const std::string& uuid) const;  ///< or null
   /// Read when they are first asked for. @throws calot::Error
   [[nodiscard]] const std::vector<analytics::Norm>& norms() const;
-  /// Registered, as they are now. @throws calot::Error
-  [[nodiscard]] std::vector<analytics::RegisteredProtocol> protocols() const;
-  [[nodiscard]] std::vector<std::string> participants() const;   ///< pseudonyms, by name. @throws calot::Error
-  [[nodiscard]] std::vector<analytics::Rating> ratings() const;  ///< as they are now. @throws calot::Error
+  /// Protocols, participants and ratings as they are now. @throws calot::Error
+  [[nodiscard]] analytics::AssessmentDatabase assessment() const {
+    return {path(), analytics::CohortDatabase::Access::read};
+  }
+  [[nodiscard]] std::vector<analytics::Participant> participants() const { return database_.participants(); }
 
  private:
   analytics::CohortDatabase database_;
@@ -113,14 +114,6 @@ class CohortDocument {
   mutable std::mutex valuesMutex_;
   mutable std::shared_ptr<const FigureValues> values_;
 };
-
-}  // namespace calot::gui
-
-namespace calot::analytics {
-class CohortDatabase;
-}
-
-namespace calot::gui {
 
 /// Writes what people decide into a cohort, one decision after the other, on a thread of its own: a disk may take its
 /// time, and another program may be writing.
@@ -144,37 +137,5 @@ class CohortWriter : public QObject {
   std::shared_ptr<Link<CohortWriter>> back_;
   QThreadPool thread_;  // last: it uses what is above
 };
-
-/// Decisions of a person about attempts, and their reversal; the database notes both.
-class DecisionCommand : public QUndoCommand {
- public:
-  /// @param writer outlives this
-  DecisionCommand(CohortWriter& writer, std::string database, const QString& text, CohortWriter::Change redo,
-                  CohortWriter::Change undo);
-  void redo() override { write(redo_); }
-  void undo() override { write(undo_); }
-
- private:
-  struct State;
-  void write(const CohortWriter::Change& change);
-
-  CohortWriter& writer_;
-  std::string database_;
-  CohortWriter::Change redo_, undo_;
-  std::shared_ptr<State> state_;
-};
-
-/// Who decides, and about which attempts of which database.
-struct Decision {
-  std::string database, by;
-  std::vector<analytics::AttemptRow> attempts;
-};
-
-/// Keeps the attempts out of studies, or takes that back.
-std::unique_ptr<DecisionCommand> exclusionCommand(CohortWriter& writer, const Decision& decision, bool exclude,
-                                                  const std::string& reason);
-/// Puts a tag on those attempts that do not have it, or takes it off those that do.
-std::unique_ptr<DecisionCommand> tagCommand(CohortWriter& writer, const Decision& decision, bool add,
-                                            const std::string& tag);
 
 }  // namespace calot::gui

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One checkpoint over attempts, by group: the numbers behind the chart. Knows no window.
-// How a participant's figures went from attempt to attempt. Knows no window.
+// The numbers behind charts of one checkpoint: over attempts by group, and from attempt to attempt of a participant.
 #pragma once
 
 #include <optional>

@@ -9,6 +9,12 @@
 #include <QStringList>
 #include <QWidget>
 
+class QLabel;
+class QListWidget;
+class QProgressBar;
+class QPushButton;
+class QTimer;
+
 namespace calot::gui {
 
 /// How the program that assesses recordings is called, and how it answers. The application knows its command line.
@@ -84,16 +90,6 @@ class ImportQueue : public QObject {
   QProcess process_;
 };
 
-}  // namespace calot::gui
-
-class QLabel;
-class QListWidget;
-class QProgressBar;
-class QPushButton;
-class QTimer;
-
-namespace calot::gui {
-
 /// How an import goes: progress, a line for each recording, and a button that stops it.
 class ImportPanel : public QWidget {
   Q_OBJECT
@@ -112,6 +108,33 @@ class ImportPanel : public QWidget {
   QListWidget* results_;
   QTimer* tick_;
   QElapsedTimer clock_;  ///< since the queue last began
+};
+
+}  // namespace calot::gui
+
+class QLabel;
+class QPushButton;
+
+namespace calot::gui {
+
+/// Page shown without a database, or with an empty one. Greets and says what to do.
+class GreetingPage : public QWidget {
+  Q_OBJECT
+ public:
+  explicit GreetingPage(AssessProgram program, QWidget* parent = nullptr);
+  void explainNoDatabase();
+  void explainEmptyDatabase(const QString& fileName);
+
+ signals:
+  void openRequested();
+  void newRequested();
+  void importRequested();
+
+ private:
+  AssessProgram program_;
+  QLabel* title_;
+  QLabel* text_;
+  QPushButton* import_;
 };
 
 }  // namespace calot::gui

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "gui/dashboard/pair_page.h"
 
 #include <algorithm>
@@ -8,7 +7,6 @@
 #include <QComboBox>
 #include <QLabel>
 #include <QLocale>
-#include <QShortcut>
 #include <QSignalBlocker>
 #include <QSlider>
 #include <QStyle>
@@ -16,14 +14,9 @@
 #include <QToolButton>
 #include <utility>
 
-#include "gui/attempt/attempt_recording.h"
 #include "gui/attempt/figure_text.h"
 #include "gui/attempt/theme.h"
 #include "gui/attempt/widget_parts.h"
-#include "gui/dashboard/page_parts.h"
-#include "gui/dashboard/settings.h"
-#include "gui/dashboard/timeline.h"
-#include "gui/view/scene_picture_widget.h"
 #include "gui/words/event_words.h"
 
 namespace calot::gui {
@@ -40,44 +33,14 @@ QString attemptText(const AttemptLines& lines, int row) {
 }  // namespace
 
 PairSide::PairSide(const QString& name, QWidget* parent)
-    : QWidget(parent),
-      choice_(new QComboBox),
-      banner_(new AttemptBanner),
-      picture_(new ScenePictureWidget),
-      timeline_(new TimelineBar),
-      replay_(std::make_unique<Replay>(
-          [picture = picture_](std::shared_ptr<const SceneView> view) { picture->showView(std::move(view)); })),
-      reader_(std::make_unique<RecordingReader>()) {
+    : RecordingView({.transport = false}, parent), choice_(parts::choice("", 20)), banner_(new AttemptBanner) {
   choice_->setObjectName(name + "-attempt");
   choice_->setAccessibleName("Attempt on the " + name);
-  choice_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
-  choice_->setMinimumContentsLength(20);
-  auto* layout = parts::bare<QVBoxLayout>(this);
-  layout->addWidget(choice_);
   banner_->makeNarrow();
-  layout->addWidget(banner_);
-  layout->addWidget(picture_, 1);
-  layout->addWidget(timeline_);
+  auto* rows = static_cast<QBoxLayout*>(layout());
+  rows->insertWidget(0, choice_);
+  rows->insertWidget(1, banner_);
   connect(choice_, &QComboBox::currentIndexChanged, this, [this] { openChosen(); });
-  connect(replay_.get(), &Replay::opened, this, [this] {
-    seconds_ = replay_->position().seconds;
-    reader_->read(file_, {});
-    emit ready();
-  });
-  connect(replay_.get(), &Replay::positionChanged, this, [this] { timeline_->setPosition(replay_->position().time); });
-  connect(replay_.get(), &Replay::failed, this, [this](const QString& reason) {
-    picture_->showText(reason);
-    timeline_->setText("No timeline: the recording cannot be shown.");
-  });
-  connect(reader_.get(), &RecordingReader::trackRead, this, &PairSide::showTrack);
-  connect(reader_.get(), &RecordingReader::failed, timeline_, &TimelineBar::setText);
-  connect(timeline_, &TimelineBar::timeChosen, this, &PairSide::timeChosen);
-}
-
-PairSide::~PairSide() {
-  // Their threads use the picture and this widget.
-  reader_.reset();
-  replay_.reset();
 }
 
 void PairSide::setDocument(std::shared_ptr<const CohortDocument> document) {
@@ -109,44 +72,19 @@ void PairSide::chooseAnother(int n) {
   if (uuid_.empty() && choice_->count() > n) choice_->setCurrentIndex(n);
 }
 
-QWidget* PairSide::choiceBox() const { return choice_; }
-bool PairSide::settled() const {
-  return file_.empty() || (track_ && isOpen() && replay_->position().settled && !picture_->picture().isNull());
-}
-
 void PairSide::openChosen() {
   const std::string uuid = choice_->currentData().toString().toStdString();
   const analytics::AttemptRow* attempt = uuid.empty() ? nullptr : document_->attempt(uuid);
   if (attempt != nullptr && opened_ == uuid && isOpen()) return;
   uuid_ = opened_ = uuid;
-  reader_->stop();
-  replay_->close();
-  track_.reset();
-  file_.clear();
   emit changing();
   if (attempt == nullptr) {
     banner_->showText(" ");
-    picture_->showText("No attempt is chosen.");
-    timeline_->setText({});
-    return;
+    close("No attempt is chosen.");
+  } else {
+    banner_->showAttempt(*attempt);
+    open(*attempt, *document_);
   }
-  banner_->showAttempt(*attempt);
-  file_ = findRecording(*attempt, document_->path(), settings::recordingPlaces());
-  if (file_.empty()) {
-    picture_->showText(QString::fromStdString(attempt->fileName) +
-                       " was not found. Open the attempt on its own page to say where it is.");
-    timeline_->setText("No timeline without the recording.");
-    return;
-  }
-  picture_->showText("Opening " + QString::fromStdString(file_.filename().string()) + " …");
-  timeline_->setText("Checking the recording …");
-  replay_->open(file_, uuid);
-}
-
-void PairSide::showTrack(const AttemptTrack& track) {
-  track_ = track;
-  timeline_->setTrack(track);
-  emit ready();
 }
 
 PairAlignment::PairAlignment(std::array<double, 2> seconds, std::array<double, 2> offsets)
@@ -187,7 +125,7 @@ constexpr double farAway = 0.25;  // s (times speed) that a side may be off befo
 
 }  // namespace
 
-PairPage::PairPage(QWidget* parent) : QWidget(parent), sides_{new PairSide("left"), new PairSide("right")} {
+PairPage::PairPage(QWidget* parent) : CohortPage(parent), sides_{new PairSide("left"), new PairSide("right")} {
   auto* layout = new QVBoxLayout(this);
   auto* row = new QHBoxLayout;
   for (PairSide* const side : sides_) row->addWidget(side, 1);
@@ -199,11 +137,10 @@ PairPage::PairPage(QWidget* parent) : QWidget(parent), sides_{new PairSide("left
     if (alignment_) goTo(alignment_->begin() + time);
   });
   layout->addWidget(buildTransport());
-  setProperty(beginProperty, QVariant::fromValue<QObject*>(sides_[0]->choiceBox()));
+  begin_ = sides_[0]->choiceBox();
   tick_ = new QTimer(this);
   connect(tick_, &QTimer::timeout, this, [this] { onTick(); });
-  connect(new QShortcut(Qt::Key_Space, this, nullptr, nullptr, Qt::WidgetWithChildrenShortcut), &QShortcut::activated,
-          this, [this] { play(!playing_); });
+  onKey(*this, Qt::Key_Space, [this] { play(!playing_); });
   for (std::size_t which = 0; which < 2; ++which) {
     connect(sides_[which], &PairSide::changing, this, [this] {
       play(false);
@@ -211,8 +148,9 @@ PairPage::PairPage(QWidget* parent) : QWidget(parent), sides_{new PairSide("left
       traces_->clear();
       showTime();
     });
-    connect(sides_[which], &PairSide::ready, this, [this] { fillAlignments(); });
-    connect(sides_[which], &PairSide::timeChosen, this, [this, which](double time) {
+    connect(sides_[which], &RecordingView::opened, this, [this] { fillAlignments(); });
+    connect(sides_[which], &RecordingView::trackRead, this, [this] { fillAlignments(); });
+    connect(&sides_[which]->timeline(), &TimelineBar::timeChosen, this, [this, which](double time) {
       if (alignment_) goTo(alignment_->common(which, time));
     });
   }
@@ -220,14 +158,14 @@ PairPage::PairPage(QWidget* parent) : QWidget(parent), sides_{new PairSide("left
 
 QWidget* PairPage::buildTransport() {
   auto* made = new QWidget;
-  auto* layout = parts::bare<QHBoxLayout>(made);
-  from_ = parts::choice("align", 13);
-  auto* label = new QLabel("In &step from");
-  label->setBuddy(from_);
+  auto* row = parts::bare<QHBoxLayout>(made);
+  trace_ = parts::labelled(*row, "&Trace", parts::choice("pair-trace", 10));
+  trace_->addItems(
+      {"force, left hand (N)", "force, right hand (N)", "speed, left tip (mm/s)", "speed, right tip (mm/s)"});
+  from_ = parts::labelled(*row, "In &step from", parts::choice("align", 13));
   play_ = parts::named("pair-play", new QToolButton);
   play_->setAccessibleName("Play or pause both");
   play_->setToolTip("Play or pause both (Space)");
-  play_->setIcon(theme::buttonIcon(QStyle::SP_MediaPlay));
   play_->setFocusPolicy(Qt::TabFocus);
   scrub_ = parts::named("pair-scrub", new QSlider(Qt::Horizontal));
   scrub_->setAccessibleName("Moment of both");
@@ -238,22 +176,11 @@ QWidget* PairPage::buildTransport() {
   for (const double speed : {0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0})
     speed_->addItem(QLocale().toString(speed, 'g', 3) + QString::fromUtf8(" ×"), speed);
   speed_->setCurrentIndex(3);
-  trace_ = parts::named("pair-trace", new QComboBox);
-  trace_->addItems(
-      {"force, left hand (N)", "force, right hand (N)", "speed, left tip (mm/s)", "speed, right tip (mm/s)"});
-  trace_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
-  trace_->setMinimumContentsLength(10);
-  auto* traceLabel = new QLabel("&Trace");
-  traceLabel->setBuddy(trace_);
+  row->addWidget(play_);
+  row->addWidget(scrub_, 1);
+  row->addWidget(time_);
+  row->addWidget(speed_);
   connect(trace_, &QComboBox::currentIndexChanged, this, [this] { showTraces(); });
-  layout->addWidget(traceLabel);
-  layout->addWidget(trace_);
-  layout->addWidget(label);
-  layout->addWidget(from_);
-  layout->addWidget(play_);
-  layout->addWidget(scrub_, 1);
-  layout->addWidget(time_);
-  layout->addWidget(speed_);
   connect(from_, &QComboBox::currentIndexChanged, this, [this] { align(); });
   connect(play_, &QToolButton::clicked, this, [this] { play(!playing_); });
   connect(speed_, &QComboBox::currentIndexChanged, this, [this] {
@@ -267,19 +194,7 @@ QWidget* PairPage::buildTransport() {
   return made;
 }
 
-void PairPage::setDocument(std::shared_ptr<const CohortDocument> document) {
-  document_ = std::move(document);
-  filled_ = false;
-  if (isVisible()) fillSides();
-}
-
-void PairPage::showEvent(QShowEvent* event) {
-  QWidget::showEvent(event);
-  if (!filled_ && document_) fillSides();
-}
-
-void PairPage::fillSides() {
-  filled_ = true;
+void PairPage::read() {
   for (PairSide* const side : sides_) side->setDocument(document_);
 }
 
@@ -290,7 +205,7 @@ void PairPage::hideEvent(QHideEvent* event) {
 
 void PairPage::setAttempt(std::size_t side, const std::string& uuid) {
   sides_[side]->choose(uuid);
-  if (!isVisible()) filled_ = false;  // it is opened when the page is shown
+  if (!isVisible()) outdate();  // it is opened when the page is shown
 }
 
 void PairPage::chooseTwo() {
@@ -328,7 +243,7 @@ void PairPage::align() {
     if (phase != Phase::none && sides_[which]->track())
       offsets[which] = firstOf(*sides_[which]->track(), phase).value_or(0.0);
   }
-  alignment_.emplace(std::array{sides_[0]->seconds(), sides_[1]->seconds()}, offsets);
+  alignment_.emplace(std::array{replay(0).position().seconds, replay(1).position().seconds}, offsets);
   showTraces();
   goTo(0.0);
 }
@@ -421,8 +336,7 @@ void PairPage::onTick() {
 
 void PairPage::showTime() {
   play_->setIcon(theme::buttonIcon(playing_ ? QStyle::SP_MediaPause : QStyle::SP_MediaPlay));
-  for (QWidget* widget : {static_cast<QWidget*>(play_), static_cast<QWidget*>(scrub_), static_cast<QWidget*>(from_),
-                          static_cast<QWidget*>(speed_)})
+  for (QWidget* widget : std::initializer_list<QWidget*>{play_, scrub_, from_, speed_})
     widget->setEnabled(alignment_.has_value());
   if (!alignment_) {
     time_->setText(QString::fromUtf8("–:––"));

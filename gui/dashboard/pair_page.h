@@ -1,35 +1,31 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Two recordings in step: which moment of one stands beside which moment of the other. Knows no window.
 #pragma once
 
 #include <array>
 #include <chrono>
-#include <filesystem>
 #include <memory>
 #include <optional>
-#include <QWidget>
+#include <string>
 #include <vector>
 
-#include "gui/attempt/attempt_recording.h"
-#include "gui/attempt/replay_transport.h"
 #include "gui/dashboard/cohort_document.h"
-#include "gui/dashboard/recording_reader.h"
+#include "gui/dashboard/page_parts.h"
+#include "gui/dashboard/recording_view.h"
 
 class QComboBox;
+class QLabel;
+class QSlider;
+class QTimer;
+class QToolButton;
 
 namespace calot::gui {
 
-class AttemptBanner;
-class ScenePictureWidget;
-class TimelineBar;
-
 /// One of two recordings side by side: which attempt, its verification, its replay and its timeline.
-class PairSide : public QWidget {
+class PairSide : public RecordingView {
   Q_OBJECT
  public:
   /// @param name of the choice: "left" or "right"
   explicit PairSide(const QString& name, QWidget* parent = nullptr);
-  ~PairSide() override;
 
   /// Lists the document's attempts, the newest first, keeps the one that is chosen, and opens it.
   /// @pre not null
@@ -38,36 +34,20 @@ class PairSide : public QWidget {
   void choose(const std::string& uuid);
   /// Where none is chosen: the n-th of the list, from 1 on.
   void chooseAnother(int n);
-
-  [[nodiscard]] Replay& replay() const { return *replay_; }
-  [[nodiscard]] bool isOpen() const { return replay_->isOpen(); }
-  [[nodiscard]] double seconds() const { return seconds_; }  ///< length of the recording, once it is open
-  [[nodiscard]] const std::optional<AttemptTrack>& track() const { return track_; }
-  [[nodiscard]] QWidget* choiceBox() const;
-  [[nodiscard]] bool settled() const;
+  [[nodiscard]] QComboBox* choiceBox() const { return choice_; }
 
  signals:
-  void changing();                  ///< another attempt is chosen, or none
-  void ready();                     ///< the recording is open, or its track has been read
-  void timeChosen(double seconds);  ///< on the timeline, of this recording
+  void changing();  ///< another attempt is chosen, or none
 
  private:
   void openChosen();
-  void showTrack(const AttemptTrack& track);
 
   std::shared_ptr<const CohortDocument> document_;
   QComboBox* choice_;
   AttemptBanner* banner_;
-  ScenePictureWidget* picture_;
-  TimelineBar* timeline_;
-  std::filesystem::path file_;
   std::string uuid_;    ///< that is chosen
   std::string wanted_;  ///< to be chosen at the next setDocument()
   std::string opened_;  ///< whose recording was opened
-  std::optional<AttemptTrack> track_;
-  double seconds_ = 0.0;
-  std::unique_ptr<Replay> replay_;
-  std::unique_ptr<RecordingReader> reader_;
 };
 
 /// A common time, 0 at the moment that both are aligned by: a recording's own time is common + offset.
@@ -95,25 +75,11 @@ std::optional<double> firstOf(const AttemptTrack& track, Phase phase);
 /// Phases that both have, in the procedure's order.
 std::vector<Phase> commonPhases(const AttemptTrack& a, const AttemptTrack& b);
 
-}  // namespace calot::gui
-
-class QComboBox;
-class QLabel;
-class QSlider;
-class QTimer;
-class QToolButton;
-
-namespace calot::gui {
-
-class TraceChart;
-
 /// Two recordings side by side in step: an expert's beside a trainee's, from their starts or from a phase on.
-class PairPage : public QWidget {
+class PairPage : public CohortPage {
   Q_OBJECT
  public:
   explicit PairPage(QWidget* parent = nullptr);
-  /// @pre not null
-  void setDocument(std::shared_ptr<const CohortDocument> document);
   /// Puts an attempt on one side: 0 left, 1 right.
   void setAttempt(std::size_t side, const std::string& uuid);
   /// Where a side is still free: puts the newest attempts on both.
@@ -124,12 +90,11 @@ class PairPage : public QWidget {
   [[nodiscard]] Replay& replay(std::size_t side) { return sides_[side]->replay(); }
 
  protected:
-  void showEvent(QShowEvent* event) override;
   void hideEvent(QHideEvent* event) override;
 
  private:
+  void read() override;
   QWidget* buildTransport();
-  void fillSides();
   void fillAlignments();
   void align();
   void goTo(double common);
@@ -139,14 +104,12 @@ class PairPage : public QWidget {
   void showTime();
   [[nodiscard]] bool bothOpen() const { return sides_[0]->isOpen() && sides_[1]->isOpen(); }
 
-  std::shared_ptr<const CohortDocument> document_;
   std::array<PairSide*, 2> sides_;
   std::optional<PairAlignment> alignment_;
   double common_ = 0.0;
   bool playing_ = false;
   std::chrono::steady_clock::time_point clockBegin_;
   double clockCommon_ = 0.0;
-  bool filled_ = false;
 
   TraceChart* traces_ = nullptr;
   QComboBox* trace_ = nullptr;

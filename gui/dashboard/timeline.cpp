@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "gui/dashboard/timeline.h"
 
 #include <algorithm>
@@ -24,6 +23,25 @@ int phaseHeight() { return theme::inType(20); }
 int eventTop() { return phaseTop() + phaseHeight() + 6; }
 int eventHeight() { return theme::inType(18); }
 constexpr double reach = 5.0;  // pixels from an event that still count as on it
+
+/// Okabe and Ito's colours, distinguished by people with any of the common colour-vision deficiencies; the name stands
+/// in the stretch.
+QColor colourOf(Phase phase) {
+  switch (phase) {
+    case Phase::identification:
+      return {0x56, 0xb4, 0xe9};
+    case Phase::clipping:
+      return {0xe6, 0x9f, 0x00};
+    case Phase::cutting:
+      return {0xf0, 0xe4, 0x42};
+    case Phase::dissection:
+      return {0x7f, 0xd0, 0xb8};
+    case Phase::none:
+    case Phase::done:
+      break;
+  }
+  return {0xd8, 0xd8, 0xd8};
+}
 
 void paintEvents(QPainter& painter, const TimeScale& scale, const std::vector<TrackEvent>& events) {
   // Errors last, so that nothing covers them.
@@ -83,13 +101,13 @@ void TimelineBar::setMarked(std::vector<std::pair<double, double>> windows) {
 void TimelineBar::paintEvent(QPaintEvent*) {
   QPainter painter(this);
   painter.setRenderHint(QPainter::Antialiasing);
-  painter.fillRect(rect(), QWidget::palette().color(QPalette::Base));
+  painter.fillRect(rect(), palette().color(QPalette::Base));
   const TimeScale s = scale();
   for (const TrackPhase& phase : track_.phases) {
     const QRectF box(s.x(phase.begin), phaseTop(), s.x(phase.end) - s.x(phase.begin), phaseHeight());
-    painter.fillRect(box, palette::ofPhase(phase.phase));
+    painter.fillRect(box, colourOf(phase.phase));
     const QString name = QString::fromStdString(wordFor(phase.phase));
-    painter.setPen(palette::darkText);
+    painter.setPen(QColor(0x22, 0x22, 0x22));
     if (painter.fontMetrics().horizontalAdvance(name) + 6 < box.width()) painter.drawText(box, Qt::AlignCenter, name);
     painter.setPen(QPen(theme::surface(), 1.0));
     painter.drawLine(box.topRight(), box.bottomRight());
@@ -114,7 +132,7 @@ void TimelineBar::paintEvent(QPaintEvent*) {
   painter.drawLine(QPointF(s.x(position_), 0), QPointF(s.x(position_), height()));
   if (hasFocus()) {
     painter.setBrush(Qt::NoBrush);
-    painter.setPen(QPen(QWidget::palette().color(QPalette::Highlight), 2.0));
+    painter.setPen(QPen(palette().color(QPalette::Highlight), 2.0));
     painter.drawRect(rect().adjusted(1, 1, -1, -1));
   }
 }

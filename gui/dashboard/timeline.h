@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where a time stands on a page: one scale for timeline and traces, so that they stand under one another.
-// Colours of charts and timelines: Okabe and Ito's set, told apart by people with any of the common colour-vision
-// deficiencies. Sign, shape or word carries every meaning beside them.
+// Timeline and traces of an attempt, one below the other on one scale.
 #pragma once
 
 #include <algorithm>
@@ -20,6 +18,7 @@
 
 namespace calot::gui {
 
+/// Position of a time on a page.
 struct TimeScale {
   static constexpr double rightMargin = 16.0;  ///< pixels
   /// Pixels for an axis and its numbers.
@@ -69,37 +68,6 @@ class TimelineBar : public QWidget {
   double position_ = 0.0;
   std::vector<std::pair<double, double>> marked_;
 };
-
-}  // namespace calot::gui
-
-namespace calot::gui::palette {
-
-inline const QColor blue(0x00, 0x72, 0xb2);
-inline const QColor skyBlue(0x56, 0xb4, 0xe9);
-inline const QColor orange(0xe6, 0x9f, 0x00);
-inline const QColor grey(0xb8, 0xb8, 0xb8);
-inline const QColor darkText(0x22, 0x22, 0x22);
-
-inline QColor ofPhase(Phase phase) {
-  switch (phase) {
-    case Phase::identification:
-      return skyBlue;
-    case Phase::clipping:
-      return orange;
-    case Phase::cutting:
-      return QColor(0xf0, 0xe4, 0x42);
-    case Phase::dissection:
-      return QColor(0x7f, 0xd0, 0xb8);
-    case Phase::none:
-    case Phase::done:
-      return QColor(0xd8, 0xd8, 0xd8);
-  }
-  return grey;
-}
-
-}  // namespace calot::gui::palette
-
-namespace calot::gui {
 
 /// One quantity of both hands over the attempt's time, on the timeline's scale, with a line where the replay stands. A
 /// click goes to that moment. The left hand is solid, the right one dashed.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Renders the newest scene view to pictures on separate threads. Independent of windows.
+// Renders the newest scene view to pictures on separate threads.
 #pragma once
 
 #include <array>

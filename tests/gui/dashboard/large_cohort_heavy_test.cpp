@@ -189,9 +189,9 @@ TEST_F(LargeCohortHeavy, AStudyIsComputedBrokenOffAndExported) {
   rule->setCurrentIndex(1);
   wait([&] { return !study.busy(); });
   watch.judge("study of means computed", longestTurn);
-  study.exportCsv(folder_.filePath("csv"));
+  study.write(folder_.filePath("csv"), false);
   wait([&] { return !study.busy(); });
-  study.exportHtml(folder_.filePath("study.html"));
+  study.write(folder_.filePath("study.html"), true);
   wait([&] { return !study.busy(); });
   EXPECT_TRUE(fs::exists(root_ / "csv" / "study.csv") && fs::exists(root_ / "study.html"));
   watch.judge("study exported", longestTurn);
