@@ -12,7 +12,7 @@
 #include <QPdfWriter>
 #include <QTextBlock>
 
-#include "gui/report/offscreen_application.h"
+#include "gui/report/drawing_painter.h"
 #include "gui/report/text_document.h"
 
 namespace calot::gui {

@@ -11,7 +11,6 @@
 #include <QTextTable>
 
 #include "gui/report/drawing_painter.h"
-#include "gui/report/offscreen_application.h"
 
 namespace calot::gui {
 namespace {

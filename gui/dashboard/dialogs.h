@@ -3,24 +3,28 @@
 
 #include <memory>
 #include <QDialog>
-#include <QStringList>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "gui/attempt/long_work.h"
 #include "gui/dashboard/cohort_document.h"
+#include "gui/dashboard/page_parts.h"
 
-class QCheckBox;
-class QComboBox;
 class QFormLayout;
-class QLabel;
 class QLineEdit;
+class QMenuBar;
 class QPushButton;
 class QSpinBox;
 
 namespace calot::gui {
 
-class WorkStrip;
+/// Every key that the dashboard knows: those of the menus, then those of the pages.
+using KeyList = std::vector<std::pair<QString, QString>>;  ///< key, what it does
+[[nodiscard]] KeyList keysOf(const QMenuBar& menus);
+
+/// Shows the keys in a dialog, until it is closed.
+void showKeys(const KeyList& keys, QWidget* parent);
 
 /// Makes a norm of two groups, as `calot norm create` does, and says what that says of it: whom its rule lets through,
 /// what it may be used for, and every warning.
@@ -36,8 +40,7 @@ class NormDialog : public QDialog {
   void refused();  ///< and why stands in the dialog
 
  private:
-  void buildChoices(QFormLayout& form);
-  void fillGroups();
+  QFormLayout* buildForm();
   void make();
   void allow(bool ready);
 
@@ -45,9 +48,10 @@ class NormDialog : public QDialog {
   std::vector<std::string> selected_;
   LongWork work_;
   QLineEdit *name_, *by_;
-  QComboBox *attempts_, *groupBy_, *competent_, *others_, *key_, *rule_;
+  GroupFields fields_;  ///< first: the competent
+  QComboBox *attempts_, *rule_;
   QSpinBox* least_;
-  QCheckBox *first_, *practice_, *synthetic_;
+  QCheckBox* first_;
   QLabel* result_;
   QPushButton* make_;
   WorkStrip* strip_;
