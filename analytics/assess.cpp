@@ -11,8 +11,8 @@
 #include <string_view>
 #include <utility>
 
+#include "analytics/checkpoints/checkpoint.h"
 #include "analytics/checkpoints/collector.h"
-#include "analytics/checkpoints/registry.h"
 #include "analytics/external/metric_input.h"
 #include "analytics/report/report_text.h"
 #include "recorder/attempt.h"

@@ -10,7 +10,7 @@
 #include <set>
 #include <utility>
 
-#include "analytics/checkpoints/registry.h"
+#include "analytics/checkpoints/checkpoint.h"
 #include "analytics/report/report_text.h"
 #include "analytics/statistics/standard_setting.h"
 #include "recorder/base/errors.h"
@@ -369,7 +369,7 @@ Expected<RegressionCut> borderlineCut(const std::vector<double>& ratings, const 
   for (const double v : values) scores.push_back(logScale ? std::log(v) : v);
   const Expected<BorderlineRegression> line =
       borderlineRegression(ratings, scores, mark, direction == Direction::lower ? Better::lower : Better::higher);
-  if (!line) return Expected<RegressionCut>::none(line.reason());
+  if (!line) return NoResult{line.reason()};
   const auto back = [logScale](double v) { return logScale ? std::exp(v) : v; };
   return RegressionCut{back(line->cut), back(line->interval.lower), back(line->interval.upper)};
 }

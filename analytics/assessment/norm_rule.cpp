@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "analytics/assessment/norm.h"
-#include "analytics/checkpoints/registry.h"
+#include "analytics/checkpoints/checkpoint.h"
 #include "recorder/base/errors.h"
 #include "recorder/base/text_words.h"
 

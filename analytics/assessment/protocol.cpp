@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "analytics/checkpoints/registry.h"
+#include "analytics/checkpoints/checkpoint.h"
 #include "recorder/base/errors.h"
 #include "recorder/base/file_bytes.h"
 #include "recorder/base/nearest_word.h"

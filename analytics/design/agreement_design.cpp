@@ -10,8 +10,8 @@
 
 #include "analytics/design/design_report.h"
 #include "analytics/report/report_text.h"
-#include "analytics/statistics/method_agreement.h"
 #include "analytics/statistics/rank_tests.h"
+#include "analytics/statistics/reliability.h"
 #include "recorder/base/errors.h"
 
 namespace calot::analytics {

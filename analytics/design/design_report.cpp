@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "analytics/report/report_text.h"
-#include "analytics/statistics/multiplicity.h"
+#include "analytics/statistics/rank_tests.h"
 #include "recorder/attempt.h"
 #include "recorder/base/errors.h"
 

@@ -44,7 +44,7 @@ GroupCurve groupCurve(const std::vector<PersonalCourse>& courses, std::size_t re
   result.curve = fitLearningCurve(result.attempt, result.mean);
   if (!result.curve || resamples == 0) return result;
   if (courses.size() < 3) {
-    result.plateau = Expected<Interval>::none("fewer than three participants");
+    result.plateau = NoResult{"fewer than three participants"};
     return result;
   }
   const auto plateauOf = [&](std::span<const double> drawn) -> Expected<double> {
@@ -53,12 +53,12 @@ GroupCurve groupCurve(const std::vector<PersonalCourse>& courses, std::size_t re
     GroupCurve resampled;
     keepCommon(sums, drawn.size(), resampled);
     const Expected<LearningCurve> curve = fitLearningCurve(resampled.attempt, resampled.mean);
-    return curve ? Expected<double>(curve->plateau) : Expected<double>::none(curve.reason());
+    return curve ? Expected<double>(curve->plateau) : NoResult{curve.reason()};
   };
   BootstrapOptions options;
   options.resamples = resamples;
   const Expected<Bootstrap> interval = bootstrap(indices, plateauOf, options);
-  result.plateau = interval ? Expected<Interval>(interval->interval) : Expected<Interval>::none(interval.reason());
+  result.plateau = interval ? Expected<Interval>(interval->interval) : NoResult{interval.reason()};
   return result;
 }
 

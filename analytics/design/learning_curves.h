@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "analytics/statistics/expected.h"
-#include "analytics/statistics/learning_curve.h"
+#include "analytics/statistics/regression.h"
 
 namespace calot::analytics {
 
@@ -17,9 +17,9 @@ struct PersonalCourse {
 struct GroupCurve {
   std::vector<double> attempt, mean;  ///< attempts that at least half of the participants made
   std::size_t participants = 0, attempts = 0;
-  Expected<LearningCurve> curve = Expected<LearningCurve>::none("not computed");
+  Expected<LearningCurve> curve = NoResult{"not computed"};
   /// Interval of the plateau: percentile bootstrap over participants, each with all attempts.
-  Expected<Interval> plateau = Expected<Interval>::none("not computed");
+  Expected<Interval> plateau = NoResult{"not computed"};
 };
 
 /// Curve through the means of each attempt. Values of one participant are not independent, so the fit's own errors are

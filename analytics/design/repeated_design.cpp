@@ -14,7 +14,7 @@ namespace {
 struct RepeatedRow {
   const DesignFigure* figure = nullptr;
   RepeatedGroups model;
-  Expected<RandomIntercept> overall = Expected<RandomIntercept>::none("");
+  Expected<RandomIntercept> overall = NoResult{""};
   std::string first;               ///< occasion
   std::vector<std::string> steps;  ///< what the terms of the occasion are about
 };
@@ -72,7 +72,7 @@ DesignJson repeatedJson(const RepeatedRow& row) {
                   {"group", termJson(m.group)},          {"occasion", occasion},
                   {"interaction", interaction},          {"between_variance", m.betweenVariance},
                   {"within_variance", m.withinVariance}, {"restricted_log_likelihood", m.restrictedLogLikelihood}};
-  json["overall"] = row.overall ? DesignJson{{"difference", row.overall->difference},
+  json["overall"] = row.overall ? DesignJson{{"difference", row.overall->estimate},
                                              {"error", row.overall->error},
                                              {"df", row.overall->df},
                                              {"p", row.overall->p},
@@ -129,7 +129,7 @@ void analyseRepeated(const DesignData& data, const DesignChoices& choices, Desig
                                      m.interaction[s], pOrDash(adjusted[next++])));
     spread.rows.push_back({title, fmt::format("{}", m.participants), fmt::format("{}", m.attempts),
                            significant(std::sqrt(m.betweenVariance)), significant(std::sqrt(m.withinVariance)),
-                           row.overall ? significant(row.overall->difference) : "-",
+                           row.overall ? significant(row.overall->estimate) : "-",
                            row.overall ? intervalText(row.overall->interval) : "-",
                            row.overall ? pText(row.overall->p) : "-"});
     report.json["results"].push_back(repeatedJson(row));

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "analytics/checkpoints/registry.h"
+#include "analytics/checkpoints/checkpoint.h"
 #include "analytics/cohort/embedded.h"
 #include "analytics/cohort/registers.h"
 #include "analytics/report/study_protocol.h"

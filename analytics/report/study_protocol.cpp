@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "analytics/report/study_tables.h"
-#include "analytics/statistics/multiplicity.h"
+#include "analytics/statistics/rank_tests.h"
 
 namespace calot::analytics {
 namespace {

@@ -9,7 +9,7 @@
 #include "analytics/report/report_text.h"
 #include "analytics/report/study_protocol.h"
 #include "analytics/statistics/descriptive.h"
-#include "analytics/statistics/multiplicity.h"
+#include "analytics/statistics/rank_tests.h"
 #include "recorder/base/errors.h"
 
 namespace calot::analytics {
@@ -70,7 +70,7 @@ void countMissing(GroupSummary& s, const std::vector<std::string>& present,
 }
 
 Expected<Spearman> correlation(StudyRow& row, const std::array<std::map<std::string, double>, 2>& duration) {
-  if (row.checkpoint == "attempt-duration") return Expected<Spearman>::none("it is the duration");
+  if (row.checkpoint == "attempt-duration") return NoResult{"it is the duration"};
   std::vector<double> values, seconds;
   for (std::size_t g = 0; g < 2; ++g) {
     for (std::size_t i = 0; i < row.values[g].size(); ++i) {
@@ -80,7 +80,7 @@ Expected<Spearman> correlation(StudyRow& row, const std::array<std::map<std::str
       seconds.push_back(at->second);
     }
   }
-  if (seconds.empty()) return Expected<Spearman>::none("no durations");
+  if (seconds.empty()) return NoResult{"no durations"};
   row.withDurationPairs = values.size();
   return spearman(values, seconds);
 }
@@ -221,7 +221,7 @@ void addSimulationRange(StudyRow& row, const StudySample& sample) {
 
 void compareGroups(StudyRow& row, const Study& study, const std::array<std::map<std::string, double>, 2>& duration) {
   if (!row.notOutcome.empty()) {
-    row.test = Expected<MannWhitney>::none(row.notOutcome);
+    row.test = NoResult{row.notOutcome};
     return;
   }
   const std::vector<double>&x = row.values[0], &y = row.values[1];

@@ -169,7 +169,7 @@ ReportTable baselineTable(const Study& study) {
       table.rows.push_back({rowName(row), n, "-", "-", "-", "-", "-", "-"});
       continue;
     }
-    table.rows.push_back({rowName(row), n, significant(analysis->difference),
+    table.rows.push_back({rowName(row), n, significant(analysis->estimate),
                           brackets(analysis->interval.lower, analysis->interval.upper), pText(analysis->p),
                           pOrDash(row.adjusted->holm), significant(analysis->slope),
                           analysis->sameSlope ? pText(*analysis->sameSlope) : "-"});

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "analytics/checkpoints/registry.h"
+#include "analytics/checkpoints/checkpoint.h"
 #include "analytics/report/plots.h"
 #include "analytics/report/report_document.h"
 #include "analytics/report/study.h"

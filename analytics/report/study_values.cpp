@@ -76,7 +76,7 @@ Json areaJson(const StudyRow& row) {
 
 Json adjustedJson(const BaselineAdjustment& adjusted) {
   Json j = answerJson(adjusted.analysis, [&](const CovarianceAnalysis& a) {
-    return Json{{"difference", a.difference},
+    return Json{{"difference", a.estimate},
                 {"interval", intervalJson(a.interval)},
                 {"error", a.error},
                 {"t", a.t},
@@ -265,7 +265,7 @@ std::string effectCells(const StudyRow& row) {
 std::string baselineCells(const StudyRow& row) {
   if (!row.adjusted || !row.adjusted->analysis) return ",,,,,,,";
   const CovarianceAnalysis& a = *row.adjusted->analysis;
-  return fmt::format(",{},{},{},{},{},{},{}", a.difference, a.interval.lower, a.interval.upper, a.p,
+  return fmt::format(",{},{},{},{},{},{},{}", a.estimate, a.interval.lower, a.interval.upper, a.p,
                      numberCell(row.adjusted->holm), a.slope,
                      numberCell(a.sameSlope ? std::optional(*a.sameSlope) : std::nullopt));
 }

@@ -27,15 +27,17 @@ bool isAsked(const AttemptRow& a, const AttemptFilter& o) {
 
 std::string whoOf(const AttemptRow& a) { return a.participant.empty() ? a.profile : a.participant; }
 
-Json jsonOf(const AttemptRow& a) {
-  return {{"attempt", a.uuid},        {"participant", a.participant},
-          {"group", a.group},         {"synthetic", a.synthetic},
-          {"profile", a.profile},     {"scene", a.scene},
-          {"mode", wordFor(a.mode)},  {"outcome", wordFor(a.outcome)},
-          {"start_utc", a.startUtc},  {"seconds", static_cast<double>(a.steps) * a.stepSeconds},
-          {"file", a.fileName},       {"verdict", nameOf(a.verification.verdict)},
-          {"excluded", a.excluded},   {"exclusion_reason", a.exclusionReason},
-          {"withdrawn", a.withdrawn}, {"tags", a.tags}};
+Json jsonOf(const analytics::Fields& fields) {
+  Json object;
+  for (const auto& [name, value] : fields) {
+    Json& member = object[name];
+    std::visit(
+        [&](const auto& v) {
+          if constexpr (!std::is_same_v<std::remove_cvref_t<decltype(v)>, std::monostate>) member = v;
+        },
+        value);
+  }
+  return object;
 }
 
 /// Beginnings of the uuids, as long as it takes to distinguish all of the database: what other commands accept.
@@ -62,7 +64,7 @@ void listAttempts(const AttemptFilter& o) {
   Json list = Json::array();
   for (const AttemptRow& a : rows) {
     if (!isAsked(a, o)) continue;
-    list.push_back(jsonOf(a));
+    list.push_back(jsonOf(fieldsOf(a)));
     const std::string beginning = a.uuid.substr(0, length);
     table.add({beginning, whoOf(a), a.group, a.scene, a.startUtc.substr(0, 10),
                fmt::format("{:.1f}", static_cast<double>(a.steps) * a.stepSeconds), wordFor(a.outcome),

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 #include "analytics/checkpoints/collector.h"
-#include "analytics/checkpoints/motion_track.h"
 #include "analytics/cohort/withdraw.h"
 #include "analytics/interchange/motion_tables.h"
 #include "apps/calot/command.h"

@@ -8,8 +8,8 @@
 #include <cstdio>
 #include <set>
 
+#include "analytics/checkpoints/checkpoint.h"
 #include "analytics/checkpoints/collector.h"
-#include "analytics/checkpoints/registry.h"
 #include "apps/calot/command.h"
 #include "apps/calot/replay_report.h"
 #include "apps/calot/source_options.h"

@@ -9,7 +9,6 @@
 
 #include "analytics/assess.h"
 #include "analytics/checkpoints/collector.h"
-#include "analytics/intake/enrolment.h"
 #include "analytics/intake/motion_manifest.h"
 #include "apps/calot/command.h"
 #include "apps/calot/replay_report.h"

@@ -6,7 +6,7 @@
 #include "analytics/assessment/grade.h"
 #include "analytics/assessment/norm.h"
 #include "analytics/assessment/norm_rule.h"
-#include "analytics/checkpoints/registry.h"
+#include "analytics/checkpoints/checkpoint.h"
 #include "analytics/cohort/assessment_database.h"
 #include "analytics/report/report_document.h"
 #include "analytics/report/study_tables.h"

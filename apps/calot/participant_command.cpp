@@ -173,13 +173,8 @@ void listParticipants(const ParticipantFilter& o) {
   Json list = Json::array();
   for (const analytics::Participant& p : database.participants()) {
     if (!o.group.empty() && p.group != o.group) continue;
-    list.push_back({{"participant", p.pseudonym},
-                    {"group", p.group},
-                    {"arm", p.arm},
-                    {"site", p.site},
-                    {"attempts", attempts[p.pseudonym]},
-                    {"experience", p.experience},
-                    {"consent", p.consent}});
+    list.push_back(jsonOf(fieldsOf(p)));
+    list.back()["attempts"] = attempts[p.pseudonym];
     table.add({p.pseudonym, p.group, p.arm, p.site, std::to_string(attempts[p.pseudonym]), joined(p.experience, '='),
                joined(p.consent, ':')});
   }

@@ -3,7 +3,7 @@
 
 #include <map>
 
-#include "analytics/checkpoints/registry.h"
+#include "analytics/checkpoints/checkpoint.h"
 #include "analytics/regrade.h"
 #include "apps/calot/command.h"
 #include "apps/calot/replay_report.h"

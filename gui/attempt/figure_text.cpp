@@ -7,7 +7,7 @@
 #include <QLocale>
 #include <QTimeZone>
 
-#include "analytics/checkpoints/registry.h"
+#include "analytics/checkpoints/checkpoint.h"
 #include "analytics/report/report_text.h"
 #include "gui/attempt/theme.h"
 #include "recorder/words.h"

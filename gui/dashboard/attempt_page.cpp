@@ -11,7 +11,7 @@
 #include <QPushButton>
 #include <QSaveFile>
 
-#include "analytics/checkpoints/registry.h"
+#include "analytics/checkpoints/checkpoint.h"
 #include "analytics/cohort/check.h"
 #include "analytics/report/grade_sheet.h"
 #include "gui/attempt/figure_text.h"

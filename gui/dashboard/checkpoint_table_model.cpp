@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "analytics/assessment/grade.h"
-#include "analytics/checkpoints/registry.h"
+#include "analytics/checkpoints/checkpoint.h"
 #include "gui/attempt/attempt_recording.h"
 #include "gui/attempt/figure_text.h"
 #include "gui/attempt/theme.h"

@@ -8,7 +8,7 @@
 #include <tuple>
 #include <unordered_map>
 
-#include "analytics/checkpoints/registry.h"
+#include "analytics/checkpoints/checkpoint.h"
 #include "analytics/report/plots.h"
 #include "gui/attempt/figure_text.h"
 
@@ -224,8 +224,8 @@ TraineeHistory historyOf(const std::vector<analytics::AttemptRow>& attempts,
     x.push_back(static_cast<double>(i + 1));
     y.push_back(*entry.value);
   }
-  history.curve = trainee.synthetic ? analytics::Expected<analytics::LearningCurve>::none("a performer does not learn")
-                                    : analytics::fitLearningCurve(x, y);
+  history.curve =
+      trainee.synthetic ? analytics::NoResult{"a performer does not learn"} : analytics::fitLearningCurve(x, y);
   std::uint32_t version = 0;
   for (const analytics::Norm& norm : norms) {
     if (norm.comparabilityKey != key || norm.synthetic != trainee.synthetic) continue;

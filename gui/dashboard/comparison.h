@@ -10,7 +10,7 @@
 #include "analytics/cohort/cohort_database.h"
 #include "analytics/report/plots.h"
 #include "analytics/statistics/expected.h"
-#include "analytics/statistics/learning_curve.h"
+#include "analytics/statistics/regression.h"
 
 namespace calot::gui {
 
@@ -83,8 +83,7 @@ struct TraineeHistory {
   std::vector<HistoryAttempt> attempts;  ///< of one comparability key, by start
   std::string unit;
   /// Over the number of the attempt, from 1, of those with a value: a - b / x.
-  analytics::Expected<analytics::LearningCurve> curve =
-      analytics::Expected<analytics::LearningCurve>::none("not computed");
+  analytics::Expected<analytics::LearningCurve> curve = analytics::NoResult{"not computed"};
   std::optional<double> cut;  ///< of the norm of this key, if there is one; display unit
   int otherKeys = 0;          ///< attempts of the same trainee that cannot stand beside these
 };

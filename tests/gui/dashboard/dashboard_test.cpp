@@ -18,7 +18,7 @@
 #include <QTableView>
 #include <QTest>
 
-#include "analytics/checkpoints/registry.h"
+#include "analytics/checkpoints/checkpoint.h"
 #include "analytics/cohort/embedded.h"
 #include "apps/calot-dashboard/assess_program.h"
 #include "gui/attempt/figure_text.h"

@@ -24,7 +24,7 @@
 #include <QUndoStack>
 #include <sstream>
 
-#include "analytics/checkpoints/registry.h"
+#include "analytics/checkpoints/checkpoint.h"
 #include "analytics/cohort/assessment_database.h"
 #include "apps/calot-dashboard/assess_program.h"
 #include "gui/attempt/long_work.h"

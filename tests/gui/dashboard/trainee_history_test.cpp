@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "analytics/checkpoints/registry.h"
+#include "analytics/checkpoints/checkpoint.h"
 #include "gui/dashboard/figure_panel.h"
 #include "gui/dashboard/pair_page.h"
 

@@ -1,14 +1,36 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Names and dates that a bundle gives instead of those in the database.
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <set>
 #include <string>
+#include <string_view>
 #include <utility>
 
-#include "analytics/interchange/original_names.h"
-
 namespace calot::analytics {
+
+/// Seconds of 30 to 365 days, earlier or later, from the system's source of randomness.
+std::int64_t drawShift();
+
+/// "2026-01-01T00:00:00Z" moved, in whole seconds (parts of one are cut off); empty where that is no such time.
+std::string shiftedUtc(const std::string& utc, std::int64_t seconds);
+
+/// Names that must not occur in an export, searched for as whole cells and whole words of a file.
+class OriginalNames {
+ public:
+  /// @param kind for the message: "a pseudonym"
+  void add(const std::string& name, const char* kind);
+  [[nodiscard]] bool has(const std::string& name) const { return kindOf_.count(name) > 0; }
+
+  /// Kind of the first of these names that the text holds, or empty. Numbers (other than dates), single letters and
+  /// words in `vocabulary` identify nobody and are not searched for.
+  [[nodiscard]] std::string firstIn(std::string_view text, const std::set<std::string>& vocabulary) const;
+
+ private:
+  std::map<std::string, std::string, std::less<>> kindOf_;
+};
 
 /// New names by the old ones. Random names are drawn once each; numbers are given in the order of first use.
 class NewNames {
