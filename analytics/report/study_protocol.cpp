@@ -7,7 +7,7 @@
 #include <map>
 #include <utility>
 
-#include "analytics/report/study_tables.h"
+#include "analytics/report/study_output.h"
 #include "analytics/statistics/multiplicity.h"
 
 namespace calot::analytics {

@@ -6,7 +6,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "analytics/report/report_text.h"
+#include "analytics/report/report_document.h"
 #include "apps/calot/commands.h"
 #include "apps/calot/results.h"
 #include "recorder/compliance_cache.h"
@@ -62,18 +62,14 @@ void printJson(const std::string& folder, const std::vector<CacheEntry>& entries
 }
 
 void printTable(const std::vector<CacheEntry>& entries) {
-  using Align = analytics::TextTable::Align;
-  analytics::TextTable table({{"scene", Align::left},
-                              {"simulation", Align::right},
-                              {"columns", Align::right},
-                              {"size", Align::right},
-                              {"", Align::left}});
+  analytics::ReportTable table = analytics::tableOf("", {"=scene", "simulation", "columns", "size", "="});
   for (const CacheEntry& e : entries) {
     const bool known = e.state == CacheEntry::State::usable || e.state == CacheEntry::State::otherVersion;
-    table.add({known ? e.scene : e.file.filename().string(), known ? std::to_string(e.simulationVersion) : "-",
-               known ? std::to_string(e.columns) : "-", megabytes(e.bytes), nameOf(e.state)});
+    table.rows.push_back({known ? e.scene : e.file.filename().string(),
+                          known ? std::to_string(e.simulationVersion) : "-", known ? std::to_string(e.columns) : "-",
+                          megabytes(e.bytes), nameOf(e.state)});
   }
-  if (table.rows() > 0) table.print(std::cout);
+  if (!table.rows.empty()) table.print(std::cout);
 }
 
 int cache(const CacheOptions& o) {

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "analytics/cohort/cohort_database.h"
-#include "analytics/report/report_text.h"
+#include "analytics/report/report_document.h"
 #include "apps/calot/cohort_option.h"
 #include "apps/calot/results.h"
 #include "apps/calot/terminal_text.h"
@@ -26,7 +26,6 @@ namespace {
 using Access = analytics::CohortDatabase::Access;
 using analytics::AttemptRow;
 using analytics::Participant;
-using Align = analytics::TextTable::Align;
 using Json = nlohmann::ordered_json;
 
 struct ListOptions {
@@ -71,15 +70,8 @@ std::size_t lengthThatTells(const std::vector<AttemptRow>& rows) {
 int listAttempts(const ListOptions& o) {
   const std::vector<AttemptRow> rows = analytics::CohortDatabase(o.cohort, Access::read).listAttempts();
   const std::size_t length = lengthThatTells(rows);
-  analytics::TextTable table({{"attempt", Align::left},
-                              {"who", Align::left},
-                              {"group", Align::left},
-                              {"scene", Align::left},
-                              {"day (UTC)", Align::left},
-                              {"seconds", Align::right},
-                              {"outcome", Align::left},
-                              {"verdict", Align::left},
-                              {"tags", Align::left}});
+  analytics::ReportTable table = analytics::tableOf(
+      "", {"=attempt", "=who", "=group", "=scene", "=day (UTC)", "seconds", "=outcome", "=verdict", "=tags"});
   std::string notes;
   std::size_t synthetic = 0;
   Json list = Json::array();
@@ -87,9 +79,9 @@ int listAttempts(const ListOptions& o) {
     if (!isAsked(a, o)) continue;
     list.push_back(jsonOf(a));
     const std::string beginning = a.uuid.substr(0, length);
-    table.add({beginning, whoOf(a), a.group, a.scene, a.startUtc.substr(0, 10),
-               fmt::format("{:.1f}", static_cast<double>(a.steps) * a.stepSeconds), wordFor(a.outcome),
-               nameOf(a.verification.verdict), fmt::format("{}", fmt::join(a.tags, ", "))});
+    table.rows.push_back({beginning, whoOf(a), a.group, a.scene, a.startUtc.substr(0, 10),
+                          fmt::format("{:.1f}", static_cast<double>(a.steps) * a.stepSeconds), wordFor(a.outcome),
+                          nameOf(a.verification.verdict), fmt::format("{}", fmt::join(a.tags, ", "))});
     if (a.excluded) notes += fmt::format("{} is excluded: {}\n", beginning, a.exclusionReason);
     synthetic += a.synthetic ? 1 : 0;
   }
@@ -111,13 +103,8 @@ int listParticipants(const ListOptions& o) {
   const analytics::CohortDatabase database(o.cohort, Access::read);
   std::map<std::string, std::uint64_t> attempts;
   for (const AttemptRow& a : database.listAttempts()) ++attempts[a.participant];
-  analytics::TextTable table({{"participant", Align::left},
-                              {"group", Align::left},
-                              {"arm", Align::left},
-                              {"site", Align::left},
-                              {"attempts", Align::right},
-                              {"experience", Align::left},
-                              {"consent", Align::left}});
+  analytics::ReportTable table =
+      analytics::tableOf("", {"=participant", "=group", "=arm", "=site", "attempts", "=experience", "=consent"});
   const auto joined = [](const std::map<std::string, std::string>& pairs, char mark) {
     std::string text;
     for (const auto& [name, value] : pairs)
@@ -134,8 +121,8 @@ int listParticipants(const ListOptions& o) {
                     {"attempts", attempts[p.pseudonym]},
                     {"experience", p.experience},
                     {"consent", p.consent}});
-    table.add({p.pseudonym, p.group, p.arm, p.site, std::to_string(attempts[p.pseudonym]), joined(p.experience, '='),
-               joined(p.consent, ':')});
+    table.rows.push_back({p.pseudonym, p.group, p.arm, p.site, std::to_string(attempts[p.pseudonym]),
+                          joined(p.experience, '='), joined(p.consent, ':')});
   }
   if (o.json) {
     printResult("participant-list", {{"participants", list}});

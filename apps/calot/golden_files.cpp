@@ -16,7 +16,7 @@
 
 #include "analytics/checkpoints/collector.h"
 #include "analytics/checkpoints/registry.h"
-#include "analytics/report/report_text.h"
+#include "analytics/report/report_document.h"
 #include "apps/calot/environment.h"
 #include "apps/calot/source_options.h"
 #include "recorder/base/errors.h"

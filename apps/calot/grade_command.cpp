@@ -130,7 +130,7 @@ int grade(const GradeOptions& o) {
   writeReport(analytics::gradeDocument(result, name, howToDraw), o.html, o.pdf, o.force,
               o.withReplay ? &inPage : nullptr);
   if (o.json) {
-    printResult("grade", nlohmann::ordered_json::parse(analytics::gradeJson(result)));
+    printResult("grade", analytics::gradeTree(result));
   } else {
     analytics::printGrade(result, std::cout);
   }

@@ -17,7 +17,7 @@
 #include "analytics/checkpoints/registry.h"
 #include "analytics/cohort/assessment_database.h"
 #include "analytics/report/report_document.h"
-#include "analytics/report/study_tables.h"
+#include "analytics/report/study_output.h"
 #include "apps/calot/cohort_option.h"
 #include "apps/calot/commands.h"
 #include "apps/calot/environment.h"
@@ -40,13 +40,10 @@ struct AngoffOptions {
 };
 
 int judgeByAngoff(const AngoffOptions& o) {
-  using Align = analytics::TextTable::Align;
   const analytics::AngoffJudgement a = analytics::readAngoff(readCsvTable(o.table));
   const double judges = static_cast<double>(a.judges.size());
-  analytics::ReportTable table{
-      "Probability that a borderline trainee passes",
-      {{"item", Align::left}, {"mean", Align::right}, {"least", Align::right}, {"most", Align::right}},
-      {}};
+  analytics::ReportTable table =
+      analytics::tableOf("Probability that a borderline trainee passes", {"=item", "mean", "least", "most"});
   nlohmann::ordered_json items = nlohmann::ordered_json::array();
   for (std::size_t item = 0; item < a.items.size(); ++item) {
     double sum = 0.0, least = 1.0, most = 0.0;
@@ -92,7 +89,6 @@ void addNormAngoff(CLI::App& norm, Run& run) {
 }
 
 using Access = analytics::CohortDatabase::Access;
-using Align = analytics::TextTable::Align;
 using Json = nlohmann::ordered_json;
 
 constexpr std::size_t maxEvidence = std::size_t{1} << 30U;
@@ -163,15 +159,8 @@ void print(const analytics::Norm& norm) {
   if (norm.synthetic) std::cout << analytics::watermarkText << '\n';
   for (const std::string& line : analytics::normSummary(norm)) analytics::printWrapped(line, std::cout);
   std::cout << '\n';
-  analytics::ReportTable table{"Pass marks",
-                               {{"checkpoint", Align::left},
-                                {"unit", Align::left},
-                                {"better", Align::left},
-                                {"cut", Align::right},
-                                {"95 %", Align::right},
-                                {"rule", Align::left},
-                                {"", Align::left}},
-                               {}};
+  analytics::ReportTable table =
+      analytics::tableOf("Pass marks", {"=checkpoint", "=unit", "=better", "cut", "95 %", "=rule", "="});
   for (const analytics::NormCheckpoint& c : norm.checkpoints) {
     const analytics::CheckpointDefinition* d =
         c.metric ? &c.metric->definition : analytics::findCheckpoint(c.checkpoint);

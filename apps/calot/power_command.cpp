@@ -15,8 +15,8 @@
 #include <vector>
 
 #include "analytics/assessment/protocol.h"
+#include "analytics/report/study_output.h"
 #include "analytics/report/study_protocol.h"
-#include "analytics/report/study_tables.h"
 #include "analytics/statistics/power.h"
 #include "analytics/statistics/two_groups.h"
 #include "apps/calot/commands.h"
@@ -248,16 +248,13 @@ void print(const PowerOptions& o, const PlannedStudy& planned, const std::vector
                            planned.origin);
   std::cout << fmt::format("{} simulations each, seed {}; in brackets Wilson's 95 % interval of the simulation\n\n",
                            planned.plan.simulations, o.seed);
-  using Align = analytics::TextTable::Align;
-  analytics::TextTable table({{"n (" + planned.groups[0] + ")", Align::right},
-                              {"n (" + planned.groups[1] + ")", Align::right},
-                              {"checkpoint", Align::left},
-                              {"power", Align::right}});
+  analytics::ReportTable table = analytics::tableOf(
+      "", {"n (" + planned.groups[0] + ")", "n (" + planned.groups[1] + ")", "=checkpoint", "power"});
   std::size_t untestable = 0;
   for (const Sized& r : results) {
     std::string nx = fmt::format("{}", r.nx), ny = fmt::format("{}", r.ny);
     const auto row = [&](const std::string& name, const analytics::SimulatedShare& share) {
-      table.add({nx, ny, name, shareText(share)});
+      table.rows.push_back({nx, ny, name, shareText(share)});
       nx.clear();
       ny.clear();
     };

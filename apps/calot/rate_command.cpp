@@ -132,7 +132,7 @@ int show(const RateOptions& o) {
   const std::vector<analytics::FormReport> reports =
       analytics::reportForms(database, groupOf, {groups.begin(), groups.end()}, attemptOf);
   if (o.json) {
-    printResult("ratings", {{"forms", analytics::ratingsJson(reports)}});
+    printResult("ratings", {{"forms", analytics::ratingsTree(reports)}});
     return static_cast<int>(ExitCode::yes);
   }
   if (reports.empty()) std::cout << "no ratings\n";

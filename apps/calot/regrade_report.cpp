@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "analytics/checkpoints/registry.h"
-#include "analytics/report/report_text.h"
+#include "analytics/report/report_document.h"
 #include "apps/calot/results.h"
 #include "apps/calot/value_report.h"
 #include "apps/common/advice.h"
@@ -88,24 +88,19 @@ ordered_json regradeJson(const analytics::Regrade& regrade) {
 }
 
 void printRegrade(const analytics::Regrade& regrade) {
-  using Align = analytics::TextTable::Align;
   std::map<Regraded, std::uint64_t> counts;
   std::vector<std::string> order;
   std::map<std::string, std::uint64_t> attemptsOf;
-  analytics::TextTable table({{"attempt", Align::left},
-                              {"checkpoint", Align::left},
-                              {"before", Align::right},
-                              {"now", Align::right},
-                              {"", Align::left}});
+  analytics::ReportTable table = analytics::tableOf("", {"=attempt", "=checkpoint", "before", "now", "="});
   for (const analytics::RegradedAttempt& a : regrade.attempts) {
     ++counts[a.how];
     for (const analytics::ValueChange& c : a.changes) {
       const std::string title = titleOf(c.any());
       if (attemptsOf[title]++ == 0) order.push_back(title);
-      table.add({a.uuid.substr(0, 8), title, shown(c.before), shown(c.now), otherwise(c)});
+      table.rows.push_back({a.uuid.substr(0, 8), title, shown(c.before), shown(c.now), otherwise(c)});
     }
   }
-  if (table.rows() > 0) {
+  if (!table.rows.empty()) {
     table.print(std::cout);
     std::cout << '\n';
     for (const std::string& title : order)

@@ -4,7 +4,6 @@
 #include <CLI/CLI.hpp>
 #include <string>
 
-#include "analytics/report/page_html.h"
 #include "analytics/report/report_document.h"
 
 namespace calot::apps {

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "analytics/report/report_text.h"
+#include "analytics/report/report_document.h"
 #include "apps/calot/commands.h"
 #include "apps/calot/environment.h"
 #include "apps/calot/results.h"
@@ -41,18 +41,13 @@ nlohmann::ordered_json checkJson(const std::string& file, const recorder::SceneC
 }
 
 void printCosts(const recorder::SceneCheck& check) {
-  using Align = analytics::TextTable::Align;
-  analytics::TextTable table({{"organ", Align::left},
-                              {"triangles", Align::right},
-                              {"edge (mm)", Align::right},
-                              {"tetrahedra", Align::right},
-                              {"cell (mm)", Align::right},
-                              {"surface", Align::left}});
+  analytics::ReportTable table =
+      analytics::tableOf("", {"=organ", "triangles", "edge (mm)", "tetrahedra", "cell (mm)", "=surface"});
   bool fine = false;
   for (const recorder::ContactCost& c : check.costs) {
-    table.add({c.organ, std::to_string(c.triangles), fmt::format("{:.2f}", 1000.0 * c.meanEdge),
-               std::to_string(c.tetrahedra), fmt::format("{:.2f}", 1000.0 * c.cellSize),
-               c.isFine() ? fmt::format("fine: {} triangles show as much", c.sensibleTriangles) : "right"});
+    table.rows.push_back({c.organ, std::to_string(c.triangles), fmt::format("{:.2f}", 1000.0 * c.meanEdge),
+                          std::to_string(c.tetrahedra), fmt::format("{:.2f}", 1000.0 * c.cellSize),
+                          c.isFine() ? fmt::format("fine: {} triangles show as much", c.sensibleTriangles) : "right"});
     fine = fine || c.isFine();
   }
   table.print(std::cout, terminalColumns());

@@ -7,7 +7,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "analytics/report/report_text.h"
+#include "analytics/report/report_document.h"
 #include "apps/calot/commands.h"
 #include "apps/calot/environment.h"
 #include "apps/calot/results.h"
@@ -28,17 +28,13 @@ std::string versionOf(const SceneDescription& scene) {
 }
 
 void printTable(const std::vector<recorder::LoadedScene>& scenes) {
-  using Align = analytics::TextTable::Align;
-  analytics::TextTable table({{"scene", Align::left},
-                              {"version", Align::right},
-                              {"organs (tetrahedra)", Align::left},
-                              {"summary", Align::left}});
+  analytics::ReportTable table = analytics::tableOf("", {"=scene", "version", "=organs (tetrahedra)", "=summary"});
   for (const recorder::LoadedScene& scene : scenes) {
     std::string organs;
     for (const OrganDescription& organ : scene.description.organs) {
       organs += fmt::format("{}{} ({})", organs.empty() ? "" : ", ", organ.name, organ.tetrahedra);
     }
-    table.add({scene.description.name, versionOf(scene.description), organs, scene.summary});
+    table.rows.push_back({scene.description.name, versionOf(scene.description), organs, scene.summary});
   }
   table.print(std::cout, terminalColumns());
 }

@@ -15,7 +15,6 @@
 #include "analytics/cohort/withdraw.h"
 #include "analytics/design/design_report.h"
 #include "analytics/report/study_output.h"
-#include "analytics/report/study_tables.h"
 #include "apps/calot/commands.h"
 #include "apps/calot/environment.h"
 #include "apps/calot/report_files.h"
@@ -217,7 +216,7 @@ int runTwoGroups(ParsedStudyOptions& options) {
   writeReport(analytics::studyDocument(study), options.html, options.pdf, options.force);
   if (isExported(options)) noteExports(options, attemptsIn(study, options.source.database));
   if (options.json) {
-    printResult("study", nlohmann::ordered_json::parse(analytics::studyJson(study)));
+    printResult("study", analytics::studyTree(study));
   } else {
     print(study, options.all);
   }
@@ -232,7 +231,7 @@ int runDesign(ParsedStudyOptions& options) {
   writeReport(analytics::designDocument(report), options.html, options.pdf, options.force);
   if (isExported(options)) noteExports(options, report.attempts);
   if (options.json) {
-    printResult("design", nlohmann::ordered_json::parse(analytics::designJson(report)));
+    printResult("design", report.json);
   } else {
     analytics::printDesign(report, std::cout);
   }

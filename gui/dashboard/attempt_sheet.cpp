@@ -21,7 +21,6 @@
 namespace calot::gui {
 namespace {
 
-using analytics::TextTable;
 constexpr int pictureWidth = 800, pictureHeight = 600;
 constexpr const char* sheetMaker = "calot " CALOT_VERSION;
 
@@ -95,8 +94,7 @@ analytics::ReportDocument attemptDocument(const SheetRequest& request) {
   for (const analytics::KeyFigure& figure : request.summary.figures)
     figures.push_back(keyFigureText(figure).toStdString());
   document.addList(figures);
-  analytics::ReportTable table{
-      "What went wrong", {{"time", TextTable::Align::right}, {"event", TextTable::Align::left}}, {}};
+  analytics::ReportTable table = analytics::tableOf("What went wrong", {"time", "=event"});
   constexpr std::size_t maxRows = 24;
   std::size_t errors = 0;
   for (const TrackEvent& event : request.events) {
