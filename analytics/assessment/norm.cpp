@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "analytics/checkpoints/checkpoint.h"
-#include "analytics/report/report_text.h"
+#include "analytics/report/report_document.h"
 #include "analytics/statistics/standard_setting.h"
 #include "recorder/base/errors.h"
 

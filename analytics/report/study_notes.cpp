@@ -9,7 +9,7 @@
 
 #include "analytics/report/rating_tables.h"
 #include "analytics/report/study_coverage.h"
-#include "analytics/report/study_tables.h"
+#include "analytics/report/study_output.h"
 #include "recorder/attempt.h"
 
 namespace calot::analytics {

@@ -7,8 +7,9 @@
 #include <map>
 #include <utility>
 
-#include "analytics/report/study_tables.h"
+#include "analytics/report/study_output.h"
 #include "analytics/statistics/rank_tests.h"
+#include "analytics/report/study_output.h"
 
 namespace calot::analytics {
 namespace {

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "analytics/report/report_text.h"
+#include "analytics/report/report_document.h"
 #include "analytics/report/study_protocol.h"
 #include "analytics/statistics/descriptive.h"
 #include "analytics/statistics/rank_tests.h"

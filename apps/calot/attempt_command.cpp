@@ -57,8 +57,7 @@ std::size_t distinctLength(const std::vector<AttemptRow>& rows) {
 void listAttempts(const AttemptFilter& o) {
   const std::vector<AttemptRow> rows = analytics::CohortDatabase(o.cohort, Access::read).listAttempts();
   const std::size_t length = distinctLength(rows);
-  analytics::TextTable table =
-      tableOf({"attempt", "who", "group", "scene", "day (UTC)", ">seconds", "outcome", "verdict", "tags"});
+  analytics::ReportTable table = analytics::tableOf("", {"=attempt", "=who", "=group", "=scene", "=day (UTC)", "seconds", "=outcome", "=verdict", "=tags"});
   std::string notes;
   std::size_t synthetic = 0;
   Json list = Json::array();
@@ -66,9 +65,9 @@ void listAttempts(const AttemptFilter& o) {
     if (!isAsked(a, o)) continue;
     list.push_back(jsonOf(fieldsOf(a)));
     const std::string beginning = a.uuid.substr(0, length);
-    table.add({beginning, whoOf(a), a.group, a.scene, a.startUtc.substr(0, 10),
-               fmt::format("{:.1f}", static_cast<double>(a.steps) * a.stepSeconds), wordFor(a.outcome),
-               nameOf(a.verification.verdict), fmt::format("{}", fmt::join(a.tags, ", "))});
+    table.rows.push_back({beginning, whoOf(a), a.group, a.scene, a.startUtc.substr(0, 10),
+                          fmt::format("{:.1f}", static_cast<double>(a.steps) * a.stepSeconds), wordFor(a.outcome),
+                          nameOf(a.verification.verdict), fmt::format("{}", fmt::join(a.tags, ", "))});
     if (a.excluded) notes += fmt::format("{} is excluded: {}\n", beginning, a.exclusionReason);
     synthetic += a.synthetic ? 1 : 0;
   }

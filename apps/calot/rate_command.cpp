@@ -133,7 +133,7 @@ void showRatings(const RateOptions& o) {
   const std::vector<analytics::FormReport> reports =
       analytics::reportForms(database, groupOf, {groups.begin(), groups.end()}, attemptOf);
   if (o.json) {
-    printResult("ratings", {{"forms", analytics::ratingsJson(reports)}});
+    printResult("ratings", {{"forms", analytics::ratingsTree(reports)}});
     return;
   }
   if (reports.empty()) std::cout << "no ratings\n";

@@ -8,7 +8,7 @@
 #include <QTimeZone>
 
 #include "analytics/checkpoints/checkpoint.h"
-#include "analytics/report/report_text.h"
+#include "analytics/report/report_document.h"
 #include "gui/attempt/theme.h"
 #include "recorder/words.h"
 

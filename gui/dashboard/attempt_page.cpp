@@ -134,10 +134,7 @@ analytics::ReportDocument attemptDocument(const SheetRequest& request) {
   for (const analytics::KeyFigure& figure : request.summary.figures)
     figures.push_back(keyFigureText(figure).toStdString());
   document.addList(figures);
-  analytics::ReportTable table{
-      "What went wrong",
-      {{"time", analytics::TextTable::Align::right}, {"event", analytics::TextTable::Align::left}},
-      {}};
+  analytics::ReportTable table = analytics::tableOf("What went wrong", {"time", "=event"});
   constexpr std::size_t maxRows = 24;
   std::size_t errors = 0;
   for (const TrackEvent& event : request.events) {

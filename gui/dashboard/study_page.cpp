@@ -25,7 +25,7 @@
 #include <QTimer>
 #include <QUrl>
 
-#include "analytics/report/study_tables.h"
+#include "analytics/report/study_output.h"
 #include "gui/attempt/figure_text.h"
 #include "gui/attempt/widget_parts.h"
 #include "gui/dashboard/plot_view.h"

@@ -9,11 +9,9 @@
 #include "analytics/cohort/withdraw.h"
 #include "analytics/design/design_report.h"
 #include "analytics/report/masked_study.h"
-#include "analytics/report/page_html.h"
-#include "analytics/report/report_text.h"
+#include "analytics/report/report_document.h"
 #include "analytics/report/study_coverage.h"
 #include "analytics/report/study_output.h"
-#include "analytics/report/study_tables.h"
 #include "gui/words/problem_words.h"
 #include "recorder/base/errors.h"
 #include "recorder/base/text_output.h"
@@ -40,7 +38,7 @@ std::string tableText(const analytics::ReportTable& table) {
   std::string html = "<h3>" + analytics::escaped(table.title) +
                      "</h3><table cellspacing=\"0\" cellpadding=\"3\" border=\"0\">" + headRow;
   const auto right = [&](std::size_t column) {
-    return column < table.columns.size() && table.columns[column].second == analytics::TextTable::Align::right;
+    return column < table.columns.size() && table.columns[column].second == analytics::Align::right;
   };
   for (std::size_t c = 0; c < table.columns.size(); ++c) html += cell(table.columns[c].first, "th", right(c), true);
   html += "</tr>";

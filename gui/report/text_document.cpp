@@ -142,7 +142,7 @@ struct ReportTextDocument::Writer {
     font.setBold(true);
     const QFontMetricsF metrics(font, document.device_);
     const double dotsPerMillimetre = document.device_->logicalDpiX() / 25.4;
-    const auto isWords = [&](std::size_t c) { return table.columns[c].second == analytics::TextTable::Align::left; };
+    const auto isWords = [&](std::size_t c) { return table.columns[c].second == analytics::Align::left; };
     std::vector<double> width, words;
     double room = document.page_.width() / dotsPerMillimetre - 1.0;
     for (std::size_t c = 0; c < table.columns.size(); ++c) {
@@ -173,11 +173,11 @@ struct ReportTextDocument::Writer {
     return lengths;
   }
 
-  static void cell(QTextTable& grid, int row, int column, const std::string& text, analytics::TextTable::Align align,
+  static void cell(QTextTable& grid, int row, int column, const std::string& text, analytics::Align align,
                    bool bold) {
     QTextCursor inside = grid.cellAt(row, column).firstCursorPosition();
     QTextBlockFormat format;
-    format.setAlignment(align == analytics::TextTable::Align::right ? Qt::AlignRight : Qt::AlignLeft);
+    format.setAlignment(align == analytics::Align::right ? Qt::AlignRight : Qt::AlignLeft);
     inside.setBlockFormat(format);
     inside.setBlockCharFormat(letters(tablePoints, bold));  // an empty cell is no higher
     inside.insertText(QString::fromStdString(text), letters(tablePoints, bold));
