@@ -77,7 +77,8 @@ struct PerformerProfile {
   ScopeSkill scope;
 };
 
-const std::vector<ObjectRule>& performerRules();
+/// Rules of the file, which the published schema repeats.
+std::vector<ObjectRule> performerRules();
 
 /// @throws Error (damaged) naming file and JSON pointer.
 PerformerProfile loadPerformer(const std::filesystem::path& file);

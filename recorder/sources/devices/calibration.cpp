@@ -10,7 +10,7 @@
 #include "recorder/base/dates.h"
 #include "recorder/base/errors.h"
 #include "recorder/base/file_bytes.h"
-#include "recorder/base/json_reader.h"
+#include "recorder/sources/json_values.h"
 
 namespace calot::recorder {
 namespace {
@@ -35,100 +35,28 @@ const ObjectRule rootRule{"",
                            {"camera", false},
                            {"declaredPixel", false, 0, 1, true, false}}};
 const ObjectRule handsRule{"hands", {{"left", false}, {"right", false}}};
-const ObjectRule handRule{"hand",
-                          {{"tipOffset", false, -2, 2},
-                           {"pivotResidual", false, 0, large},
-                           {"scale", false, 0, 1000, true, false},
-                           {"scaleSpread", false, 0, large},
-                           {"axes", false, -1, 1},
-                           {"axesResidual", false, 0, 4},
-                           {"noise", true, 0, large},
-                           {"rate", true, 0, large},
-                           {"jitter", true, 0, large},
-                           {"longInterval", true, 0, large},
-                           {"invalidShare", true, 0, 1}}};
-const ObjectRule limitsRule{"limits",
-                            {{"pivotResidual", true, 0, large},
-                             {"scaleSpread", true, 0, large},
-                             {"axesResidual", true, 0, 4},
-                             {"noise", true, 0, large},
-                             {"rate", true, 0, large},
-                             {"longInterval", true, 0, large},
-                             {"invalidShare", true, 0, 1}}};
-
-// Each pair of key and value once, for writing and for reading.
-template <class Limits, class Visitor>
-void visitLimits(Limits& l, const Visitor& visit) {
-  visit("pivotResidual", l.pivotResidual);
-  visit("scaleSpread", l.scaleSpread);
-  visit("axesResidual", l.axesResidual);
-  visit("noise", l.noise);
-  visit("rate", l.rate);
-  visit("longInterval", l.longInterval);
-  visit("invalidShare", l.invalidShare);
+JsonValues valuesOf(HandCalibration& h) {
+  return {{{"tipOffset", false, -2, 2}, &h.tipOffset},
+          {{"pivotResidual", false, 0, large}, &h.pivotResidual},
+          {{"scale", false, 0, 1000, true, false}, &h.scale},
+          {{"scaleSpread", false, 0, large}, &h.scaleSpread},
+          {{"axesResidual", false, 0, 4}, &h.axesResidual},
+          {{"rate", true, 0, large}, &h.rate},
+          {{"jitter", true, 0, large}, &h.jitter},
+          {{"longInterval", true, 0, large}, &h.longInterval},
+          {{"invalidShare", true, 0, 1}, &h.invalidShare},
+          {{"axes", false, -1, 1}, &h.axes},
+          {{"noise", true, 0, large}, &h.noise}};
 }
 
-template <class HandValues, class Visitor>
-void visitHand(HandValues& h, const Visitor& visit) {
-  visit("pivotResidual", h.pivotResidual);
-  visit("scale", h.scale);
-  visit("scaleSpread", h.scaleSpread);
-  visit("axesResidual", h.axesResidual);
-  visit("rate", h.rate);
-  visit("jitter", h.jitter);
-  visit("longInterval", h.longInterval);
-  visit("invalidShare", h.invalidShare);
-}
-
-Json jsonOf(const Vec3& v) { return Json::array({v.x(), v.y(), v.z()}); }
-
-struct WriteValues {
-  Json& out;
-  void operator()(const char* key, double v) const { out[key] = v; }
-  void operator()(const char* key, const std::optional<double>& v) const {
-    if (v) out[key] = *v;
-  }
-};
-
-struct ReadValues {
-  const JsonObject& in;
-  void operator()(const char* key, double& v) const { in.read(key, v); }
-  void operator()(const char* key, std::optional<double>& v) const {
-    double value = 0.0;
-    if (in.has(key)) {
-      in.read(key, value);
-      v = value;
-    }
-  }
-};
-
-Json jsonOf(const HandCalibration& h) {
-  Json out = Json::object();
-  if (h.tipOffset) out["tipOffset"] = jsonOf(*h.tipOffset);
-  visitHand(h, WriteValues{out});
-  if (h.axes) out["axes"] = Json::array({h.axes->w(), h.axes->x(), h.axes->y(), h.axes->z()});
-  out["noise"] = jsonOf(h.noise);
-  return out;
-}
-
-HandCalibration handOf(const JsonPlace& place) {
-  const JsonObject o = place.object(handRule);
-  HandCalibration h;
-  visitHand(h, ReadValues{o});
-  o.read("noise", h.noise);
-  if (o.has("tipOffset")) {
-    Vec3 offset;
-    o.read("tipOffset", offset);
-    h.tipOffset = offset;
-  }
-  if (o.has("axes")) {
-    const std::vector<JsonPlace> q = o.at("axes").list(4, 4);
-    const KeyRule unit{"", true, -1, 1};
-    const Quat axes(q[0].number(unit), q[1].number(unit), q[2].number(unit), q[3].number(unit));
-    if (!(std::abs(axes.norm() - 1.0) <= 1e-6)) o.at("axes").fail("is no unit quaternion w x y z");
-    h.axes = axes.normalized();
-  }
-  return h;
+JsonValues valuesOf(CalibrationLimits& l) {
+  return {{{"pivotResidual", true, 0, large}, &l.pivotResidual},
+          {{"scaleSpread", true, 0, large}, &l.scaleSpread},
+          {{"axesResidual", true, 0, 4}, &l.axesResidual},
+          {{"noise", true, 0, large}, &l.noise},
+          {{"rate", true, 0, large}, &l.rate},
+          {{"longInterval", true, 0, large}, &l.longInterval},
+          {{"invalidShare", true, 0, 1}, &l.invalidShare}};
 }
 
 std::int64_t secondsOf(const std::string& date) {
@@ -186,21 +114,19 @@ std::vector<std::string> shortcomings(const Calibration& calibration) {
   return out;
 }
 
-std::string calibrationText(const Calibration& c, bool compact) {
+std::string calibrationText(Calibration c, bool compact) {
   const std::vector<std::string> faults = shortcomings(c);
   Json out{{"format", "calot-calibration"}, {"formatVersion", 1},    {"device", c.device},
            {"identity", c.identity},        {"date", c.date},        {"validDays", c.validDays},
            {"passed", faults.empty()},      {"shortcomings", faults}};
   Json hands = Json::object();
   for (std::size_t i = 0; i < handCount; ++i) {
-    if (c.hand[i]) hands[handNames[i]] = jsonOf(*c.hand[i]);
+    if (c.hand[i]) hands[handNames[i]] = jsonOf(valuesOf(*c.hand[i]));
   }
   out["hands"] = hands;
   out["latency"] = c.latency;
   out["force"] = c.force;
-  Json limits = Json::object();
-  visitLimits(c.limits, WriteValues{limits});
-  out["limits"] = limits;
+  out["limits"] = jsonOf(valuesOf(c.limits));
   if (c.camera) out["camera"] = rigJson(*c.camera);
   if (c.declaredPixel) out["declaredPixel"] = *c.declaredPixel;
   return compact ? out.dump() : out.dump(2) + "\n";
@@ -223,12 +149,11 @@ Calibration parseCalibration(std::span<const std::byte> bytes, const std::string
   for (const JsonPlace& place : root.at("shortcomings").list(0, 64)) (void)place.text(200);
   const JsonObject hands = root.at("hands").object(handsRule);
   for (std::size_t i = 0; i < handCount; ++i) {
-    if (hands.has(handNames[i])) c.hand[i] = handOf(hands.at(handNames[i]));
+    if (hands.has(handNames[i])) readValues(hands.at(handNames[i]), valuesOf(c.hand[i].emplace()));
   }
-  const JsonObject limits = root.at("limits").object(limitsRule);
-  visitLimits(c.limits, ReadValues{limits});
+  readValues(root.at("limits"), valuesOf(c.limits));
   if (root.has("camera")) c.camera = rigOf(root.at("camera"));
-  ReadValues{root}("declaredPixel", c.declaredPixel);
+  if (root.has("declaredPixel")) root.read("declaredPixel", c.declaredPixel.emplace());
   if (root.at("passed").boolean() != shortcomings(c).empty())
     root.at("passed").fail("does not agree with the values and the limits");
   return c;

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "recorder/sources/devices/device.h"
+#include "recorder/sources/devices/pointer_device.h"
 
 namespace calot::recorder {
 
@@ -17,7 +18,7 @@ namespace calot::recorder {
 /// locks, X cuts, Y coagulates. Start passes the pointer to the other hand; the hand it leaves stands still and is not
 /// measured. Full deflection is 60 mm/s, 1.5 rad/s, 1.2 rad/s; speed grows with the square of the deflection beyond a
 /// dead zone of 12 %.
-class GamepadDevice final : public Device {
+class GamepadDevice final : public PointerDevice {
  public:
   /// Takes the first gamepad whose name contains `name` (empty: any) and that no other device of this program has.
   /// @param only the hand that it drives, which Start then does not change; none: the right one first
@@ -26,30 +27,21 @@ class GamepadDevice final : public Device {
                          std::optional<Hand> only = std::nullopt);
   ~GamepadDevice() override;
 
-  [[nodiscard]] const DeviceInfo& info() const override { return info_; }
-  void poll(std::chrono::nanoseconds wait, DeviceInput& out) override;
   [[nodiscard]] bool connected() const override;
-  void close() override;
 
  private:
   struct Sdl;
-  struct Pointer {
-    Vec3 position = Vec3::Zero();
-    double roll = 0.0, jaw = 0.0;
-  };
-  void put(std::int64_t now, double seconds, DeviceInput& out);
+  std::string find() override;
+  std::string readControls() override;
+  void advance(double seconds, std::int64_t now, DeviceInput& out) override;
+  void disconnect() override;
 
   std::unique_ptr<Sdl> sdl_;
-  DeviceInfo info_;
-  DeviceClock clock_;
+  std::string name_;  ///< what the gamepad's name contains
   std::array<Pointer, handCount> pointer_;
-  std::array<std::uint64_t, handCount> sequence_{};
-  Hand hand_ = Hand::right;
-  bool bound_ = false;            ///< to that hand
-  bool switching_ = false;        ///< Start was held at the last sample
-  std::int64_t last_ = 0;         ///< time of the last sample (ns)
-  std::int64_t nextAttempt_ = 0;  ///< to find it again (ns)
-  bool greeted_ = false;
+  Hand hand_;
+  bool bound_;              ///< to that hand
+  bool switching_ = false;  ///< Start was held at the last sample
 };
 
 /// Names of the gamepads that are attached. @throws Error (failure) where the system cannot be asked.

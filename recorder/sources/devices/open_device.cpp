@@ -28,10 +28,6 @@ constexpr std::array kinds{&gamepadKind,  &forceKind, &haplyKind, &openIgtLinkKi
 
 }  // namespace
 
-void DeviceRequest::refuse(const std::string& why) const {
-  throw Error(ErrorKind::invalid, fmt::format("device \"{}\": {}", name.substr(0, 80), why), {Remedy::nameDevice});
-}
-
 std::span<const DeviceKind* const> deviceKinds() { return kinds; }
 
 const DeviceKind* findDeviceKind(std::string_view name) {
@@ -83,7 +79,7 @@ constexpr std::int64_t period = 1'000'000;  // ns
 constexpr std::int64_t maxAtOnce = 1000;    // samples; a poll after a long pause does not make up for all of it
 }  // namespace
 
-NullDevice::NullDevice(DeviceClock clock) : clock_(std::move(clock)), next_(clock_()) {
+NullDevice::NullDevice(DeviceClock clock) : Device(std::move(clock)), next_(clock_()) {
   info_.name = nullKind.name;
   info_.identity = "null";
   info_.detail = nullKind.help;
@@ -97,7 +93,7 @@ NullDevice::NullDevice(DeviceClock clock) : clock_(std::move(clock)), next_(cloc
 void NullDevice::poll(std::chrono::nanoseconds, DeviceInput& out) {
   if (!open_) return;
   const std::int64_t now = clock_();
-  if (sequence_ == 0) out.events.push_back({DeviceEvent::Kind::connected, now, "null: there"});
+  if (sequence_ == 0) tell(DeviceEvent::Kind::connected, "null: there", out);
   next_ = std::max(next_, now - maxAtOnce * period);
   for (; next_ <= now; next_ += period, ++sequence_) {
     for (const Hand hand : {Hand::left, Hand::right}) {

@@ -28,32 +28,26 @@ struct OpenIgtLinkSettings {
 ///
 /// Connects at the first poll and again after a loss, every half second. Malformed input that names one of the tools
 /// counts as an invalid sample; each kind is reported once. A stream that is not OpenIGTLink is disconnected.
-class OpenIgtLinkDevice final : public Device {
+class OpenIgtLinkDevice final : public ReopeningDevice {
  public:
   explicit OpenIgtLinkDevice(OpenIgtLinkSettings settings, DeviceClock clock = monotonicNanoseconds);
 
-  [[nodiscard]] const DeviceInfo& info() const override { return info_; }
-  void poll(std::chrono::nanoseconds wait, DeviceInput& out) override;
   [[nodiscard]] bool connected() const override { return stream_.open(); }
-  void close() override;
 
  private:
-  void connect(DeviceInput& out);
-  void lose(const std::string& why, DeviceInput& out);
+  std::string connect() override;
+  void disconnect() override { stream_.close(); }
+  void read(std::chrono::nanoseconds wait, DeviceInput& out) override;
   void take(const openigtlink::Item& item, DeviceInput& out);
-  void tellOnce(const std::string& fault, DeviceInput& out);
+  /// Reports a fault or a status of the server once a connection.
+  void tellOnce(DeviceEvent::Kind kind, const std::string& fault, DeviceInput& out);
 
   OpenIgtLinkSettings settings_;
-  DeviceInfo info_;
-  DeviceClock clock_;
   TcpStream stream_;
   openigtlink::Decoder decoder_;
   std::array<std::uint64_t, handCount> sequence_{};
   std::array<double, handCount> gripper_{};
-  std::set<std::string> told_;    ///< faults of this connection
-  std::string refusal_;           ///< why the last attempt to connect failed; told when it changes
-  std::int64_t nextAttempt_ = 0;  ///< ns
-  bool open_ = true;
+  std::set<std::string> told_;  ///< faults of this connection
 };
 
 extern const DeviceKind openIgtLinkKind;

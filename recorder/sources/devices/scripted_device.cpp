@@ -32,8 +32,8 @@ Wrench WrenchGate::output(std::int64_t now) const {
 }
 
 ScriptedDevice::ScriptedDevice(DeviceScript script, DeviceClock clock)
-    : script_(std::move(script)),
-      clock_(std::move(clock)),
+    : Device(std::move(clock)),
+      script_(std::move(script)),
       gate_{WrenchGate(script_.maxForce, 0.0), WrenchGate(script_.maxForce, 0.0)},
       origin_(clock_()) {
   std::sort(script_.unpluggings.begin(), script_.unpluggings.end(),
@@ -59,7 +59,7 @@ void ScriptedDevice::poll(std::chrono::nanoseconds, DeviceInput& out) {
   const std::int64_t now = clock_();
   if (!greeted_) {
     greeted_ = connected_ = true;
-    out.events.push_back({DeviceEvent::Kind::connected, now, info_.identity + ": there"});
+    tell(DeviceEvent::Kind::connected, info_.identity + ": there", out);
   }
   for (;;) {
     const bool more = unplugging_ < script_.unpluggings.size();

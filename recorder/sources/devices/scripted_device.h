@@ -35,7 +35,6 @@ class ScriptedDevice final : public Device {
   /// @param clock (ns); the script begins when the device is made.
   ScriptedDevice(DeviceScript script, DeviceClock clock);
 
-  [[nodiscard]] const DeviceInfo& info() const override { return info_; }
   void poll(std::chrono::nanoseconds wait, DeviceInput& out) override;
   [[nodiscard]] bool connected() const override { return connected_; }
   [[nodiscard]] bool ended() const override { return next_ == script_.samples.size(); }
@@ -47,8 +46,6 @@ class ScriptedDevice final : public Device {
 
  private:
   DeviceScript script_;
-  DeviceInfo info_;
-  DeviceClock clock_;
   std::array<WrenchGate, handCount> gate_;
   std::int64_t origin_;   ///< clock at the script's time 0; moves on with every unplugging
   std::size_t next_ = 0;  ///< sample

@@ -30,7 +30,9 @@ constexpr double boardSeconds = 30.0;
 class LimitedSource final : public FrameSource {
  public:
   LimitedSource(FrameSource& source, double seconds)
-      : source_(&source), end_(monotonicNanoseconds() + static_cast<std::int64_t>(1e9 * seconds)) {}
+      : FrameSource(source.name(), source.width(), source.height(), source.rate()),
+        source_(&source),
+        end_(monotonicNanoseconds() + static_cast<std::int64_t>(1e9 * seconds)) {}
   FrameStatus next(std::chrono::nanoseconds, Frame& out) override {
     while (monotonicNanoseconds() < end_) {
       const FrameStatus status = source_->next(std::chrono::milliseconds(20), out);
@@ -38,10 +40,6 @@ class LimitedSource final : public FrameSource {
     }
     return FrameStatus::ended;
   }
-  [[nodiscard]] int width() const override { return source_->width(); }
-  [[nodiscard]] int height() const override { return source_->height(); }
-  [[nodiscard]] double rate() const override { return source_->rate(); }
-  [[nodiscard]] std::string name() const override { return source_->name(); }
 
  private:
   FrameSource* source_;

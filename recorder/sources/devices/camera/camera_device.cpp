@@ -4,15 +4,13 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <linux/input.h>
-#include <unistd.h>
 #include <algorithm>
-#include <cerrno>
-#include <cmath>
 #include <cstring>
 #include <utility>
 
 #include "recorder/base/errors.h"
+#include "recorder/sources/devices/evdev.h"
+#include "recorder/sources/devices/pointer_device.h"
 
 namespace calot::recorder {
 namespace {
@@ -41,37 +39,28 @@ PedalKeys::~PedalKeys() {
 }
 
 bool PedalKeys::read() {
-  for (;;) {
-    input_event event{};
-    const ssize_t got = file_ < 0 ? -1 : ::read(file_, &event, sizeof event);
-    if (got == static_cast<ssize_t>(sizeof event)) {
-      // 0 up, 1 down, 2 repeats
-      if (event.type == EV_KEY && event.code < down_.size()) down_[event.code] = event.value != 0;
-      continue;
-    }
-    if (file_ >= 0 && got < 0 && (errno == EAGAIN || errno == EINTR)) return true;
-    // Unplugged, or at its end: a pedal that nobody can let go would cut for ever.
-    down_.fill(false);
-    if (file_ >= 0) ::close(file_);
-    file_ = -1;
-    return false;
-  }
+  const auto take = [this](const input_event& e) {
+    // 0 up, 1 down, 2 repeats
+    if (e.type == EV_KEY && e.code < down_.size()) down_[e.code] = e.value != 0;
+  };
+  if (file_ >= 0 && readEvents(file_, take)) return true;
+  // Unplugged, or at its end: a pedal that nobody can let go would cut for ever.
+  down_.fill(false);
+  if (file_ >= 0) ::close(std::exchange(file_, -1));
+  return false;
 }
 
 PedalKeys::Hold PedalKeys::hold(Hand hand) const {
   const KeySet& key = keySets[static_cast<std::size_t>(hand)];
   const auto is = [&](int code) { return down_[static_cast<std::size_t>(code)]; };
   Hold out;
-  const auto press = [&](bool held, std::uint8_t bit) {
-    if (held) out.buttons = static_cast<std::uint8_t>(out.buttons | bit);
-  };
-  press(is(key.cut) || is(key.cutToo), button::cutPedal);
-  press(is(key.coagulate) || is(key.coagulateToo), button::coagulatePedal);
-  press(is(key.fire), button::fire);
-  press(is(key.lock), button::lock);
-  press(is(key.more), button::retractMore);
-  press(is(key.less), button::retractLess);
-  out.jawRate = (is(key.open) ? jawSpeedOfKeys : 0.0) - (is(key.close) ? jawSpeedOfKeys : 0.0);
+  press(out.buttons, is(key.cut) || is(key.cutToo), button::cutPedal);
+  press(out.buttons, is(key.coagulate) || is(key.coagulateToo), button::coagulatePedal);
+  press(out.buttons, is(key.fire), button::fire);
+  press(out.buttons, is(key.lock), button::lock);
+  press(out.buttons, is(key.more), button::retractMore);
+  press(out.buttons, is(key.less), button::retractLess);
+  out.jawRate = jawSpeedOfKeys * between(is(key.open), is(key.close));
   return out;
 }
 
@@ -84,7 +73,8 @@ constexpr std::chrono::milliseconds pairPatience(2);  // from look to look
 
 CameraDevice::CameraDevice(std::vector<std::unique_ptr<FrameSource>> sources, CameraRig rig, DeviceInfo info,
                            DeviceClock clock, std::unique_ptr<PedalKeys> keys)
-    : info_(std::move(info)), rig_(std::move(rig)), clock_(std::move(clock)), keys_(std::move(keys)) {
+    : Device(std::move(clock)), rig_(std::move(rig)), keys_(std::move(keys)) {
+  info_ = std::move(info);
   double rate = sources.front()->rate();
   for (std::unique_ptr<FrameSource>& source : sources) {
     rate = std::max(rate, source->rate());
@@ -95,10 +85,6 @@ CameraDevice::CameraDevice(std::vector<std::unique_ptr<FrameSource>> sources, Ca
   info_.capabilities.rate = rate;
   for (const Hand hand : {Hand::left, Hand::right}) tracker_.emplace_back(rig_, hand);
   origin_ = live() ? 0 : clock_();
-}
-
-void CameraDevice::tell(DeviceEvent::Kind kind, const std::string& text, DeviceInput& out) {
-  out.events.push_back({kind, clock_(), text});
 }
 
 /// Fills what each camera has next. @returns whether there is a frame

@@ -55,7 +55,6 @@ class CameraDevice final : public Device {
   CameraDevice(std::vector<std::unique_ptr<FrameSource>> sources, CameraRig rig, DeviceInfo info, DeviceClock clock,
                std::unique_ptr<PedalKeys> keys = nullptr);
 
-  [[nodiscard]] const DeviceInfo& info() const override { return info_; }
   void poll(std::chrono::nanoseconds wait, DeviceInput& out) override;
   [[nodiscard]] bool connected() const override { return connected_; }
   [[nodiscard]] bool ended() const override { return ended_; }
@@ -73,11 +72,8 @@ class CameraDevice final : public Device {
   bool gather(std::chrono::nanoseconds wait, DeviceInput& out);
   void measure(std::int64_t time, DeviceInput& out);
   void put(Hand hand, const HandleSight& sight, std::uint64_t missed, std::int64_t host, DeviceInput& out);
-  void tell(DeviceEvent::Kind kind, const std::string& text, DeviceInput& out);
 
-  DeviceInfo info_;
   CameraRig rig_;
-  DeviceClock clock_;
   std::vector<std::unique_ptr<Camera>> camera_;
   std::unique_ptr<PedalKeys> keys_;
   std::vector<HandleTracker> tracker_;

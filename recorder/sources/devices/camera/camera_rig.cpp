@@ -3,92 +3,45 @@
 #include "recorder/sources/devices/camera/camera_rig.h"
 
 #include <fmt/format.h>
-#include <cmath>
+
+#include "recorder/base/identity.h"
+#include "recorder/sources/json_values.h"
 
 namespace calot::recorder {
 namespace {
 
 constexpr double mostPixels = 100000.0;
-constexpr const char* sideNames[handCount] = {"left", "right"};
-
 const ObjectRule rigRule{"camera", {{"printScale", true, 0.1, 10}, {"cameras"}, {"trocars"}, {"limits"}}};
-const ObjectRule cameraRule{"oneCamera",
-                            {{"width", true, 16, mostPixels},
-                             {"height", true, 16, mostPixels},
-                             {"focal", true, 1, 1e6},
-                             {"centre", true, -mostPixels, mostPixels},
-                             {"distortion", true, -10, 10},
-                             {"readout", true, 0, 1},
-                             {"views", true, 0, 10000},
-                             {"coverage", true, 0, 1},
-                             {"residual", true, 0, mostPixels},
-                             {"focalUncertainty", true, 0, 1e6},
-                             {"position", true, -10, 10},
-                             {"orientation", true, -1, 1},
-                             {"pairResidual", true, 0, mostPixels}}};
 const ObjectRule trocarsRule{"trocars", {{"left", false}, {"right", false}}};
-const ObjectRule trocarRule{"trocar", {{"point", true, -10, 10}, {"residual", true, 0, 10}}};
-const ObjectRule rigLimitsRule{"cameraLimits",
-                               {{"lensResidual", true, 0, mostPixels},
-                                {"focalUncertainty", true, 0, 1e6},
-                                {"coverage", true, 0, 1},
-                                {"views", true, 0, 10000},
-                                {"trocarResidual", true, 0, 10},
-                                {"scaleError", true, 0, 10}}};
 
-template <class Limits, class Visitor>
-void visitRigLimits(Limits& l, const Visitor& visit) {
-  visit("lensResidual", l.lensResidual);
-  visit("focalUncertainty", l.focalUncertainty);
-  visit("coverage", l.coverage);
-  visit("views", l.views);
-  visit("trocarResidual", l.trocarResidual);
-  visit("scaleError", l.scaleError);
+JsonValues valuesOf(RigCamera& camera) {
+  CameraLens& lens = camera.lens;
+  return {{{"width", true, 16, mostPixels}, &lens.width},
+          {{"height", true, 16, mostPixels}, &lens.height},
+          {{"focal", true, 1, 1e6}, std::span(lens.focal.data(), 2)},
+          {{"centre", true, -mostPixels, mostPixels}, std::span(lens.centre.data(), 2)},
+          {{"distortion", true, -10, 10}, std::span(lens.distortion)},
+          {{"readout", true, 0, 1}, &lens.readout},
+          {{"views", true, 0, 10000}, &lens.views},
+          {{"coverage", true, 0, 1}, &lens.coverage},
+          {{"residual", true, 0, mostPixels}, &lens.residual},
+          {{"focalUncertainty", true, 0, 1e6}, &lens.focalUncertainty},
+          {{"position", true, -10, 10}, &camera.fromDevice.position},
+          {{"orientation", true, -1, 1}, &camera.fromDevice.orientation},
+          {{"pairResidual", true, 0, mostPixels}, &camera.pairResidual}};
 }
 
-template <class Values>
-nlohmann::ordered_json listOf(const Values& values) {
-  auto out = nlohmann::ordered_json::array();
-  for (const double v : values) out.push_back(v);
-  return out;
+JsonValues valuesOf(Trocar& trocar) {
+  return {{{"point", true, -10, 10}, &trocar.point}, {{"residual", true, 0, 10}, &trocar.residual}};
 }
 
-std::vector<double> numbersAt(const JsonObject& object, const ObjectRule& rule, const char* key, std::size_t count) {
-  std::vector<double> out;
-  for (const KeyRule& k : rule.keys) {
-    if (k.key != key) continue;
-    for (const JsonPlace& place : object.at(key).list(count, count)) out.push_back(place.number(k));
-  }
-  return out;
-}
-
-RigCamera cameraOf(const JsonPlace& place) {
-  const JsonObject o = place.object(cameraRule);
-  const auto numbers = [&](const char* key, std::size_t count) { return numbersAt(o, cameraRule, key, count); };
-  RigCamera out;
-  std::uint32_t width = 0, height = 0, views = 0;
-  o.read("width", width);
-  o.read("height", height);
-  o.read("views", views);
-  CameraLens& lens = out.lens;
-  lens.width = static_cast<int>(width);
-  lens.height = static_cast<int>(height);
-  lens.views = static_cast<int>(views);
-  lens.focal = Eigen::Vector2d(numbers("focal", 2).data());
-  lens.centre = Eigen::Vector2d(numbers("centre", 2).data());
-  const std::vector<double> bend = numbers("distortion", lens.distortion.size());
-  std::copy(bend.begin(), bend.end(), lens.distortion.begin());
-  o.read("readout", lens.readout);
-  o.read("coverage", lens.coverage);
-  o.read("residual", lens.residual);
-  o.read("focalUncertainty", lens.focalUncertainty);
-  o.read("pairResidual", out.pairResidual);
-  o.read("position", out.fromDevice.position);
-  const std::vector<double> q = numbers("orientation", 4);
-  const Quat orientation(q[0], q[1], q[2], q[3]);
-  if (!(std::abs(orientation.norm() - 1.0) <= 1e-6)) o.at("orientation").fail("is no unit quaternion w x y z");
-  out.fromDevice.orientation = orientation.normalized();
-  return out;
+JsonValues valuesOf(RigLimits& l) {
+  return {{{"lensResidual", true, 0, mostPixels}, &l.lensResidual},
+          {{"focalUncertainty", true, 0, 1e6}, &l.focalUncertainty},
+          {{"coverage", true, 0, 1}, &l.coverage},
+          {{"views", true, 0, 10000}, &l.views},
+          {{"trocarResidual", true, 0, 10}, &l.trocarResidual},
+          {{"scaleError", true, 0, 10}, &l.scaleError}};
 }
 
 }  // namespace
@@ -115,59 +68,34 @@ std::vector<std::string> rigShortcomings(const CameraRig& rig) {
   }
   for (std::size_t h = 0; h < handCount; ++h) {
     if (rig.trocar[h] && !(rig.trocar[h]->residual <= limit.trocarResidual))
-      out.push_back(fmt::format("{} trocar: the shaft misses it by {:.1f} mm, at most {:.1f}", sideNames[h],
+      out.push_back(fmt::format("{} trocar: the shaft misses it by {:.1f} mm, at most {:.1f}", handNames[h],
                                 1e3 * rig.trocar[h]->residual, 1e3 * limit.trocarResidual));
   }
   return out;
 }
 
-nlohmann::ordered_json rigJson(const CameraRig& rig) {
-  nlohmann::ordered_json out{{"printScale", rig.printScale}, {"cameras", nlohmann::ordered_json::array()}};
-  for (const RigCamera& camera : rig.cameras) {
-    const CameraLens& lens = camera.lens;
-    const Quat& q = camera.fromDevice.orientation;
-    out["cameras"].push_back({{"width", lens.width},
-                              {"height", lens.height},
-                              {"focal", listOf(lens.focal)},
-                              {"centre", listOf(lens.centre)},
-                              {"distortion", listOf(lens.distortion)},
-                              {"readout", lens.readout},
-                              {"views", lens.views},
-                              {"coverage", lens.coverage},
-                              {"residual", lens.residual},
-                              {"focalUncertainty", lens.focalUncertainty},
-                              {"position", listOf(camera.fromDevice.position)},
-                              {"orientation", listOf(std::array{q.w(), q.x(), q.y(), q.z()})},
-                              {"pairResidual", camera.pairResidual}});
-  }
-  auto trocars = nlohmann::ordered_json::object();
+nlohmann::ordered_json rigJson(CameraRig rig) {
+  auto cameras = nlohmann::ordered_json::array(), trocars = nlohmann::ordered_json::object();
+  for (RigCamera& camera : rig.cameras) cameras.push_back(jsonOf(valuesOf(camera)));
   for (std::size_t h = 0; h < handCount; ++h) {
-    if (rig.trocar[h])
-      trocars[sideNames[h]] = {{"point", listOf(rig.trocar[h]->point)}, {"residual", rig.trocar[h]->residual}};
+    if (rig.trocar[h]) trocars[handNames[h]] = jsonOf(valuesOf(*rig.trocar[h]));
   }
-  out["trocars"] = trocars;
-  auto limits = nlohmann::ordered_json::object();
-  visitRigLimits(rig.limits, [&](const char* key, double v) { limits[key] = v; });
-  out["limits"] = limits;
-  return out;
+  return {{"printScale", rig.printScale},
+          {"cameras", cameras},
+          {"trocars", trocars},
+          {"limits", jsonOf(valuesOf(rig.limits))}};
 }
 
 CameraRig rigOf(const JsonPlace& place) {
   const JsonObject o = place.object(rigRule);
   CameraRig rig;
   o.read("printScale", rig.printScale);
-  for (const JsonPlace& camera : o.at("cameras").list(1, 2)) rig.cameras.push_back(cameraOf(camera));
+  for (const JsonPlace& camera : o.at("cameras").list(1, 2)) readValues(camera, valuesOf(rig.cameras.emplace_back()));
   const JsonObject trocars = o.at("trocars").object(trocarsRule);
   for (std::size_t h = 0; h < handCount; ++h) {
-    if (!trocars.has(sideNames[h])) continue;
-    const JsonObject t = trocars.at(sideNames[h]).object(trocarRule);
-    Trocar trocar;
-    t.read("point", trocar.point);
-    t.read("residual", trocar.residual);
-    rig.trocar[h] = trocar;
+    if (trocars.has(handNames[h])) readValues(trocars.at(handNames[h]), valuesOf(rig.trocar[h].emplace()));
   }
-  const JsonObject limits = o.at("limits").object(rigLimitsRule);
-  visitRigLimits(rig.limits, [&](const char* key, double& v) { limits.read(key, v); });
+  readValues(o.at("limits"), valuesOf(rig.limits));
   return rig;
 }
 

@@ -67,7 +67,7 @@ struct CameraRig {
 std::vector<std::string> rigShortcomings(const CameraRig& rig);
 
 /// The part "camera" of a calibration file, and its rules, which the published schema repeats.
-nlohmann::ordered_json rigJson(const CameraRig& rig);
+nlohmann::ordered_json rigJson(CameraRig rig);
 /// @throws Error (damaged) with file and JSON pointer.
 CameraRig rigOf(const JsonPlace& place);
 

@@ -34,13 +34,12 @@ std::vector<std::unique_ptr<FrameSource>> openFilmSources(const std::vector<std:
 class PacedFilm final : public FrameSource {
  public:
   PacedFilm(std::unique_ptr<FrameSource> film, DeviceClock clock)
-      : film_(std::move(film)), clock_(std::move(clock)), period_(static_cast<std::int64_t>(1e9 / film_->rate())) {}
+      : FrameSource(film->name(), film->width(), film->height(), film->rate()),
+        film_(std::move(film)),
+        clock_(std::move(clock)),
+        period_(static_cast<std::int64_t>(1e9 / film_->rate())) {}
 
   FrameStatus next(std::chrono::nanoseconds wait, Frame& out) override;
-  [[nodiscard]] int width() const override { return film_->width(); }
-  [[nodiscard]] int height() const override { return film_->height(); }
-  [[nodiscard]] double rate() const override { return film_->rate(); }
-  [[nodiscard]] std::string name() const override { return film_->name(); }
   [[nodiscard]] std::string reason() const override { return film_->reason(); }
 
  private:

@@ -5,22 +5,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <thread>
 #include <utility>
 
-#include "recorder/base/errors.h"
 #include "sim/math/linear.h"
 
 namespace calot::recorder {
 namespace {
 
-constexpr std::int64_t haplyRetry = 500'000'000;  // ns from one attempt to connect to the next
 constexpr std::chrono::milliseconds haplyPatience{500};
 constexpr std::int64_t haplyPeriod = 1'000'000;             // ns from force to force
-constexpr std::int64_t haplyFall = 200'000'000;             // ns, the longest fall of the force at the end
 constexpr double haplyJawRate = 1.8, haplyWidestJaw = 1.2;  // rad/s, rad
 constexpr double haplyReach = 1.0;                          // m; what lies farther is no measurement
 constexpr double unitError = 0.01;
@@ -87,40 +83,12 @@ const Json* element(const Json& message, const char* name, std::size_t i) {
   return list != nullptr && list->is_array() && i < list->size() ? &(*list)[i] : nullptr;
 }
 
-HaplySettings haplySettings(const DeviceRequest& request) {
-  HaplySettings out;
-  out.hand = request.hand;
-  if (request.argument.empty()) return out;
-  std::string port;
-  out.host = request.argument;
-  if (const std::size_t colon = out.host.rfind(':'); colon != std::string::npos) {
-    port = out.host.substr(colon + 1);
-    out.host = out.host.substr(0, colon);
-    if (port.empty()) request.refuse("a port is missing behind the colon");
-  }
-  for (const char c : out.host) {
-    if (c <= 0x20 || c >= 0x7f || c == '/' || c == ':') request.refuse("the host is no name or address");
-  }
-  if (out.host.empty() || out.host.size() > 253) request.refuse("a host is missing: haply:HOST:PORT");
-  if (port.empty()) return out;
-  const auto [end, fault] = std::from_chars(port.data(), port.data() + port.size(), out.port);
-  if (fault != std::errc() || end != port.data() + port.size() || out.port < 1 || out.port > 65535)
-    request.refuse("the port is no number from 1 to 65535");
-  return out;
-}
-
 }  // namespace
 
-HaplyDevice::Handle::Handle(std::string name) : id(std::move(name)), output({haplyHandle, {}}) {}
-
 HaplyDevice::HaplyDevice(HaplySettings settings, DeviceClock clock)
-    : settings_(std::move(settings)), clock_(std::move(clock)) {
-  const std::string fault = connect();
-  if (!fault.empty()) {
-    throw Error(ErrorKind::failure,
-                fmt::format("Haply's Inverse Service at {}:{}: {}", settings_.host, settings_.port, fault),
-                {Remedy::listDevices});
-  }
+    : ForceFeedbackDevice(std::move(clock)), settings_(std::move(settings)) {
+  connectFirst(fmt::format("Haply's Inverse Service at {}:{}", settings_.host, settings_.port));
+  gone_ = "the service is gone";
   std::string ids;
   DeviceCapabilities& c = info_.capabilities;
   c.hands = 0;
@@ -139,10 +107,7 @@ HaplyDevice::HaplyDevice(HaplySettings settings, DeviceClock clock)
   c.rate = 1000.0;
 }
 
-HaplyDevice::~HaplyDevice() { close(); }
-
 std::string HaplyDevice::connect() {
-  nextAttempt_ = clock_() + haplyRetry;
   std::string fault, first;
   stream_ = WebSocketStream::connect(settings_.host, settings_.port, haplyPatience, fault);
   if (!stream_.open()) return fault;
@@ -165,22 +130,13 @@ std::string HaplyDevice::connect() {
   const bool known = handle_[0].has_value() || handle_[1].has_value();
   for (std::size_t h = 0; h < handCount; ++h) {
     if (known && id[h] != (handle_[h] ? handle_[h]->id : "")) return refuse("another Inverse3 is there");
-    if (!known && !id[h].empty()) handle_[h].emplace(id[h]);
+    if (known || id[h].empty()) continue;
+    handle_[h].emplace().id = id[h];
+    output_[h].emplace(HandleModel{haplyHandle, {}});
   }
-  introduced_ = false;
+  introduced_ = toldMalformed_ = false;
   due_ = true;
   return {};
-}
-
-void HaplyDevice::lose(const std::string& why, DeviceInput& out) {
-  stream_.close();
-  nextAttempt_ = clock_() + haplyRetry;
-  greeted_ = false;
-  refusal_.clear();
-  for (auto& handle : handle_) {
-    if (handle) handle->output.lost();
-  }
-  out.events.push_back({DeviceEvent::Kind::disconnected, clock_(), fmt::format("{}: {}", info_.identity, why)});
 }
 
 void HaplyDevice::sample(std::size_t hand, const Json& device, const Json* grip, DeviceInput& out) {
@@ -217,18 +173,17 @@ void HaplyDevice::sample(std::size_t hand, const Json& device, const Json* grip,
   m.valid = s.valid;
   m.clutched = clutched;
   // The state answers the last command: until then the one before it was in force.
-  m.number = handle.output.number() > 0 ? handle.output.number() - 1 : 0;
+  m.number = std::max(1U, output_[hand]->number()) - 1;
   m.shown = handle.shown;
   handle.shown = handle.last;
-  handle.last = handle.output.measured(m, now);
-  reports_.note(hand, handle.output.statistics());
+  handle.last = measured(hand, m, now);
 }
 
 void HaplyDevice::take(const std::string& message, DeviceInput& out) {
   const Json state = Json::parse(message, nullptr, false);
   if (state.is_discarded()) {
     if (!std::exchange(toldMalformed_, true))
-      out.events.push_back({DeviceEvent::Kind::malformed, clock_(), info_.identity + ": a message that is no JSON"});
+      tell(DeviceEvent::Kind::malformed, info_.identity + ": a message that is no JSON", out);
     due_ = true;
     return;
   }
@@ -270,27 +225,7 @@ void HaplyDevice::sendForces() {
   due_ = false;
 }
 
-void HaplyDevice::poll(std::chrono::nanoseconds wait, DeviceInput& out) {
-  if (!open_) return;
-  if (!stream_.open()) {
-    if (greeted_) {
-      lose("the service is gone", out);
-      return;
-    }
-    if (clock_() < nextAttempt_) {
-      std::this_thread::sleep_for(std::min<std::chrono::nanoseconds>(wait, std::chrono::milliseconds(20)));
-      return;
-    }
-    const std::string fault = connect();
-    if (fault != refusal_ && !fault.empty())
-      out.events.push_back({DeviceEvent::Kind::disconnected, clock_(), fmt::format("{}: {}", info_.identity, fault)});
-    refusal_ = fault;
-    if (!stream_.open()) return;
-  }
-  if (!std::exchange(greeted_, true)) {
-    toldMalformed_ = false;
-    out.events.push_back({DeviceEvent::Kind::connected, clock_(), info_.identity + ": there"});
-  }
+void HaplyDevice::read(std::chrono::nanoseconds wait, DeviceInput& out) {
   if (due_) {
     const std::int64_t early = sent_ + haplyPeriod - clock_();
     if (early > 0 && wait.count() == 0) return;
@@ -299,27 +234,6 @@ void HaplyDevice::poll(std::chrono::nanoseconds wait, DeviceInput& out) {
   }
   std::string message;
   if (stream_.receive(message, wait)) take(message, out);
-}
-
-void HaplyDevice::setWrench(Hand hand, const Wrench& wrench) {
-  auto& handle = handle_[static_cast<std::size_t>(hand)];
-  if (handle) handle->output.command({wrench.force, Vec3::Zero()}, clock_());
-}
-
-void HaplyDevice::close() {
-  if (!open_) return;
-  for (auto& handle : handle_) {
-    if (handle) handle->output.release();
-  }
-  const auto idle = [this] {
-    return std::all_of(handle_.begin(), handle_.end(), [](const auto& h) { return !h || h->output.idle(); });
-  };
-  const std::int64_t until = clock_() + haplyFall;
-  DeviceInput unread;
-  while (stream_.open() && !idle() && clock_() < until) poll(std::chrono::milliseconds(2), unread);
-  if (stream_.open()) sendForces();
-  open_ = false;
-  stream_.close();
 }
 
 constinit const DeviceKind haplyKind{
@@ -336,7 +250,10 @@ constinit const DeviceKind haplyKind{
         },
     .open =
         [](const DeviceRequest& request) {
-          return OpenedDevice{std::make_unique<HaplyDevice>(haplySettings(request)), nullptr};
+          HaplySettings settings;
+          settings.hand = request.hand;
+          request.readAddress(settings.host, settings.port);
+          return OpenedDevice{std::make_unique<HaplyDevice>(std::move(settings)), nullptr};
         },
 };
 
