@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "recorder/base/text_words.h"
-#include "recorder/engine/wire_forms.h"
+#include "recorder/engine/wire.h"
 #include "recorder/formats/scene_assets.h"
 #include "recorder/recording/layout.h"
 
@@ -182,7 +182,7 @@ EngineStep EngineProcess::step(const StepInput& input) {
   return {answer.step, ticks_, result_, digest_, results_->hasProcedure() ? &procedure_ : nullptr};
 }
 
-Keyframe EngineProcess::keyframe() { return wire::fromWire(ask<wire::Keyframe>(wire::AskKeyframe{})); }
+Keyframe EngineProcess::keyframe() { return ask<wire::Keyframe>(wire::AskKeyframe{}); }
 
 SceneView EngineProcess::view() {
   SceneView view;

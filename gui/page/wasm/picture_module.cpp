@@ -15,7 +15,6 @@
 #include "gui/render/smoke.h"
 #include "gui/render/view_check.h"
 #include "recorder/engine/wire.h"
-#include "recorder/engine/wire_forms.h"
 #include "sim/scene/scene_view.h"
 
 namespace {
