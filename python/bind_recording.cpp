@@ -50,26 +50,10 @@ class OpenedRecording {
   recorder::Recording recording_;
 };
 
-struct AttributeDict {
-  py::dict& out;
-  template <class T>
-  void operator()(const char* name, const T& value) {
-    out[name] = value;
-  }
-  template <class T>
-  void constant(const char* name, const T& value) {
-    out[name] = value;
-  }
-  template <class T, std::size_t N>
-  void choice(const char* name, const T& value, const std::array<const char*, N>& names) {
-    out[name] = names[static_cast<std::size_t>(value)];
-  }
-};
-
 py::dict headerOf(const OpenedRecording& opened) {
   py::dict out;
-  AttributeDict visit{out};
-  recorder::visitAttributes(opened.recording().header(), visit);
+  recorder::forEachAttribute(opened.recording().header(),
+                             [&](const char* name, const auto& value) { out[name] = value; });
   return out;
 }
 

@@ -16,7 +16,7 @@
 #include "apps/calot/motion_import.h"
 #include "apps/common/exit_code.h"
 #include "recorder/base/errors.h"
-#include "recorder/recording/export_csv.h"
+#include "recorder/recording/recorded_columns.h"
 #include "recorder/recording/layout.h"
 #include "recorder/recording/probe.h"
 #include "recorder/sources/column_map.h"

@@ -26,22 +26,6 @@ namespace {
 
 using nlohmann::ordered_json;
 
-struct Attributes {
-  ordered_json& json;
-  template <class T>
-  void operator()(const char* name, const T& value) {
-    json[name] = value;
-  }
-  template <class T>
-  void constant(const char* name, const T& value) {
-    json[name] = value;
-  }
-  template <class T, std::size_t N>
-  void choice(const char* name, const T& value, const std::array<const char*, N>& names) {
-    json[name] = names[static_cast<std::size_t>(value)];
-  }
-};
-
 /// How a run at real time kept its deadlines, by the lateness of its ticks and steps' events; and how many of its steps
 /// missed a tolerance.
 void describeSteps(recorder::Recording& recording, ordered_json& out) {
@@ -119,8 +103,7 @@ ordered_json describe(recorder::Recording& recording, const recorder::ChainVerdi
   out["bytes"] = whole;
   out["bytes_by_group"] = bytes;
   ordered_json attributes;
-  Attributes visit{attributes};
-  recorder::visitAttributes(header, visit);
+  recorder::forEachAttribute(header, [&](const char* name, const auto& value) { attributes[name] = value; });
   out["attempt"] = attributes;
   out["organs"] = header.organs;
   out["vessels"] = header.vessels;

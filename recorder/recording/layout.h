@@ -41,9 +41,57 @@ enum class Element : std::uint8_t { u1, u2, u4, u8, i8, f4, f8, event, keyframe,
 enum class Stream : std::uint8_t { ticks, steps, events, keyframes, keyframeWords, rawLeft, rawRight };
 inline constexpr std::size_t streamCount = 7;
 
-std::size_t elementBytes(Element element);
-/// "u1" to "f8", as NumPy and the engines' protocol name them; empty for what is a row of several.
-const char* numberType(Element element);
+/// Packed rows of the compound data sets (bytes).
+inline constexpr std::size_t eventBytes = 45;
+inline constexpr std::size_t keyframeBytes = 32;
+inline constexpr std::size_t statusBytes = 82;
+inline constexpr std::size_t rawSampleBytes = 99;
+inline constexpr std::size_t rawCountsBytes = 32;
+
+inline constexpr std::size_t elementBytes(Element element) {
+  constexpr std::array<std::size_t, 12> bytes{
+      1, 2, 4, 8, 8, 4, 8, eventBytes, keyframeBytes, statusBytes, rawSampleBytes, rawCountsBytes};
+  return bytes[static_cast<std::size_t>(element)];
+}
+/// "u1" to "f8", as NumPy and the engines' protocol name them. @pre the element is a number
+inline constexpr const char* numberType(Element element) {
+  constexpr std::array<const char*, 7> names{"u1", "u2", "u4", "u8", "i8", "f4", "f8"};
+  return names[static_cast<std::size_t>(element)];
+}
+/// Stored type of a number, flag or choice.
+template <class T>
+constexpr Element storedAs() {
+  constexpr bool isSigned = std::is_signed_v<T> && !std::is_enum_v<T>;
+  if (std::is_floating_point_v<T>) return sizeof(T) == 4 ? Element::f4 : Element::f8;
+  static_assert(!isSigned || std::is_floating_point_v<T> || sizeof(T) == 8);
+  if (isSigned) return Element::i8;
+  return sizeof(T) == 1 ? Element::u1 : sizeof(T) == 2 ? Element::u2 : sizeof(T) == 4 ? Element::u4 : Element::u8;
+}
+
+/// Calls use(number) with a stored number.
+template <class Use>
+void withNumber(Element element, const std::byte* at, Use use) {
+  const auto as = [&]<class T>(T number) {
+    std::memcpy(&number, at, sizeof number);
+    use(number);
+  };
+  switch (element) {
+    case Element::u1:
+      return as(std::uint8_t{});
+    case Element::u2:
+      return as(std::uint16_t{});
+    case Element::u4:
+      return as(std::uint32_t{});
+    case Element::u8:
+      return as(std::uint64_t{});
+    case Element::i8:
+      return as(std::int64_t{});
+    case Element::f4:
+      return as(float{});
+    default:
+      return as(double{});
+  }
+}
 
 struct Column {
   std::string path;
@@ -59,13 +107,6 @@ struct Column {
   [[nodiscard]] std::size_t rowBytes() const { return elementBytes(element) * static_cast<std::size_t>(width); }
 };
 
-/// Packed rows of the compound data sets.
-inline constexpr std::size_t eventBytes = 45;
-inline constexpr std::size_t keyframeBytes = 32;
-inline constexpr std::size_t statusBytes = 82;
-inline constexpr std::size_t rawSampleBytes = 99;
-inline constexpr std::size_t rawCountsBytes = 32;
-
 /// A golden recording: a digest in the place of forces; no observables, keyframes, fields' digests.
 inline bool isMinimal(const AttemptHeader& header) { return header.purpose == "golden"; }
 
@@ -74,8 +115,10 @@ struct Layout {
   std::vector<Column> columns;
   std::size_t tickColumns = 0;                                   ///< the first ones
   std::size_t stepColumns = 0;                                   ///< the next ones
+  std::size_t results = 0;                                       ///< place of the first of those below /observables
   std::size_t events = 0, keyframeIndex = 0, keyframeWords = 0;  ///< places of the others
   std::array<std::size_t, handCount> raw{};
+  Column status, rawCounts;     ///< a row a flush
   bool deviceSamples = false;   ///< there is a /device
   bool minimal = false;         ///< isMinimal()
   bool brief = false;           ///< one digest of State and short ones of fields, in the place of those of components
@@ -255,6 +298,26 @@ void visitAttributes(Header& h, Visitor& visit) {
   visit("scene_name", h.sceneName);
   visit("scene_major", h.sceneMajor);
   visit("scene_minor", h.sceneMinor);
+}
+
+/// Hands root attributes to use(name, value); a choice is the string that it is stored as.
+template <class Use>
+struct AttributeValues {
+  Use use;
+  template <class T>
+  void operator()(const char* name, const T& value) {
+    use(name, value);
+  }
+  void constant(const char* name, const std::string& value) { use(name, value); }
+  template <class T, std::size_t N>
+  void choice(const char* name, const T& value, const std::array<const char*, N>& names) {
+    use(name, std::string(names[static_cast<std::size_t>(value)]));
+  }
+};
+template <class Use>
+void forEachAttribute(const AttemptHeader& header, Use use) {
+  AttributeValues<Use> values{std::move(use)};
+  visitAttributes(header, values);
 }
 
 /// Reads every visited value from one row of its column, and finds the first that no writer makes. `place(column)` is

@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "recorder/base/errors.h"
-#include "recorder/recording/export_csv.h"
+#include "recorder/recording/recorded_columns.h"
 #include "recorder/recording/probe.h"
 #include "recorder/recording/reader.h"
 #include "recorder/recording/recover.h"
