@@ -7,7 +7,6 @@
 #include "analytics/cohort/withdraw.h"
 #include "python/bindings.h"
 #include "python/value_rows.h"
-#include "recorder/words.h"
 
 namespace py = pybind11;
 

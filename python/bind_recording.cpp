@@ -9,7 +9,6 @@
 #include "recorder/recording/layout.h"
 #include "recorder/recording/probe.h"
 #include "recorder/recording/recorded_columns.h"
-#include "recorder/words.h"
 
 namespace py = pybind11;
 

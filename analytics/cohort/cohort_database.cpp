@@ -12,7 +12,6 @@
 
 #include "analytics/cohort/row_statements.h"
 #include "analytics/cohort/tables.h"
-#include "recorder/words.h"
 
 namespace calot::analytics {
 

@@ -7,7 +7,6 @@
 
 #include "analytics/external/input_columns.h"
 #include "recorder/base/errors.h"
-#include "recorder/words.h"
 #include "sim/judgement/judge.h"
 
 namespace calot::analytics {

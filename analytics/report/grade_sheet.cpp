@@ -7,7 +7,6 @@
 #include <nlohmann/json.hpp>
 
 #include "analytics/report/plots.h"
-#include "recorder/words.h"
 
 namespace calot::analytics {
 namespace {

@@ -18,7 +18,6 @@
 #include "apps/calot/results.h"
 #include "apps/calot/terminal_text.h"
 #include "apps/common/exit_code.h"
-#include "recorder/words.h"
 
 namespace calot::apps {
 namespace {

@@ -20,9 +20,10 @@ namespace calot::apps {
 namespace {
 
 struct GoldenOptions {
-  std::string folder, reason, only, junit;
+  std::string folder, reason, only;
+  JunitOptions junit;
   unsigned threads = 1;
-  bool json = false, force = false, skipUndecided = false;
+  bool json = false;
 };
 
 std::filesystem::path folderOf(const GoldenOptions& o) {
@@ -36,7 +37,7 @@ std::filesystem::path folderOf(const GoldenOptions& o) {
 int check(const GoldenOptions& o) {
   const std::filesystem::path folder = folderOf(o);
   const GoldenList list = readGoldenList(folder / "golden.json");
-  if (!o.junit.empty()) recorder::refuseOutput(o.junit, o.force);
+  if (!o.junit.file.empty()) recorder::refuseOutput(o.junit.file, o.junit.force);
   std::vector<recorder::ReplayReport> reports;
   nlohmann::json rows = nlohmann::json::array();
   Progress progress("replaying, recordings", o.json);
@@ -56,7 +57,7 @@ int check(const GoldenOptions& o) {
   }
   if (reports.empty()) throw Error(ErrorKind::invalid, fmt::format("golden: --only {}: not in the list", o.only));
   Progress::erase();
-  if (!o.junit.empty()) recorder::writeJunit(o.junit, reports, {"calot golden check", o.skipUndecided, o.force});
+  writeJunit(o.junit, "calot golden check", reports);
   if (o.json) printResult("golden-check", {{"recordings", rows}});
   return static_cast<int>(worstOf(reports));
 }
@@ -115,7 +116,7 @@ void addGolden(CLI::App& app, Run& run) {
     one->add_option("--threads", o->threads, "of the simulation; 0: all")
         ->check(CLI::Range(0U, 64U))
         ->capture_default_str();
-  addJunitOptions(*checking, o->junit, o->skipUndecided, o->force);
+  addJunitOptions(*checking, o->junit);
   checking->add_flag("--json", o->json, "print the result as JSON");
   for (CLI::App* one : {updating, values})
     one->add_option("--reason", o->reason, "why they change; kept in the list")->required();

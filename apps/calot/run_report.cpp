@@ -10,7 +10,6 @@
 #include "apps/calot/replay_report.h"
 #include "apps/calot/results.h"
 #include "recorder/base/errors.h"
-#include "recorder/words.h"
 
 namespace calot::apps {
 

@@ -10,7 +10,6 @@
 #include "analytics/checkpoints/registry.h"
 #include "analytics/report/report_text.h"
 #include "gui/attempt/theme.h"
-#include "recorder/words.h"
 
 namespace calot::gui {
 

@@ -8,7 +8,6 @@
 #include <QLocale>
 
 #include "gui/words/event_words.h"
-#include "recorder/words.h"
 #include "sim/instruments/instruments.h"
 
 namespace calot::gui {

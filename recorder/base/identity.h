@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -15,6 +16,12 @@ namespace calot::recorder {
 /// Who acts. Set by the source, not by the caller. Numbers are stored and never reused.
 enum class OperatorKind : std::uint8_t { human = 0, kinematics = 1, performer = 2 };
 enum class Mode : std::uint8_t { practice = 0, assessment = 1 };
+
+/// Names, as recordings store them. @pre the value is one that has a name
+inline constexpr std::array<const char*, 3> operatorKindNames{"human", "kinematics", "performer"};
+inline constexpr std::array<const char*, 2> modeNames{"practice", "assessment"};
+inline constexpr const char* wordFor(OperatorKind kind) { return operatorKindNames[static_cast<std::size_t>(kind)]; }
+inline constexpr const char* wordFor(Mode mode) { return modeNames[static_cast<std::size_t>(mode)]; }
 
 /// Version of the file format (schemas/recording.md) that is written, and the first one that is read.
 inline constexpr std::uint32_t formatVersion = 2;

@@ -261,11 +261,6 @@ void visitStep(Digest& digest, Brief& brief, Forces& forces, Lateness& lateness,
   if (visit.layout.procedure) visitProcedure(procedure, visit);
 }
 
-inline constexpr std::array<const char*, 3> operatorKindNames{"human", "kinematics", "performer"};
-inline constexpr std::array<const char*, 2> modeNames{"practice", "assessment"};
-inline constexpr std::array<const char*, 6> outcomeNames{"running",   "completed", "time_limit",
-                                                         "abandoned", "stopped",   "technical_failure"};
-
 /// Lists the root attributes in the order of the chain. Values: std::string, std::uint32_t, std::uint64_t,
 /// std::int64_t, double; `choice` is a string from a list.
 template <class Header, class Visitor>
