@@ -44,9 +44,19 @@ struct Asset {
   std::vector<std::byte> bytes;
 };
 
+/// Facts about an attempt supplied by the caller, beyond source and scene.
+struct AttemptSettings {
+  std::string participant;  ///< pseudonym, or empty
+  std::string station;
+  std::string purpose = "training";    ///< "training", "study", "golden", "demo"
+  std::string handedness = "unknown";  ///< "right", "left", "unknown"
+  Mode mode = Mode::practice;
+  std::uint64_t seed = 0;
+};
+
 /// Everything that is known when an attempt starts; the recording's root attributes and /scene. Names of tissue in the
 /// Model's order: columns of the observables, since the version of StepResult that brought them.
-struct AttemptHeader : Tissues::Names {
+struct AttemptHeader : AttemptSettings, Tissues::Names {
   std::uint32_t formatVersion = recorder::formatVersion;  ///< of the file that it stands in
   std::string attempt;                                    ///< uuid, lower case with hyphens
   std::string parent;                                     ///< uuid of the recording this one branches from, or empty
@@ -56,13 +66,7 @@ struct AttemptHeader : Tissues::Names {
   std::string build;                                      ///< compiler, type, revision
   std::uint32_t simulationVersion = 0;
   std::uint32_t stepResultVersion = 0;
-  std::string participant;  ///< pseudonym, or empty
   Provenance provenance;
-  std::string station;
-  Mode mode = Mode::practice;
-  std::string purpose;     ///< "training", "study", "golden", "demo"
-  std::string handedness;  ///< "right", "left", "unknown"
-  std::uint64_t seed = 0;
   double tickSeconds = tickLength;
   std::uint32_t ticksPerStep = 10;
   std::string sceneName;
