@@ -12,6 +12,7 @@
 #include "recorder/base/text_words.h"
 #include "recorder/engine/wire.h"
 #include "recorder/formats/scene_assets.h"
+#include "recorder/recording/block.h"
 #include "recorder/recording/layout.h"
 
 namespace calot::recorder {
@@ -28,7 +29,8 @@ AttemptHeader withResults(AttemptHeader header) {
 
 ResultReader::ResultReader(const AttemptHeader& header) : layout_(withResults(header)) {
   offset_.push_back(0);
-  for (std::size_t c = layout_.results; c < layout_.events; ++c) offset_.push_back(offset_.back() + layout_.columns[c].rowBytes());
+  for (std::size_t c = layout_.results; c < layout_.events; ++c)
+    offset_.push_back(offset_.back() + layout_.columns[c].rowBytes());
 }
 
 std::string ResultReader::fault(const std::vector<wire::Column>& declared) const {

@@ -4,8 +4,11 @@
 // link a flush: BLAKE2b-256 over decoded values.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -154,6 +157,86 @@ struct AppendVisitor {
   void each(const char*, const char*, const char*, const std::vector<Part>& parts, T Part::*member) {
     for (const Part& part : parts) appendValue(column[index], part.*member);
     ++index;
+  }
+};
+
+/// Reads every visited value from one row of its column, and finds the first that no writer makes. `place(column)` is
+/// where that column's row lies.
+template <class Place>
+struct RowVisitor {
+  const Layout& layout;
+  Place place;  ///< where the row of a column lies, by its number
+  std::size_t index = 0;
+  bool input = false;  ///< samples must be finite; results too, but where the simulation ran away (unfinite)
+  std::string fault;
+  std::string unfinite = {};  ///< first result that is no finite number
+
+  template <class T>
+  void operator()(const char*, const char*, const char*, T& value) {
+    read(at(), value);
+    ++index;
+  }
+  void operator()(const char*, const char*, const char*, Vec3& v) {
+    std::memcpy(v.data(), at(), 3 * sizeof(double));
+    if (!v.allFinite()) failUnfinite();
+    ++index;
+  }
+  void operator()(const char*, const char*, const char*, Quat& q) {
+    std::array<double, 4> wxyz{};
+    std::memcpy(wxyz.data(), at(), sizeof wxyz);
+    q = Quat(wxyz[0], wxyz[1], wxyz[2], wxyz[3]);
+    const double norm = std::sqrt(wxyz[0] * wxyz[0] + wxyz[1] * wxyz[1] + wxyz[2] * wxyz[2] + wxyz[3] * wxyz[3]);
+    if (input && !(std::abs(norm - 1.0) <= 1e-3)) fail("is not a unit quaternion within 1e-3");
+    if (!std::isfinite(norm)) failUnfinite();
+    ++index;
+  }
+  template <class T>
+  void outside(const char*, const char*, const char*, T& value) {
+    std::memcpy(&value, at(), sizeof value);
+    if (!std::isfinite(value)) fail("is not finite");
+    if (value < T{}) fail("is negative");
+    ++index;
+  }
+  template <class T>
+  void list(const char*, const char*, const char*, std::vector<T>& values, std::size_t width) {
+    values.resize(width);
+    for (std::size_t i = 0; i < width; ++i) read(at() + i * sizeof(T), values[i]);
+    ++index;
+  }
+  template <class Part, class T>
+  void each(const char*, const char*, const char*, std::vector<Part>& parts, T Part::*member) {
+    parts.resize(layout.countOf(parts));
+    for (std::size_t i = 0; i < parts.size(); ++i) read(at() + i * sizeof(T), parts[i].*member);
+    ++index;
+  }
+
+ private:
+  [[nodiscard]] const std::byte* at() const { return place(index); }
+  template <class T>
+  void read(const std::byte* from, T& value) {
+    const auto code = std::to_integer<unsigned>(*from);
+    if constexpr (std::is_same_v<T, bool>) {
+      if (code > 1) fail("is neither 0 nor 1");
+      value = code != 0;
+    } else {
+      std::memcpy(&value, from, sizeof value);
+    }
+    if constexpr (std::is_floating_point_v<T>) {
+      if (!std::isfinite(value)) failUnfinite();
+    } else if constexpr (std::is_same_v<T, InstrumentKind>) {
+      if (!isInstrumentNumber(code)) fail("is no known instrument");
+    } else if constexpr (std::is_same_v<T, Cautery>) {
+      if (value > Cautery::onTissue) fail("is no known state of the cautery");
+    } else if constexpr (std::is_same_v<T, Phase>) {
+      if (value > Phase::done) fail("is no known phase");
+    }
+  }
+  void failUnfinite() {
+    std::string& whose = input ? fault : unfinite;
+    if (whose.empty()) whose = fmt::format("{}[{{row}}] is not finite", layout.columns[index].path);
+  }
+  void fail(const char* why) {
+    if (fault.empty()) fault = fmt::format("{}[{{row}}] {}", layout.columns[index].path, why);
   }
 };
 
