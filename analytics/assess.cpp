@@ -17,7 +17,6 @@
 #include "analytics/report/report_document.h"
 #include "recorder/attempt.h"
 #include "recorder/formats/scene_file.h"
-#include "recorder/words.h"
 
 namespace calot::analytics {
 namespace {

@@ -14,7 +14,6 @@
 #include <vector>
 
 #include "analytics/cohort/declared_tables.h"
-#include "recorder/words.h"
 
 namespace calot::analytics {
 
@@ -108,11 +107,11 @@ inline constexpr ColumnMember at{
 /// An unsigned number of 64 bits as text in decimal: SQLite's integers are signed.
 template <class Row, auto Member>
 inline constexpr ColumnMember digits{[](SQLite::Statement& s, int i, const void* row) {
-                                   s.bind(i, std::to_string(static_cast<const Row*>(row)->*Member));
-                                 },
-                                 [](const SQLite::Column& from, void* row) {
-                                   static_cast<Row*>(row)->*Member = std::strtoull(from.getText(), nullptr, 10);
-                                 },
-                                 fieldReader<Row, Member>()};
+                                       s.bind(i, std::to_string(static_cast<const Row*>(row)->*Member));
+                                     },
+                                     [](const SQLite::Column& from, void* row) {
+                                       static_cast<Row*>(row)->*Member = std::strtoull(from.getText(), nullptr, 10);
+                                     },
+                                     fieldReader<Row, Member>()};
 
 }  // namespace calot::analytics

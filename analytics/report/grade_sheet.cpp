@@ -6,7 +6,6 @@
 #include <algorithm>
 
 #include "analytics/report/plots.h"
-#include "recorder/words.h"
 
 namespace calot::analytics {
 namespace {

@@ -5,7 +5,6 @@
 
 #include "analytics/cohort/cohort_database.h"
 #include "apps/calot/command.h"
-#include "recorder/words.h"
 
 namespace calot::apps {
 namespace {
@@ -57,7 +56,8 @@ std::size_t distinctLength(const std::vector<AttemptRow>& rows) {
 void listAttempts(const AttemptFilter& o) {
   const std::vector<AttemptRow> rows = analytics::CohortDatabase(o.cohort, Access::read).listAttempts();
   const std::size_t length = distinctLength(rows);
-  analytics::ReportTable table = analytics::tableOf("", {"=attempt", "=who", "=group", "=scene", "=day (UTC)", "seconds", "=outcome", "=verdict", "=tags"});
+  analytics::ReportTable table = analytics::tableOf(
+      "", {"=attempt", "=who", "=group", "=scene", "=day (UTC)", "seconds", "=outcome", "=verdict", "=tags"});
   std::string notes;
   std::size_t synthetic = 0;
   Json list = Json::array();

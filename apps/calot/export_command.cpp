@@ -4,10 +4,12 @@
 #include "analytics/cohort/withdraw.h"
 #include "analytics/interchange/motion_tables.h"
 #include "apps/calot/command.h"
+#include "apps/calot/environment.h"
 #include "apps/calot/import_command.h"
-#include "recorder/recording/export_csv.h"
+#include "recorder/base/errors.h"
 #include "recorder/recording/layout.h"
 #include "recorder/recording/probe.h"
+#include "recorder/recording/recorded_columns.h"
 #include "recorder/sources/column_map.h"
 
 namespace calot::apps {

@@ -310,9 +310,10 @@ void refuseUpdate(const std::filesystem::path& folder, const GoldenList& list, c
 }
 
 struct GoldenOptions {
-  std::string folder, reason, only, junit;
+  std::string folder, reason, only;
+  JunitOptions junit;
   unsigned threads = 1;
-  bool json = false, force = false, skipUndecided = false;
+  bool json = false;
 };
 
 std::filesystem::path folderOf(const GoldenOptions& o) {
@@ -336,7 +337,7 @@ void printChanges(const std::string& file, std::size_t checkpoints, const std::v
 ExitCode checkGolden(const GoldenOptions& o) {
   const std::filesystem::path folder = folderOf(o);
   const GoldenList list = readGoldenList(folder / listName);
-  if (!o.junit.empty()) recorder::refuseOutput(o.junit, o.force);
+  if (!o.junit.file.empty()) recorder::refuseOutput(o.junit.file, o.junit.force);
   std::vector<recorder::ReplayReport> reports;
   nlohmann::json rows = nlohmann::json::array();
   Progress progress("replaying, recordings", o.json);
@@ -356,7 +357,7 @@ ExitCode checkGolden(const GoldenOptions& o) {
   }
   if (reports.empty()) throw Error(ErrorKind::invalid, fmt::format("golden: --only {}: not in the list", o.only));
   Progress::erase();
-  if (!o.junit.empty()) recorder::writeJunit(o.junit, reports, {"calot golden check", o.skipUndecided, o.force});
+  writeJunit(o.junit, "calot golden check", reports);
   if (o.json) printResult("golden-check", {{"recordings", rows}});
   return worstOf(reports);
 }
@@ -421,7 +422,7 @@ void addGolden(CLI::App& app, Run& run) {
   CLI::App* values = add("values", "Replays them; the list takes over what the checkpoints give.", takeValues);
   checking->add_option("--only", o->only, "one file of the list");
   for (CLI::App* one : {checking, values}) addThreads(*one, o->threads, "of the simulation; 0: all");
-  addJunitOptions(*checking, o->junit, o->skipUndecided, o->force);
+  addJunitOptions(*checking, o->junit);
   checking->add_flag("--json", o->json, "print the result as JSON");
   for (CLI::App* one : {updating, values})
     one->add_option("--reason", o->reason, "why they change; kept in the list")->required();

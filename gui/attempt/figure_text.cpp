@@ -10,7 +10,6 @@
 #include "analytics/checkpoints/checkpoint.h"
 #include "analytics/report/report_document.h"
 #include "gui/attempt/theme.h"
-#include "recorder/words.h"
 
 namespace calot::gui {
 

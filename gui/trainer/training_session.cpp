@@ -13,7 +13,6 @@
 #include "recorder/branch.h"
 #include "recorder/live/worker_pool.h"
 #include "recorder/live/wrapped_sources.h"
-#include "recorder/words.h"
 
 namespace calot::gui {
 

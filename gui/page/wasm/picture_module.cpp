@@ -17,12 +17,10 @@
 #include "gui/render/smoke.h"
 #include "gui/render/view_check.h"
 #include "recorder/engine/wire.h"
-#include "recorder/engine/wire_forms.h"
 #include "sim/scene/scene_view.h"
 
 extern "C" {
-#define CALOT_GL_IMPORT(Name) \
-  __attribute__((import_module("gl"), import_name(#Name))) decltype(gl##Name) gl##Name;
+#define CALOT_GL_IMPORT(Name) __attribute__((import_module("gl"), import_name(#Name))) decltype(gl##Name) gl##Name;
 CALOT_GL_FUNCTIONS(CALOT_GL_IMPORT)
 #undef CALOT_GL_IMPORT
 }

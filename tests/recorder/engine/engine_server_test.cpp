@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "recorder/engine/state_fields.h"
-#include "recorder/engine/wire_forms.h"
+#include "recorder/engine/wire.h"
 #include "recorder/recording/reader.h"
 #include "sim/scene/scene_viewer.h"
 #include "sim/scene/version.h"
@@ -170,7 +170,7 @@ TEST_F(Server, ShowsTheScene) {
   EXPECT_EQ(encodePayload(wire::toWire(view)), encodePayload(wire::toWire(engine.view())));
   // A view whose lists do not fit one another is none.
   wire::View lying = wire::toWire(view);
-  lying.surface.at(0).triangle.at(0)[1] = static_cast<std::uint32_t>(lying.surface[0].position.size());
+  lying.surface.at(0).triangle.at(0)[1] = static_cast<int>(lying.surface[0].position.size());
   EXPECT_FALSE(wire::fromWire(lying, view));
 }
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "recorder/engine/wire_forms.h"
+#include "recorder/engine/wire.h"
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "sim/instruments/instruments.h"
@@ -23,15 +24,16 @@ bool isRotation(const Rotation& r) {
 bool fits(const Surface& s) {
   const std::size_t vertices = s.position.size();
   if (s.rest.size() != vertices || (!s.charred.empty() && s.charred.size() != vertices) ||
-      (!s.face.empty() && s.face.size() != vertices) || s.role > static_cast<std::uint8_t>(StructureRole::cysticPlate))
+      (!s.face.empty() && s.face.size() != vertices) || s.role > StructureRole::cysticPlate)
     return false;
-  return std::all_of(s.triangle.begin(), s.triangle.end(),
-                     [&](const auto& t) { return t[0] < vertices && t[1] < vertices && t[2] < vertices; });
+  return std::all_of(s.triangle.begin(), s.triangle.end(), [&](const Index3& t) {
+    return t.minCoeff() >= 0 && static_cast<std::size_t>(t.maxCoeff()) < vertices;
+  });
 }
 
 bool fits(const Bed& b) {
   const std::size_t strands = b.strand.size();
-  const auto isCondition = [](std::uint8_t c) { return c <= static_cast<std::uint8_t>(StrandCondition::torn); };
+  const auto isCondition = [](StrandCondition c) { return c <= StrandCondition::torn; };
   const auto isSheet = [&](const auto& s) { return s[0] < strands && s[1] < strands; };
   return b.condition.size() == strands && b.alpha.size() == strands &&
          std::all_of(b.condition.begin(), b.condition.end(), isCondition) &&
@@ -40,27 +42,24 @@ bool fits(const Bed& b) {
 
 }  // namespace
 
-Tick toWire(const TickSamples& samples, const TickOutcome& logged) {
-  Tick tick;
-  for (std::size_t h = 0; h < handCount; ++h) {
-    const InstrumentSample& s = samples.hand[h];
-    tick.hand[h] = {s.position,
-                    rotationOf(s.orientation),
-                    s.jaw,
-                    static_cast<std::uint8_t>(s.instrument),
-                    s.buttons,
-                    static_cast<std::uint8_t>(s.valid ? 1 : 0),
-                    logged.hand[h].contactSet};
-  }
-  tick.cameraPosition = samples.camera.position;
-  tick.cameraOrientation = rotationOf(samples.camera.orientation);
-  tick.lateness = logged.lateness;
-  return tick;
-}
-
 void toWire(std::span<const TickSamples> samples, std::span<const TickOutcome> logged, std::vector<Tick>& out) {
-  out.clear();
-  for (std::size_t i = 0; i < samples.size(); ++i) out.push_back(toWire(samples[i], logged[i]));
+  out.resize(samples.size());
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    Tick& tick = out[i];
+    for (std::size_t h = 0; h < handCount; ++h) {
+      const InstrumentSample& s = samples[i].hand[h];
+      tick.hand[h] = {s.position,
+                      rotationOf(s.orientation),
+                      s.jaw,
+                      static_cast<std::uint8_t>(s.instrument),
+                      s.buttons,
+                      static_cast<std::uint8_t>(s.valid ? 1 : 0),
+                      logged[i].hand[h].contactSet};
+    }
+    tick.cameraPosition = samples[i].camera.position;
+    tick.cameraOrientation = rotationOf(samples[i].camera.orientation);
+    tick.lateness = logged[i].lateness;
+  }
 }
 
 bool fromWire(const Tick& tick, TickSamples& samples, TickOutcome& logged) {
@@ -92,28 +91,8 @@ View toWire(const SceneView& view) {
   View out;
   out.step = view.step;
   out.time = view.time;
-  for (const SurfaceView& s : view.surface) {
-    Surface& surface = out.surface.emplace_back();
-    surface.structure = s.organ;
-    surface.appearance = s.appearance;
-    surface.role = static_cast<std::uint8_t>(s.role);
-    surface.position = s.position;
-    surface.rest = s.rest;
-    for (const Index3& t : s.triangle) {
-      surface.triangle.push_back(
-          {static_cast<std::uint32_t>(t[0]), static_cast<std::uint32_t>(t[1]), static_cast<std::uint32_t>(t[2])});
-    }
-    surface.charred = s.charred;
-    surface.face = s.face;
-  }
-  for (const ConnectiveView& c : view.connective) {
-    Bed& bed = out.bed.emplace_back();
-    bed.name = c.name;
-    bed.strand = c.strand;
-    for (const StrandCondition condition : c.condition) bed.condition.push_back(static_cast<std::uint8_t>(condition));
-    bed.alpha = c.alpha;
-    bed.sheet = c.sheet;
-  }
+  for (const SurfaceView& surface : view.surface) out.surface.push_back({surface});
+  for (const ConnectiveView& bed : view.connective) out.bed.push_back({bed});
   for (const ClipView& c : view.clip)
     out.clip.push_back({c.pose.position, rotationOf(c.pose.orientation), c.width, c.legs, c.halfGap});
   for (std::size_t h = 0; h < handCount; ++h) {
@@ -136,28 +115,12 @@ bool fromWire(View view, SceneView& out) {
   out = {};
   out.step = view.step;
   out.time = view.time;
-  for (Surface& s : view.surface) {
-    if (!fits(s)) return false;
-    SurfaceView& surface = out.surface.emplace_back();
-    surface.organ = std::move(s.structure);
-    surface.appearance = std::move(s.appearance);
-    surface.role = static_cast<StructureRole>(s.role);
-    surface.position = std::move(s.position);
-    surface.rest = std::move(s.rest);
-    for (const auto& t : s.triangle)
-      surface.triangle.emplace_back(static_cast<int>(t[0]), static_cast<int>(t[1]), static_cast<int>(t[2]));
-    surface.charred = std::move(s.charred);
-    surface.face = std::move(s.face);
-  }
-  for (Bed& b : view.bed) {
-    if (!fits(b)) return false;
-    ConnectiveView& bed = out.connective.emplace_back();
-    bed.name = std::move(b.name);
-    bed.strand = std::move(b.strand);
-    for (const std::uint8_t condition : b.condition) bed.condition.push_back(static_cast<StrandCondition>(condition));
-    bed.alpha = std::move(b.alpha);
-    bed.sheet = std::move(b.sheet);
-  }
+  const auto allFit = [](const auto& parts) {
+    return std::all_of(parts.begin(), parts.end(), [](const auto& part) { return fits(part); });
+  };
+  if (!allFit(view.surface) || !allFit(view.bed)) return false;
+  out.surface.assign(std::make_move_iterator(view.surface.begin()), std::make_move_iterator(view.surface.end()));
+  out.connective.assign(std::make_move_iterator(view.bed.begin()), std::make_move_iterator(view.bed.end()));
   for (const Clip& c : view.clip) out.clip.push_back({{c.position, quatOf(c.orientation)}, c.width, c.legs, c.halfGap});
   for (std::size_t h = 0; h < handCount; ++h) {
     const Instrument& i = view.instrument[h];
