@@ -13,6 +13,7 @@
 
 #include "analytics/checkpoints/checkpoint.h"
 #include "recorder/replay.h"
+#include "sim/math/record.h"
 
 namespace calot::apps {
 
@@ -21,6 +22,7 @@ struct GoldenValue {
   std::string name, subject;
   std::uint32_t version = 0;  ///< of the checkpoint's definition
   double value = 0.0;
+  static std::vector<Field> fields();
   bool operator==(const GoldenValue&) const = default;
 };
 
@@ -31,6 +33,8 @@ struct GoldenEntry {
   std::uint32_t seed = 1;
   double seconds = 0.0;  ///< 0: until the performer ends
   std::vector<GoldenValue> values;
+
+  static std::vector<Field> fields();
 };
 
 struct GoldenList {
@@ -38,6 +42,8 @@ struct GoldenList {
   std::string reason;                   ///< why they were made anew
   std::string valuesReason;             ///< why values were taken over since; empty: they were not
   std::vector<GoldenEntry> recordings;
+
+  static std::vector<Field> fields();
 };
 
 /// @throws Error (damaged) naming file and place. A list with a file's name that is no base name, or given twice, is
