@@ -12,7 +12,7 @@
 
 #include "analytics/cohort/assessment_database.h"
 #include "analytics/cohort/cohort_database.h"
-#include "recorder/base/json_reader.h"
+#include "sim/math/record.h"
 
 namespace calot::gui {
 
@@ -20,15 +20,16 @@ struct CourseTask {
   std::string scene;  ///< name of the scene
   std::string title;  ///< "Clip and cut"
   std::string goal;   ///< one sentence: what is to be reached
+
+  static std::vector<Field> fields();
 };
 
 struct Course {
   std::string name, title;
   std::vector<CourseTask> tasks;  ///< the easiest first
-};
 
-/// Limits of the reader, as in schemas/course.schema.json.
-const std::vector<recorder::ObjectRule>& courseRules();
+  static std::vector<Field> fields();
+};
 
 /// @throws Error (damaged), naming file and JSON pointer, where anything is unknown, missing or out of its range.
 Course readCourse(const std::filesystem::path& file);

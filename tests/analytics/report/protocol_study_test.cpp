@@ -8,7 +8,7 @@
 
 #include "analytics/report/study_output.h"
 #include "recorder/base/file_bytes.h"
-#include "tests/analytics/assessment/support/schema_agreement.h"
+#include "tests/analytics/assessment/support/texts.h"
 #include "tests/analytics/cohort/support/cohort_support.h"
 #include "tests/analytics/support/refusal.h"
 
