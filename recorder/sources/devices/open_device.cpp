@@ -68,8 +68,13 @@ OpenedDevice openDevice(const std::string& name, const std::array<std::string, h
 std::vector<ListedDevice> listDevices() {
   std::vector<ListedDevice> out;
   for (const DeviceKind* kind : kinds) {
-    std::vector<ListedDevice> those = kind->list();
-    out.insert(out.end(), std::make_move_iterator(those.begin()), std::make_move_iterator(those.end()));
+    if (kind->list == nullptr) {
+      const auto& [name, detail, hands, senses, rate] = kind->row;
+      out.push_back({name, detail, true, hands, senses, rate});
+      continue;
+    }
+    const std::vector<ListedDevice> those = kind->list();
+    out.insert(out.end(), those.begin(), those.end());
   }
   return out;
 }
@@ -110,10 +115,7 @@ constinit const DeviceKind nullKind{
     .name = "null",
     .usage = "null",
     .help = "never moves",
-    .list =
-        [] {
-          return std::vector<ListedDevice>{{"null", nullKind.help, true, "2", "none", "1000"}};
-        },
+    .row = {"null", "never moves", "2", "none", "1000"},
     .open =
         [](const DeviceRequest& request) {
           if (!request.argument.empty()) request.refuse("nothing stands behind its name");

@@ -117,13 +117,8 @@ constinit const DeviceKind openIgtLinkKind{
     .name = "openigtlink",
     .usage = "openigtlink[:HOST[:PORT]]",
     .help = "tracked tools of an OpenIGTLink server",
-    .list =
-        [] {
-          return std::vector<ListedDevice>{
-              {"openigtlink:HOST:PORT",
-               fmt::format("a server's tracked tools; default localhost:{}", openigtlink::defaultPort), true, "2",
-               "6, jaw by SENSOR", "the server's"}};
-        },
+    .row = {"openigtlink:HOST:PORT", "a server's tracked tools; default localhost:18944", "2", "6, jaw by SENSOR",
+            "the server's"},
     .open =
         [](const DeviceRequest& request) {
           checkTools(request.tools);

@@ -96,11 +96,7 @@ constinit const DeviceKind scriptedKind{
     .name = "scripted",
     .usage = "scripted:FILE",
     .help = "plays a script or a kinematics file",
-    .list =
-        [] {
-          return std::vector<ListedDevice>{
-              {scriptedKind.usage, scriptedKind.help, true, "2", "6, jaw, buttons", "the file's"}};
-        },
+    .row = {"scripted:FILE", "plays a script or a kinematics file", "2", "6, jaw, buttons", "the file's"},
     .open =
         [](const DeviceRequest& request) {
           if (request.argument.empty()) request.refuse("a file is missing: scripted:FILE");

@@ -240,14 +240,9 @@ constinit const DeviceKind haplyKind{
     .name = "haply",
     .usage = "haply[:HOST[:PORT]]",
     .help = "Haply Inverse3 by its Inverse Service; not yet run on hardware",
-    .list =
-        [] {
-          return std::vector<ListedDevice>{{"haply:HOST:PORT",
-                                            "Haply Inverse3 by its Inverse Service, default localhost:10001; not yet "
-                                            "run on hardware",
-                                            true, "2", "3, orientation and buttons of a VerseGrip; shows force",
-                                            "1000"}};
-        },
+    .row = {"haply:HOST:PORT",
+            "Haply Inverse3 by its Inverse Service, default localhost:10001; not yet run on hardware", "2",
+            "3, orientation and buttons of a VerseGrip; shows force", "1000"},
     .open =
         [](const DeviceRequest& request) {
           HaplySettings settings;
