@@ -87,7 +87,7 @@ class WorkingMind {
   /// when it has arrived
   bool bring(const Vec3& place, const Vec3& hinge, double above, double beyond, double jaw);
   void closeAndLeave(double opened);
-  void go(const Vec3& to, double speed, double jaw, std::uint8_t buttons = 0, double dwell = 0.0);
+  void go(const Vec3& to, double speed, double jaw, double dwell = 0.0);
   void newError();
   [[nodiscard]] PerformerHand& hand() { return tools_.hand[hand_]; }
 

@@ -191,6 +191,8 @@ struct DeviceKind {
   /// @throws Error: invalid, for a request that makes no sense; damaged, for a bad file; failure, where it is not
   /// there.
   OpenedDevice (*open)(const DeviceRequest& request);
+
+  [[nodiscard]] std::vector<ListedDevice> listed() const;
 };
 
 }  // namespace calot::recorder

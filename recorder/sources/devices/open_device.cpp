@@ -65,15 +65,15 @@ OpenedDevice openDevice(const std::string& name, const std::array<std::string, h
   return kind->open(request);
 }
 
+std::vector<ListedDevice> DeviceKind::listed() const {
+  if (list != nullptr) return list();
+  return {{row[0], row[1], true, row[2], row[3], row[4]}};
+}
+
 std::vector<ListedDevice> listDevices() {
   std::vector<ListedDevice> out;
   for (const DeviceKind* kind : kinds) {
-    if (kind->list == nullptr) {
-      const auto& [name, detail, hands, senses, rate] = kind->row;
-      out.push_back({name, detail, true, hands, senses, rate});
-      continue;
-    }
-    const std::vector<ListedDevice> those = kind->list();
+    const std::vector<ListedDevice> those = kind->listed();
     out.insert(out.end(), those.begin(), those.end());
   }
   return out;
