@@ -19,7 +19,7 @@
 #include "recorder/recording/export_csv.h"
 #include "recorder/recording/layout.h"
 #include "recorder/recording/probe.h"
-#include "recorder/sources/column_map.h"
+#include "recorder/sources/tracked_motion.h"
 
 namespace calot::apps {
 

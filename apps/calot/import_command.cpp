@@ -19,7 +19,7 @@
 #include "apps/calot/wrong_word.h"
 #include "apps/common/exit_code.h"
 #include "recorder/base/errors.h"
-#include "recorder/sources/column_map.h"
+#include "recorder/sources/tracked_motion.h"
 
 namespace calot::apps {
 

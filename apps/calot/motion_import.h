@@ -16,7 +16,6 @@
 #include "analytics/import_motion.h"
 #include "apps/common/exit_code.h"
 #include "recorder/base/errors.h"
-#include "recorder/sources/column_map.h"
 #include "recorder/sources/tracked_motion.h"
 
 namespace calot::apps {

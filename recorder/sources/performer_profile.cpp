@@ -58,23 +58,23 @@ std::vector<std::pair<const char*, JsonValues>> partsOf(PerformerProfile& p) {
         bounded("horizonError", 0, 0.5, p.scope.horizonError)}}};
 }
 
-const ObjectRule rootRule{"",
-                          {{"format"},
-                           {"formatVersion", true, 1, 1},
-                           {"name"},
-                           {"version"},
-                           {"summary"},
-                           {"motor"},
-                           {"perception"},
-                           {"decision"},
-                           {"operation"},
-                           {"scope", false}}};
+const ObjectRule profileRule{"",
+                             {{"format"},
+                              {"formatVersion", true, 1, 1},
+                              {"name"},
+                              {"version"},
+                              {"summary"},
+                              {"motor"},
+                              {"perception"},
+                              {"decision"},
+                              {"operation"},
+                              {"scope", false}}};
 
 }  // namespace
 
 std::vector<ObjectRule> performerRules() {
   PerformerProfile profile;
-  std::vector<ObjectRule> rules{rootRule};
+  std::vector<ObjectRule> rules{profileRule};
   for (const auto& [name, values] : partsOf(profile)) rules.push_back(ruleOf(name, values));
   return rules;
 }
@@ -83,7 +83,7 @@ PerformerProfile loadPerformer(const fs::path& file) {
   const FloatingPointScope environment;
   const std::string name = file.filename().string();
   const nlohmann::json json = parseStrictJson(readFileBytes(file, name, std::size_t{4} << 20U), name);
-  const JsonObject object = JsonPlace(json, name).object(rootRule);
+  const JsonObject object = JsonPlace(json, name).object(profileRule);
   if (object.at("format").text(64) != "calot-performer") object.at("format").fail("\"calot-performer\" is wanted");
   std::uint32_t formatVersion = 0;
   object.read("formatVersion", formatVersion);

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "recorder/base/json_reader.h"
-#include "recorder/sources/scope/scope_skill.h"
+#include "recorder/sources/scope/scope_assistant.h"
 
 namespace calot::recorder {
 

@@ -6,7 +6,9 @@
 #include <charconv>
 #include <cmath>
 #include <string_view>
+#include <utility>
 
+#include "recorder/base/csv.h"
 #include "recorder/base/errors.h"
 #include "recorder/base/file_bytes.h"
 #include "recorder/sources/pointing.h"
@@ -140,6 +142,199 @@ TrackedMotion trackedMotion(const KinematicsMotion& motion) {
   for (std::size_t i = 0; i < motion.rows.size(); ++i)
     tracked.time.push_back(static_cast<double>(i) / kinematicsRowsPerSecond);
   return tracked;
+}
+
+namespace {
+
+constexpr std::size_t maxMapBytes = 1U << 20U;
+constexpr std::size_t maxMotionBytes = std::size_t{1} << 30U;
+constexpr std::size_t maxName = 200;
+constexpr double maxMotion = 1e6;  // s
+constexpr double unitLength = 1e-2;
+constexpr double root = 0.70710678118654752440;  // of 1/2
+
+const ObjectRule rootRule{"",
+                          {{"format"},
+                           {"formatVersion", true, 1, 1},
+                           {"device", false},
+                           {"frame"},
+                           {"length"},
+                           {"delimiter", false},
+                           {"rate", false, 1, 100000},
+                           {"time", false},
+                           {"left", false},
+                           {"right", false}}};
+const ObjectRule timeRule{"time", {{"column"}, {"unit"}}};
+const ObjectRule handRule{"hand", {{"position"}, {"quaternion", false}, {"matrix", false}, {"axis", false}}};
+
+/// Motions of one length are equal in ranks whenever they began, which a difference of two times in binary is not.
+double toPicosecond(double seconds) { return std::round(seconds * 1e12) / 1e12; }
+
+std::vector<std::string> namesOf(const JsonPlace& place, std::size_t count) {
+  std::vector<std::string> names;
+  for (const JsonPlace& name : place.list(count, count)) names.push_back(name.text(maxName));
+  return names;
+}
+
+ColumnMap::HandColumns handOf(const JsonPlace& place) {
+  const JsonObject o = place.object(handRule);
+  ColumnMap::HandColumns hand;
+  const std::vector<std::string> position = namesOf(o.at("position"), 3);
+  hand.position = {position[0], position[1], position[2]};
+  if (o.has("quaternion") && o.has("matrix")) o.fail("has a quaternion and a matrix; one of them is wanted");
+  if (o.has("quaternion")) hand.orientation = namesOf(o.at("quaternion"), 4);
+  if (o.has("matrix")) hand.orientation = namesOf(o.at("matrix"), 9);
+  if (o.has("axis")) {
+    if (hand.orientation.empty()) o.at("axis").fail("an axis without an orientation");
+    hand.axis = o.at("axis").word<Quat>({{"z", Quat::Identity()},
+                                         {"-z", Quat(0.0, 1.0, 0.0, 0.0)},
+                                         {"x", Quat(root, 0.0, root, 0.0)},
+                                         {"-x", Quat(root, 0.0, -root, 0.0)},
+                                         {"y", Quat(root, -root, 0.0, 0.0)},
+                                         {"-y", Quat(root, root, 0.0, 0.0)}});
+  }
+  return hand;
+}
+
+/// Wanted columns in the order in which they are asked for.
+struct Wanted {
+  std::vector<std::string> names;
+  std::size_t add(const std::string& name) {
+    names.push_back(name);
+    return names.size() - 1;
+  }
+};
+
+class RowReader {
+ public:
+  RowReader(const std::string& file, const CsvNumbers& numbers) : file_(file), numbers_(numbers) {}
+
+  [[noreturn]] void fail(std::size_t row, const std::string& fault) const {
+    throw Error(ErrorKind::damaged, Where{file_, fmt::format("line {}", numbers_.line[row])}, fault);
+  }
+  [[nodiscard]] double at(std::size_t column, std::size_t row) const { return numbers_.column[column][row]; }
+
+  [[nodiscard]] Vec3 position(std::size_t first, std::size_t row, double metres) const {
+    const Vec3 p(metres * at(first, row), metres * at(first + 1, row), metres * at(first + 2, row));
+    if (!(p.cwiseAbs().maxCoeff() <= maxPosition)) {
+      fail(row, fmt::format("a position farther than {} m: the map's unit of length may be wrong", maxPosition));
+    }
+    return p;
+  }
+
+  [[nodiscard]] Quat orientation(std::size_t first, std::size_t count, std::size_t row) const {
+    if (count == 4) {
+      const Quat q(at(first, row), at(first + 1, row), at(first + 2, row), at(first + 3, row));
+      const double length = std::sqrt(q.w() * q.w() + q.x() * q.x() + q.y() * q.y() + q.z() * q.z());
+      if (!(std::abs(length - 1.0) <= unitLength))
+        fail(row, fmt::format("a quaternion of length {:.3g}; 1 is wanted", length));
+      return {q.w() / length, q.x() / length, q.y() / length, q.z() / length};
+    }
+    Mat3 rotation;
+    for (int i = 0; i < 9; ++i) rotation(i / 3, i % 3) = at(first + static_cast<std::size_t>(i), row);
+    const double off = rotationDefect(rotation);
+    if (!(off <= rotationTolerance))
+      fail(row, fmt::format("no rotation matrix (off by {:.2g}; {:.2g} is allowed)", off, rotationTolerance));
+    return quaternionOf(rotation);
+  }
+
+ private:
+  const std::string& file_;
+  const CsvNumbers& numbers_;
+};
+
+}  // namespace
+
+const std::vector<ObjectRule>& columnMapRules() {
+  static const std::vector<ObjectRule> rules{rootRule, timeRule, handRule};
+  return rules;
+}
+
+ColumnMap readColumnMap(const std::filesystem::path& file) {
+  const std::string name = file.filename().string();
+  return parseColumnMap(readFileBytes(file, name, maxMapBytes), name);
+}
+
+ColumnMap parseColumnMap(std::span<const std::byte> bytes, const std::string& file) {
+  const nlohmann::json json = parseStrictJson(bytes, file);
+  const JsonObject o = JsonPlace(json, file).object(rootRule);
+  (void)o.at("format").word<int>({{"calot-columns", 0}});
+  std::uint32_t version = 0;
+  o.read("formatVersion", version);
+  ColumnMap map;
+  o.read("device", map.device, 60);
+  o.read("frame", map.frame, 60);
+  for (const auto& [key, text] : {std::pair{"device", &map.device}, std::pair{"frame", &map.frame}}) {
+    if (!o.has(key)) continue;
+    for (const char c : *text) {
+      if (c <= ' ' || c > '~') o.at(key).fail("a word without blanks is wanted");
+    }
+  }
+  map.metres = o.at("length").word<double>({{"m", 1.0}, {"cm", 0.01}, {"mm", 0.001}});
+  if (o.has("delimiter")) map.delimiter = o.at("delimiter").word<char>({{",", ','}, {";", ';'}, {"tab", '\t'}});
+  if (o.has("rate") == o.has("time")) o.fail("either \"rate\" (rows a second) or \"time\" (a column) is wanted");
+  o.read("rate", map.rate);
+  if (o.has("time")) {
+    const JsonObject time = o.at("time").object(timeRule);
+    time.read("column", map.time, maxName);
+    map.seconds = time.at("unit").word<double>({{"s", 1.0}, {"ms", 1e-3}, {"us", 1e-6}, {"ns", 1e-9}});
+  }
+  for (std::size_t h = 0; h < map.hand.size(); ++h) {
+    if (o.has(handNames[h])) map.hand[h] = handOf(o.at(handNames[h]));
+  }
+  if (!map.hand[0] && !map.hand[1]) o.fail("neither \"left\" nor \"right\": a hand is wanted");
+  return map;
+}
+
+TrackedMotion readCsvMotion(const std::filesystem::path& file, const ColumnMap& map) {
+  const std::string name = file.filename().string();
+  return parseCsvMotion(readFileBytes(file, name, maxMotionBytes), name, map);
+}
+
+TrackedMotion parseCsvMotion(std::span<const std::byte> bytes, const std::string& file, const ColumnMap& map) {
+  Wanted wanted;
+  std::array<std::size_t, handCount> position{}, orientation{};
+  if (map.rate == 0.0) wanted.add(map.time);
+  for (std::size_t h = 0; h < map.hand.size(); ++h) {
+    if (!map.hand[h]) continue;
+    position[h] = wanted.names.size();
+    for (const std::string& name : map.hand[h]->position) wanted.add(name);
+    orientation[h] = wanted.names.size();
+    for (const std::string& name : map.hand[h]->orientation) wanted.add(name);
+  }
+  const CsvNumbers numbers = readCsvNumbers(bytes, file, map.delimiter, wanted.names);
+  const std::size_t rows = numbers.line.size();
+  if (rows < 2) throw Error(ErrorKind::damaged, Where{file}, "1 row; a motion has at least 2");
+  const RowReader reader(file, numbers);
+
+  TrackedMotion motion;
+  motion.file = file;
+  motion.sha256 = sha256Hex(bytes);
+  motion.device = map.device;
+  motion.frame = map.frame;
+  motion.rate = map.rate;
+  for (std::size_t i = 0; i < rows; ++i) {
+    const double time = map.rate > 0.0 ? static_cast<double>(i) / map.rate
+                                       : toPicosecond((reader.at(0, i) - reader.at(0, 0)) * map.seconds);
+    if (i > 0 && !(time > motion.time.back())) reader.fail(i, "its time is not after the row before");
+    if (!(time <= maxMotion))
+      reader.fail(i,
+                  fmt::format("more than {:g} s after the first row: the map's unit of time may be wrong", maxMotion));
+    motion.time.push_back(time);
+  }
+  for (std::size_t h = 0; h < map.hand.size(); ++h) {
+    if (!map.hand[h]) continue;
+    TrackedHand& hand = motion.hand[h];
+    const std::size_t parts = map.hand[h]->orientation.size();
+    hand.present = true;
+    hand.oriented = parts > 0;
+    for (std::size_t i = 0; i < rows; ++i) {
+      hand.position.push_back(reader.position(position[h], i, map.metres));
+      hand.orientation.push_back(hand.oriented ? reader.orientation(orientation[h], parts, i) * map.hand[h]->axis
+                                               : Quat::Identity());
+    }
+  }
+  return motion;
 }
 
 }  // namespace calot::recorder

@@ -11,13 +11,12 @@
 #include "recorder/base/errors.h"
 #include "recorder/base/nearest_word.h"
 #include "recorder/sources/devices/camera/camera_device.h"
+#include "recorder/sources/devices/device_script.h"
 #include "recorder/sources/devices/force/force_device.h"
 #include "recorder/sources/devices/force/haply_device.h"
-#include "recorder/sources/devices/gamepad_device.h"
 #include "recorder/sources/devices/mouse_device.h"
 #include "recorder/sources/devices/openigtlink_device.h"
-#include "recorder/sources/devices/scripted_device.h"
-#include "recorder/sources/devices/space_mouse.h"
+#include "recorder/sources/devices/pointer_device.h"
 
 namespace calot::recorder {
 namespace {

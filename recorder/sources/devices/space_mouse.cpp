@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "recorder/sources/devices/space_mouse.h"
+#include "recorder/sources/devices/pointer_device.h"
 
 #include <spnav.h>
 #include <sys/socket.h>

@@ -7,7 +7,6 @@
 
 #include "recorder/base/errors.h"
 #include "recorder/sources/devices/open_device.h"
-#include "recorder/sources/devices/scripted_device.h"
 #include "tests/recorder/sources/devices/support/device_support.h"
 
 namespace calot::recorder {
