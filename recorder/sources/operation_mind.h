@@ -263,6 +263,8 @@ class WorkingMind {
   /// when it has arrived
   bool bring(const Vec3& place, const Vec3& hinge, double above, double beyond, double jaw);
   void closeAndLeave(double opened);
+  void closeAt(const SeenVessel& vessel, double place, double depth, double jaw);
+  void nextVessel();
   void go(const Vec3& to, double speed, double jaw, double dwell = 0.0);
   void newError();
   [[nodiscard]] PerformerHand& hand() { return tools_.hand[hand_]; }

@@ -171,14 +171,7 @@ void OpenIgtLinkServer::serve(TcpStream client, const std::atomic<bool>& stop) {
 }
 
 void OpenIgtLinkServer::run(const std::atomic<bool>& stop, const std::function<void(const std::string&)>& tell) {
-  while (!stop) {
-    std::optional<TcpStream> client = listener_.accept(lookPeriod);
-    if (!client) continue;
-    tell("a client is there");
-    serve(std::move(*client), stop);
-    tell("the client is gone");
-    if (settings_.once) return;
-  }
+  listener_.serve(stop, settings_.once, tell, [&](TcpStream client) { serve(std::move(client), stop); });
 }
 
 }  // namespace calot::recorder
