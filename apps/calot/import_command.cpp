@@ -12,6 +12,10 @@
 #include "analytics/intake/motion_manifest.h"
 #include "apps/calot/command.h"
 #include "apps/calot/replay_report.h"
+#include "analytics/import_motion.h"
+#include "apps/calot/environment.h"
+#include "recorder/base/errors.h"
+#include "recorder/sources/tracked_motion.h"
 
 namespace calot::apps {
 

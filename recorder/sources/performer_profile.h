@@ -8,7 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "recorder/sources/scope/scope_skill.h"
+#include "recorder/sources/scope/scope_assistant.h"
+#include "recorder/base/json_reader.h"
+#include "recorder/sources/scope/scope_assistant.h"
 
 namespace calot::recorder {
 

@@ -184,11 +184,15 @@ struct DeviceKind {
   const char* usage;         ///< how to ask for one: "gamepad[:NAME]"
   const char* help;          ///< one line for people
   bool needsWindow = false;  ///< its input comes from a window, which opens it; `open` refuses
-  /// Lists devices that are, or could be, available. Does not throw.
-  std::vector<ListedDevice> (*list)();
+  /// Its row of `calot devices`: name, detail, hands, senses, rate. Unused where `list` is set.
+  std::array<const char*, 5> row{};
+  /// Lists devices that are, or could be, available. Does not throw. Null: the row.
+  std::vector<ListedDevice> (*list)() = nullptr;
   /// @throws Error: invalid, for a request that makes no sense; damaged, for a bad file; failure, where it is not
   /// there.
   OpenedDevice (*open)(const DeviceRequest& request);
+
+  [[nodiscard]] std::vector<ListedDevice> listed() const;
 };
 
 }  // namespace calot::recorder

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "recorder/sources/devices/gamepad_device.h"
+#include "recorder/sources/devices/pointer_device.h"
 
 #define SDL_MAIN_HANDLED
 #include <fmt/format.h>

@@ -11,13 +11,12 @@
 #include "recorder/base/errors.h"
 #include "recorder/base/nearest_word.h"
 #include "recorder/sources/devices/camera/camera_device.h"
+#include "recorder/sources/devices/device_script.h"
 #include "recorder/sources/devices/force/force_device.h"
 #include "recorder/sources/devices/force/haply_device.h"
-#include "recorder/sources/devices/gamepad_device.h"
 #include "recorder/sources/devices/mouse_device.h"
 #include "recorder/sources/devices/openigtlink_device.h"
-#include "recorder/sources/devices/scripted_device.h"
-#include "recorder/sources/devices/space_mouse.h"
+#include "recorder/sources/devices/pointer_device.h"
 
 namespace calot::recorder {
 namespace {
@@ -65,11 +64,16 @@ OpenedDevice openDevice(const std::string& name, const std::array<std::string, h
   return kind->open(request);
 }
 
+std::vector<ListedDevice> DeviceKind::listed() const {
+  if (list != nullptr) return list();
+  return {{row[0], row[1], true, row[2], row[3], row[4]}};
+}
+
 std::vector<ListedDevice> listDevices() {
   std::vector<ListedDevice> out;
   for (const DeviceKind* kind : kinds) {
-    std::vector<ListedDevice> those = kind->list();
-    out.insert(out.end(), std::make_move_iterator(those.begin()), std::make_move_iterator(those.end()));
+    const std::vector<ListedDevice> those = kind->listed();
+    out.insert(out.end(), those.begin(), those.end());
   }
   return out;
 }
@@ -110,10 +114,7 @@ constinit const DeviceKind nullKind{
     .name = "null",
     .usage = "null",
     .help = "never moves",
-    .list =
-        [] {
-          return std::vector<ListedDevice>{{"null", nullKind.help, true, "2", "none", "1000"}};
-        },
+    .row = {"null", "never moves", "2", "none", "1000"},
     .open =
         [](const DeviceRequest& request) {
           if (!request.argument.empty()) request.refuse("nothing stands behind its name");

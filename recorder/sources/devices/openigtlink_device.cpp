@@ -117,13 +117,8 @@ constinit const DeviceKind openIgtLinkKind{
     .name = "openigtlink",
     .usage = "openigtlink[:HOST[:PORT]]",
     .help = "tracked tools of an OpenIGTLink server",
-    .list =
-        [] {
-          return std::vector<ListedDevice>{
-              {"openigtlink:HOST:PORT",
-               fmt::format("a server's tracked tools; default localhost:{}", openigtlink::defaultPort), true, "2",
-               "6, jaw by SENSOR", "the server's"}};
-        },
+    .row = {"openigtlink:HOST:PORT", "a server's tracked tools; default localhost:18944", "2", "6, jaw by SENSOR",
+            "the server's"},
     .open =
         [](const DeviceRequest& request) {
           checkTools(request.tools);
@@ -176,14 +171,7 @@ void OpenIgtLinkServer::serve(TcpStream client, const std::atomic<bool>& stop) {
 }
 
 void OpenIgtLinkServer::run(const std::atomic<bool>& stop, const std::function<void(const std::string&)>& tell) {
-  while (!stop) {
-    std::optional<TcpStream> client = listener_.accept(lookPeriod);
-    if (!client) continue;
-    tell("a client is there");
-    serve(std::move(*client), stop);
-    tell("the client is gone");
-    if (settings_.once) return;
-  }
+  listener_.serve(stop, settings_.once, tell, [&](TcpStream client) { serve(std::move(client), stop); });
 }
 
 }  // namespace calot::recorder

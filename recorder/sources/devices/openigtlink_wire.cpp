@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "recorder/sources/devices/openigtlink_wire.h"
+#include "recorder/sources/devices/openigtlink_device.h"
 
 #include <fmt/format.h>
 #include <igtl_header.h>

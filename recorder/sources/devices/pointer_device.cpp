@@ -12,15 +12,15 @@
 namespace calot::recorder {
 namespace {
 
-constexpr double maxStep = 0.05;    // s; after a longer gap the pointer does not leap
-constexpr double largestJaw = 1.2;  // rad
+constexpr double maxStep = 0.05;   // s; after a longer gap the pointer does not leap
+constexpr double widestJaw = 1.2;  // rad
 constexpr std::size_t maxName = 64;
 
 }  // namespace
 
 void Pointer::move(const Vec3& way, double reach) { position = Vec3(position + way).cwiseMax(-reach).cwiseMin(reach); }
 
-void Pointer::openJaw(double angle) { jaw = std::min(notNegative(jaw + angle), largestJaw); }
+void Pointer::openJaw(double angle) { jaw = std::min(notNegative(jaw + angle), widestJaw); }
 
 DeviceSample Pointer::sample(Hand hand, std::int64_t now) {
   DeviceSample out;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "recorder/sources/devices/space_mouse.h"
+#include "recorder/sources/devices/pointer_device.h"
 
 #include <spnav.h>
 #include <sys/socket.h>
@@ -85,11 +85,7 @@ constinit const DeviceKind spaceMouseKind{
     .name = "spacenav",
     .usage = "spacenav",
     .help = "SpaceMouse by spacenavd; drives one hand",
-    .list =
-        [] {
-          return std::vector<ListedDevice>{
-              {"spacenav", "SpaceMouse, where spacenavd runs", true, "1", "3 + roll, jaw, buttons", "250"}};
-        },
+    .row = {"spacenav", "SpaceMouse, where spacenavd runs", "1", "3 + roll, jaw, buttons", "250"},
     .open =
         [](const DeviceRequest& request) {
           if (!request.argument.empty()) request.refuse("nothing stands behind its name");

@@ -51,10 +51,7 @@ const DeviceKind pendulumKind{
     .name = "pendulum",
     .usage = "pendulum",
     .help = "swings the right hand",
-    .list =
-        [] {
-          return std::vector<ListedDevice>{{"pendulum", pendulumKind.help, true, "right", "3", "100"}};
-        },
+    .row = {"pendulum", "swings the right hand", "right", "3", "100"},
     .open =
         [](const DeviceRequest& request) {
           if (!request.argument.empty()) request.refuse("nothing stands behind its name");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "recorder/sources/column_map.h"
+#include "recorder/sources/tracked_motion.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

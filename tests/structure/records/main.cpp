@@ -13,9 +13,9 @@
 
 #include "analytics/assessment/protocol.h"
 #include "analytics/assessment/rating_form.h"
-#include "gui/trainer/course.h"
+#include "gui/trainer/scenes_page.h"
 #include "recorder/formats/scene_surface.h"
-#include "recorder/sources/column_map.h"
+#include "recorder/sources/tracked_motion.h"
 #include "recorder/sources/devices/calibration.h"
 #include "recorder/sources/performer_profile.h"
 #include "sim/scene/description.h"

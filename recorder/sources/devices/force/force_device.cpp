@@ -133,13 +133,8 @@ constinit const DeviceKind forceKind{
     .name = "force",
     .usage = "force[:HOST[:PORT]]",
     .help = "a force device by Calot's own protocol; calot devices simulate plays one",
-    .list =
-        [] {
-          return std::vector<ListedDevice>{
-              {"force:HOST:PORT",
-               fmt::format("a force device by Calot's own protocol; default localhost:{}", forcewire::defaultPort),
-               true, "2", "6, jaw, buttons; shows force", "1000"}};
-        },
+    .row = {"force:HOST:PORT", "a force device by Calot's own protocol; default localhost:18950", "2",
+            "6, jaw, buttons; shows force", "1000"},
     .open =
         [](const DeviceRequest& request) {
           ForceDeviceSettings settings;

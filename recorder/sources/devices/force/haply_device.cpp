@@ -10,6 +10,7 @@
 #include <thread>
 #include <utility>
 
+#include "recorder/sources/devices/pointer_device.h"
 #include "sim/math/linear.h"
 
 namespace calot::recorder {
@@ -29,58 +30,54 @@ Vec3 toHaply(const Vec3& v) { return {v.x(), v.z(), -v.y()}; }
 
 using Json = nlohmann::json;
 
-const Json* member(const Json& object, const char* name) {
-  if (!object.is_object()) return nullptr;
-  const auto found = object.find(name);
-  return found == object.end() ? nullptr : &*found;
+/// The value at a JSON pointer, or null. @param message may be null
+const Json* at(const Json* message, const std::string& pointer) {
+  const Json::json_pointer p(pointer);
+  return message != nullptr && message->contains(p) ? &message->at(p) : nullptr;
 }
 
-std::optional<double> number(const Json& object, const char* name) {
-  const Json* value = member(object, name);
-  if (value == nullptr || !value->is_number()) return std::nullopt;
-  return value->get<double>();
+std::string text(const Json& message, const char* pointer) {
+  const Json* value = at(&message, pointer);
+  return value != nullptr && value->is_string() ? nameFrom(value->get<std::string>().substr(0, 32).c_str()) : "";
 }
 
-std::string text(const Json& object, const char* name) {
-  const Json* value = member(object, name);
-  if (value == nullptr || !value->is_string()) return {};
-  std::string out = value->get<std::string>().substr(0, 32);
-  for (char& c : out) {
-    if (c < 0x20 || c >= 0x7f) c = '?';
+/// Numbers with these names, or nothing where one is missing.
+template <std::size_t N>
+std::optional<std::array<double, N>> numbers(const Json* object, const std::array<const char*, N>& names) {
+  std::array<double, N> out{};
+  for (std::size_t i = 0; i < N; ++i) {
+    const Json* value = at(object, names[i]);
+    if (value == nullptr || !value->is_number()) return std::nullopt;
+    out[i] = value->get<double>();
   }
   return out;
 }
 
 std::optional<Vec3> vectorOf(const Json* object) {
-  if (object == nullptr) return std::nullopt;
-  const auto x = number(*object, "x"), y = number(*object, "y"), z = number(*object, "z");
-  if (!x || !y || !z) return std::nullopt;
-  const Vec3 out(*x, *y, *z);
+  const auto v = numbers<3>(object, {"/x", "/y", "/z"});
+  if (!v) return std::nullopt;
+  const Vec3 out(v->data());
   if (!out.allFinite() || out.norm() > haplyReach) return std::nullopt;
   return out;
 }
 
 std::optional<Quat> rotationOf(const Json* object) {
-  if (object == nullptr) return std::nullopt;
-  const auto w = number(*object, "w"), x = number(*object, "x"), y = number(*object, "y"), z = number(*object, "z");
-  if (!w || !x || !y || !z) return std::nullopt;
-  const Vec3 axis = fromHaply(Vec3(*x, *y, *z));
-  const Quat out(*w, axis.x(), axis.y(), axis.z());
+  const auto q = numbers<4>(object, {"/w", "/x", "/y", "/z"});
+  if (!q) return std::nullopt;
+  const Vec3 axis = fromHaply(Vec3(q->data() + 1));
+  const Quat out((*q)[0], axis.x(), axis.y(), axis.z());
   if (!(std::abs(out.norm() - 1.0) <= unitError)) return std::nullopt;
   return out.normalized();
 }
 
 bool pressed(const Json& grip, const char* name) {
-  const Json* state = member(grip, "state");
-  const Json* buttons = state != nullptr ? member(*state, "buttons") : nullptr;
-  const Json* value = buttons != nullptr ? member(*buttons, name) : nullptr;
+  const Json* value = at(&grip, fmt::format("/state/buttons/{}", name));
   return value != nullptr && value->is_boolean() && value->get<bool>();
 }
 
 /// The i-th element of an array of that name, or null.
 const Json* element(const Json& message, const char* name, std::size_t i) {
-  const Json* list = member(message, name);
-  return list != nullptr && list->is_array() && i < list->size() ? &(*list)[i] : nullptr;
+  return at(&message, fmt::format("/{}/{}", name, i));
 }
 
 }  // namespace
@@ -119,12 +116,10 @@ std::string HaplyDevice::connect() {
   const Json inventory = Json::parse(first, nullptr, false);
   std::array<std::string, handCount> id;
   for (std::size_t i = 0; const Json* device = element(inventory, "inverse3", i); ++i) {
-    const Json* config = member(*device, "config");
-    const bool left = config != nullptr && text(*config, "handedness") == "left";
-    std::size_t hand = left ? 0 : 1;
-    if (settings_.hand && member(inventory, "inverse3")->size() == 1) hand = static_cast<std::size_t>(*settings_.hand);
+    std::size_t hand = text(*device, "/config/handedness") == "left" ? 0 : 1;
+    if (settings_.hand && inventory["inverse3"].size() == 1) hand = static_cast<std::size_t>(*settings_.hand);
     if (settings_.hand && hand != static_cast<std::size_t>(*settings_.hand)) continue;
-    if (id[hand].empty()) id[hand] = text(*device, "device_id");
+    if (id[hand].empty()) id[hand] = text(*device, "/device_id");
   }
   if (id[0].empty() && id[1].empty()) return refuse("it has no Inverse3");
   const bool known = handle_[0].has_value() || handle_[1].has_value();
@@ -142,8 +137,7 @@ std::string HaplyDevice::connect() {
 void HaplyDevice::sample(std::size_t hand, const Json& device, const Json* grip, DeviceInput& out) {
   Handle& handle = *handle_[hand];
   const std::int64_t now = clock_();
-  const Json* state = member(device, "state");
-  const std::optional<Vec3> position = vectorOf(state != nullptr ? member(*state, "cursor_position") : nullptr);
+  const std::optional<Vec3> position = vectorOf(at(&device, "/state/cursor_position"));
   DeviceSample s;
   s.hostTime = now;
   s.sequence = handle.sequence++;
@@ -152,16 +146,13 @@ void HaplyDevice::sample(std::size_t hand, const Json& device, const Json* grip,
   if (position) s.position = fromHaply(*position);
   bool clutched = false;
   if (grip != nullptr) {
-    const Json* gripState = member(*grip, "state");
-    const std::optional<Quat> turned = rotationOf(gripState != nullptr ? member(*gripState, "orientation") : nullptr);
-    if (turned) s.orientation = *turned;
+    s.orientation = rotationOf(at(grip, "/state/orientation")).value_or(s.orientation);
     const bool a = pressed(*grip, "a"), b = pressed(*grip, "b");
     clutched = a && b;
     const double seconds = std::clamp(1e-9 * static_cast<double>(now - handle.time), 0.0, 0.05);
-    const double open = (b ? 1.0 : 0.0) - (a ? 1.0 : 0.0);
-    handle.jaw = std::min(notNegative(handle.jaw + haplyJawRate * seconds * open), haplyWidestJaw);
+    handle.jaw = std::min(notNegative(handle.jaw + haplyJawRate * seconds * between(b, a)), haplyWidestJaw);
     if (clutched) s.buttons = clutchButton;
-    if (pressed(*grip, "c")) s.buttons = static_cast<std::uint8_t>(s.buttons | button::cutPedal | button::fire);
+    press(s.buttons, pressed(*grip, "c"), button::cutPedal | button::fire);
   }
   handle.time = now;
   s.gripper = handle.jaw;
@@ -195,7 +186,7 @@ void HaplyDevice::take(const std::string& message, DeviceInput& out) {
     if (grip == nullptr) grip = element(state, "verse_grip", grips);
     ++grips;
     for (std::size_t i = 0; const Json* device = element(state, "inverse3", i); ++i) {
-      if (text(*device, "device_id") != handle_[h]->id) continue;
+      if (text(*device, "/device_id") != handle_[h]->id) continue;
       sample(h, *device, grip, out);
       any = true;
       break;
@@ -240,14 +231,9 @@ constinit const DeviceKind haplyKind{
     .name = "haply",
     .usage = "haply[:HOST[:PORT]]",
     .help = "Haply Inverse3 by its Inverse Service; not yet run on hardware",
-    .list =
-        [] {
-          return std::vector<ListedDevice>{{"haply:HOST:PORT",
-                                            "Haply Inverse3 by its Inverse Service, default localhost:10001; not yet "
-                                            "run on hardware",
-                                            true, "2", "3, orientation and buttons of a VerseGrip; shows force",
-                                            "1000"}};
-        },
+    .row = {"haply:HOST:PORT",
+            "Haply Inverse3 by its Inverse Service, default localhost:10001; not yet run on hardware", "2",
+            "3, orientation and buttons of a VerseGrip; shows force", "1000"},
     .open =
         [](const DeviceRequest& request) {
           HaplySettings settings;

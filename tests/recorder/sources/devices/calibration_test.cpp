@@ -10,7 +10,6 @@
 
 #include "recorder/base/dates.h"
 #include "recorder/base/errors.h"
-#include "recorder/sources/devices/calibration_fit.h"
 #include "recorder/sources/devices/mouse_device.h"
 #include "tests/recorder/sources/devices/support/calibration_streams.h"
 

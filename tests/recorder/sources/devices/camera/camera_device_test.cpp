@@ -14,7 +14,6 @@
 
 #include "recorder/base/errors.h"
 #include "recorder/sources/devices/calibration.h"
-#include "recorder/sources/devices/camera/open_camera.h"
 #include "recorder/sources/devices/open_device.h"
 #include "tests/recorder/sources/devices/camera/support/film_of_scene.h"
 #include "tests/recorder/sources/devices/camera/support/marker_scene.h"

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Films in real time.
-#include "recorder/sources/devices/camera/open_camera.h"
+#include "recorder/sources/devices/camera/camera_device.h"
 
 #include <gtest/gtest.h>
 
 #include "recorder/base/errors.h"
-#include "recorder/sources/devices/camera/camera_device.h"
 
 namespace calot::recorder {
 namespace {
