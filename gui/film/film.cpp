@@ -18,7 +18,7 @@
 #include "gui/render/png_file.h"
 #include "gui/render/renderer.h"
 #include "recorder/base/errors.h"
-#include "recorder/engine_choice.h"
+#include "recorder/prepared_scene.h"
 
 extern "C" {
 #include <libavcodec/avcodec.h>

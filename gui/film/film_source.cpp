@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "recorder/base/errors.h"
-#include "recorder/engine_choice.h"
 #include "recorder/kept/engine_folders.h"
+#include "recorder/prepared_scene.h"
 #include "sim/scene/version.h"
 
 namespace calot::gui {
