@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <utility>
 
@@ -112,7 +113,7 @@ Verdict verdictOf(recorder::ReplayVerdict verdict) {
 
 }  // namespace
 
-Assessment assessRecording(const std::string& file, const AssessSettings& wanted) {
+JudgedRecording assessRecording(const std::string& file, const AssessSettings& wanted) {
   recorder::AttemptHeader header;
   std::unique_ptr<CheckpointCollector> collector;
   std::unique_ptr<MetricInput> input;
@@ -131,48 +132,35 @@ Assessment assessRecording(const std::string& file, const AssessSettings& wanted
     }
     return observers;
   };
-  Assessment result;
-  result.report = recorder::replayRecording(file, settings);
-  const recorder::ReplayReport& report = result.report;
-  if (report.verdict == recorder::ReplayVerdict::damaged) return result;
+  JudgedRecording judged;
+  judged.report = recorder::replayRecording(file, settings);
+  const recorder::ReplayReport& report = judged.report;
+  if (report.verdict == recorder::ReplayVerdict::damaged) return judged;
   // Opened once more only for what the replay did not tell: to read a short recording takes longer than to simulate it.
   std::optional<recorder::Recording> recording;
   const auto opened = [&]() -> recorder::Recording& { return recording ? *recording : recording.emplace(file); };
   if (header.attempt.empty()) header = opened().header();
-  AssessedAttempt& assessed = result.attempt.emplace();
-  assessed.header = std::move(header);
-  assessed.outcome = report.outcome;
-  assessed.complete = report.complete;
-  assessed.steps = report.steps;
-  assessed.chainHead = report.chainHead;
-  if (const auto& signed_ = report.signature; report.chainIntact && signed_ && signed_->value) {
-    RecordingSignature& s = assessed.signature.emplace();
-    const auto byte = [](std::uint8_t b) { return static_cast<std::byte>(b); };
-    std::transform(signed_->publicKey.begin(), signed_->publicKey.end(), s.publicKey.begin(), byte);
-    std::transform(signed_->value->begin(), signed_->value->end(), s.value.begin(), byte);
-  }
+  judged.record = recordOf(header, report, file);
   const bool exact = report.verdict == recorder::ReplayVerdict::exact;
-  assessed.verification = {verdictOf(report.verdict), exact ? "" : report.message, recorder::softwareName()};
   if (exact && collector) {
-    assessed.values = collector->values();
-    if (input) assessed.external = computeMetrics(*wanted.metrics, input->folder());
+    judged.values = collector->values();
+    if (input) judged.external = computeMetrics(*wanted.metrics, input->folder());
   }
   // An engine whose results are of an earlier version proves what is recorded; the values are of that.
   const bool ofRecord = exact && !collector;
   if (ofRecord || (report.verdict == recorder::ReplayVerdict::undecided && report.chainIntact)) {
     if (hasMetrics)
-      input = std::make_unique<MetricInput>(
-          opened().header(), recorder::sceneFromAssets(opened().header().assets).description, Origin::observables);
-    assessed.values = valuesFromObservables(opened(), wanted.cutoff, input.get());
+      input = std::make_unique<MetricInput>(header, recorder::sceneFromAssets(header.assets).description,
+                                            Origin::observables);
+    judged.values = valuesFromObservables(opened(), wanted.cutoff, input.get());
     if (input)
-      assessed.external = computeMetrics(*wanted.metrics, input->folder(), "from recorded results, not re-simulated");
+      judged.external = computeMetrics(*wanted.metrics, input->folder(), "from recorded results, not re-simulated");
   }
-  assessed.fileName = file;
-  return result;
+  return judged;
 }
 
-AttemptRecord recordOf(const AssessedAttempt& assessed) {
-  const recorder::AttemptHeader& h = assessed.header;
+AttemptRecord recordOf(const recorder::AttemptHeader& h, const recorder::ReplayReport& report,
+                       const std::string& file) {
   AttemptRecord a;
   a.uuid = h.attempt;
   a.parent = h.parent;
@@ -185,7 +173,7 @@ AttemptRecord recordOf(const AssessedAttempt& assessed) {
   a.profileVersion = h.provenance.profileVersion;
   a.mode = h.mode;
   a.purpose = h.purpose;
-  a.outcome = assessed.outcome;
+  a.outcome = report.outcome;
   a.startUtc = h.startUtc;
   a.seed = h.seed;
   a.device = h.provenance.device;
@@ -194,36 +182,27 @@ AttemptRecord recordOf(const AssessedAttempt& assessed) {
   a.simulationVersion = h.simulationVersion;
   a.comparabilityKey = comparabilityKey(h);
   a.synthetic = h.provenance.kind == recorder::OperatorKind::performer;
-  const std::size_t slash = assessed.fileName.find_last_of('/');
-  a.fileName = slash == std::string::npos ? assessed.fileName : assessed.fileName.substr(slash + 1);
-  a.complete = assessed.complete;
-  a.steps = assessed.steps;
+  a.fileName = file.substr(file.find_last_of('/') + 1);
+  a.complete = report.complete;
+  a.steps = report.steps;
   a.stepSeconds = h.tickSeconds * static_cast<double>(h.ticksPerStep);
-  a.chainHead = assessed.chainHead;
-  a.signature = assessed.signature;
-  a.verification = assessed.verification;
-  return a;
-}
-
-JudgedRecording judgedRecording(Assessment assessment) {
-  JudgedRecording judged;
-  judged.report = std::move(assessment.report);
-  if (assessment.attempt) {
-    judged.record = recordOf(*assessment.attempt);
-    judged.values = std::move(assessment.attempt->values);
-    judged.external = std::move(assessment.attempt->external);
+  a.chainHead = report.chainHead;
+  if (report.chainIntact && report.signature && report.signature->value) {
+    RecordingSignature& s = a.signature.emplace();
+    const auto key = std::as_bytes(std::span(report.signature->publicKey));
+    const auto value = std::as_bytes(std::span(*report.signature->value));
+    std::copy(key.begin(), key.end(), s.publicKey.begin());
+    std::copy(value.begin(), value.end(), s.value.begin());
   }
-  return judged;
+  const bool exact = report.verdict == recorder::ReplayVerdict::exact;
+  a.verification = {verdictOf(report.verdict), exact ? "" : report.message, recorder::softwareName()};
+  return a;
 }
 
 bool isVerified(const CohortDatabase& database, const recorder::RecordingIdentity& recording) {
   const std::optional<AttemptRow> known = database.attempt(recording.attempt);
   return known && known->chainHead == recording.chainHead && known->complete == recording.complete &&
          known->verification.verdict == Verdict::verified;
-}
-
-Imported store(CohortDatabase& database, const AssessedAttempt& assessed) {
-  return database.storeAttempt(recordOf(assessed), assessed.values);
 }
 
 bool storeExternal(CohortDatabase& database, const std::string& attempt, MetricOutcomes& external,

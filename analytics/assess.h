@@ -17,29 +17,17 @@
 #include "analytics/external/metric_script.h"
 #include "recorder/base/identity.h"
 #include "recorder/engine/observer.h"
-#include "recorder/recording/identify.h"
+#include "recorder/recording/recording_facts.h"
 #include "recorder/replay.h"
 
 namespace calot::analytics {
 
-/// What assessing one recording gave.
-struct AssessedAttempt {
-  recorder::AttemptHeader header;
-  recorder::Outcome outcome = recorder::Outcome::running;
-  bool complete = false;
-  std::uint64_t steps = 0;
-  std::array<std::byte, 32> chainHead{};
-  std::optional<RecordingSignature> signature;  ///< valid
-  Verification verification;
+/// A replay with the checkpoints watching: its report, and what of it a cohort stores.
+struct JudgedRecording {
+  recorder::ReplayReport report;
+  std::optional<AttemptRecord> record;  ///< none of a damaged file
   std::vector<CheckpointValue> values;  ///< of CheckpointCollector::values(); empty where the replay diverged
   MetricOutcomes external;              ///< of AssessSettings::metrics; nothing where the replay diverged
-  std::string fileName;                 ///< base name or path; the base name is kept
-};
-
-/// A replay with the checkpoints watching.
-struct Assessment {
-  recorder::ReplayReport report;
-  std::optional<AssessedAttempt> attempt;  ///< none of a damaged file
 };
 
 struct AssessSettings {
@@ -51,32 +39,23 @@ struct AssessSettings {
   std::function<void(std::uint64_t step, std::uint64_t of)> progress = {};
 };
 
-/// Re-simulates a recording and computes its checkpoints. One that diverged has no values; one of another simulation
-/// version that no engine here decides has those of its observables, where its content chain is intact.
-Assessment assessRecording(const std::string& file, const AssessSettings& settings = {});
+/// Re-simulates a recording and computes its checkpoints: what command line, windows, Python and watched folders ask. A
+/// recording that diverged has no values; one of another simulation version that no engine here decides has those of
+/// its observables, where its content chain is intact. CohortDatabase::storeAttempt() stores record and values.
+JudgedRecording assessRecording(const std::string& file, const AssessSettings& settings = {});
 
-/// The stored part of an assessment, and its report.
-struct JudgedRecording {
-  recorder::ReplayReport report;
-  std::optional<AttemptRecord> record;  ///< none of a damaged file
-  std::vector<CheckpointValue> values;
-  MetricOutcomes external;
-};
-JudgedRecording judgedRecording(Assessment assessment);
+/// The row of an attempt in a cohort. @param report of its replay: outcome, extent, chain head, signature and verdict
+/// @param file name or path; the base name is kept
+AttemptRecord recordOf(const recorder::AttemptHeader& header, const recorder::ReplayReport& report,
+                       const std::string& file);
 
 /// Does the cohort hold this recording's content, verified? Then there is nothing to assess.
 bool isVerified(const CohortDatabase& database, const recorder::RecordingIdentity& recording);
-
-/// One transaction; idempotent. @throws Error (refused) on a conflict (CohortDatabase::storeAttempt).
-Imported store(CohortDatabase& database, const AssessedAttempt& assessed);
 
 /// Stores the values of external metrics, each for itself: one that the cohort refuses becomes a failure.
 /// @return whether any is new
 bool storeExternal(CohortDatabase& database, const std::string& attempt, MetricOutcomes& external,
                    const std::vector<MetricScript>& metrics);
-
-/// The row that store() writes.
-AttemptRecord recordOf(const AssessedAttempt& assessed);
 
 /// Every value of one attempt, in display units, or the reason why there is none; with intervals, two columns more: the
 /// interval, and what it is made of.

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How motion without a scene enters the cohort database.
+// A command line or a table declares it in words.
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "analytics/checkpoints/checkpoint.h"
@@ -41,5 +43,11 @@ StoredMotion storeMotion(CohortDatabase& database, const recorder::TrackedMotion
 /// What external metrics make of the motion.
 MetricOutcomes externalOf(const recorder::TrackedMotion& motion, const MotionDeclaration& declaration,
                           const std::vector<MetricScript>& metrics);
+
+/// Sets one field of a declaration from its word: "task", "participant", "mode", "purpose", "handedness", "outcome" or
+/// "start". An empty word leaves the field as it is.
+/// @return empty, or what is wanted instead; then nothing is set
+/// @pre `field` is one of these.
+std::string declareMotion(MotionDeclaration& declaration, std::string_view field, const std::string& word);
 
 }  // namespace calot::analytics

@@ -8,7 +8,7 @@
 #include <map>
 #include <utility>
 
-#include "analytics/recordings_found.h"
+#include "analytics/cohort_files.h"
 #include "recorder/recording/probe.h"
 
 namespace calot::analytics {
@@ -120,7 +120,7 @@ void judgeAll(const std::vector<std::string>& files, recorder::WorkerPool& pool,
       own.threads = static_cast<unsigned>(std::max<std::size_t>(1, pool.threadCount() / works.size()));
     const auto judge = [&](std::size_t i) {
       try {
-        works[i].judged = judgedRecording(assessRecording(files[begin + i], own));
+        works[i].judged = assessRecording(files[begin + i], own);
       } catch (...) {
         works[i].failure = std::current_exception();
       }

@@ -25,7 +25,7 @@ analytics::JudgedRecording assess(const std::string& file, unsigned threads, dou
     throw Error(ErrorKind::invalid, "cutoff: values of a cohort have one filter, 6 Hz");
   analytics::AssessSettings settings{.threads = threads, .cutoff = cutoff};
   settings.engine.apart = apart;
-  analytics::JudgedRecording judged = analytics::judgedRecording(analytics::assessRecording(file, settings));
+  analytics::JudgedRecording judged = analytics::assessRecording(file, settings);
   if (cohort && judged.record) {
     analytics::CohortDatabase database(*cohort, analytics::CohortDatabase::Access::create);
     database.storeAttempt(*judged.record, judged.values);

@@ -4,7 +4,7 @@
 #include "python/bindings.h"
 #include "python/driven_attempt.h"
 #include "recorder/base/errors.h"
-#include "recorder/engine/result_row.h"
+#include "recorder/engine/state_fields.h"
 
 namespace py = pybind11;
 

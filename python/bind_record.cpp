@@ -2,9 +2,9 @@
 
 #include "python/bindings.h"
 #include "python/places.h"
-#include "recorder/attempt.h"
 #include "recorder/formats/scene_file.h"
 #include "recorder/live/worker_pool.h"
+#include "recorder/loop.h"
 #include "recorder/prepared_scene.h"
 #include "recorder/recording/writer.h"
 #include "recorder/sources/performer.h"

@@ -6,7 +6,7 @@
 
 #include "python/bindings.h"
 #include "python/errors.h"
-#include "recorder/recording/header.h"
+#include "recorder/recording/layout.h"
 #include "recorder/recording/probe.h"
 #include "recorder/recording/recorded_columns.h"
 #include "recorder/words.h"

@@ -8,7 +8,7 @@
 #include "python/bindings.h"
 #include "python/errors.h"
 #include "python/step_facts.h"
-#include "recorder/engine/result_row.h"
+#include "recorder/engine/state_fields.h"
 #include "recorder/prepared_scene.h"
 #include "recorder/recording/probe.h"
 #include "recorder/replay_words.h"

@@ -14,7 +14,7 @@
 #include "python/step_facts.h"
 #include "recorder/engine/wire.h"
 #include "recorder/formats/scene_assets.h"
-#include "recorder/stepwise_attempt.h"
+#include "recorder/loop.h"
 
 namespace calot::python {
 

@@ -4,7 +4,7 @@
 #include <cstring>
 #include <string_view>
 
-#include "recorder/engine/result_row.h"
+#include "recorder/engine/state_fields.h"
 #include "recorder/recording/recorded_columns.h"
 #include "sim/scene/version.h"
 

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "recorder/base/errors.h"
-#include "recorder/engine/local_engine.h"
-#include "recorder/recording/publish.h"
+#include "recorder/base/text_output.h"
+#include "recorder/engine/session.h"
 #include "recorder/replay.h"
 #include "sim/scene/version.h"
 
@@ -68,7 +68,7 @@ void takeParent(Recording& parent, Session& session, std::uint64_t forkStep,
 }
 
 BranchFile::BranchFile(std::filesystem::path target, bool force) : target_(std::move(target)), force_(force) {
-  refuseExisting(target_, force_);
+  refuseOutput(target_, force_);
   temporary_ = target_;
   temporary_ += ".branch";
 }

@@ -1,18 +1,57 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Rest compliances in the user's cache folder, so that the next program need not work them out again. A convenience:
 // whatever is missing, damaged, of another version or of another user is left alone and worked out anew.
+// All sessions of a scene share the columns, on any thread; a file's are believed once one was computed alike.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <map>
+#include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "recorder/base/identity.h"
-#include "recorder/shared_compliances.h"
+#include "sim/solid/compliance_store.h"
 
 namespace calot::recorder {
+
+/// A column with its place: number of the solid, of the node.
+struct ComplianceColumn {
+  std::uint32_t solid = 0, node = 0;
+  std::vector<float> value;
+};
+
+class SharedCompliances final : public ComplianceStore {
+ public:
+  [[nodiscard]] const float* find(std::size_t solid, std::size_t node) override;
+  const float* keep(std::size_t solid, std::size_t node, std::vector<float> column) override;
+
+  /// Columns that are said to be this scene's. A solid's are given out once one of them was worked out here and came
+  /// out the same; where one differs, none of any solid is. @pre before the first find()
+  void offer(std::vector<ComplianceColumn> columns);
+
+  /// All that are held, those offered and not refuted too.
+  [[nodiscard]] std::vector<ComplianceColumn> columns() const;
+  /// How many of them were worked out here.
+  [[nodiscard]] std::size_t computed() const;
+  /// Was an offered column refuted?
+  [[nodiscard]] bool refuted() const;
+
+ private:
+  using Place = std::pair<std::size_t, std::size_t>;
+
+  mutable std::mutex mutex_;
+  std::map<Place, std::unique_ptr<const std::vector<float>>> held_;
+  std::map<Place, std::vector<float>> offered_;
+  std::map<std::size_t, bool> proven_;  ///< per solid
+  std::size_t computed_ = 0;
+  bool refuted_ = false;
+};
 
 /// What the compliances of a scene depend on, as a name: SHA-256 over the simulation version and the names and bytes of
 /// its files.

@@ -3,11 +3,10 @@
 
 #include <fmt/format.h>
 
-#include "recorder/engine/local_engine.h"
+#include "recorder/engine/session.h"
 #include "recorder/formats/scene_assets.h"
 #include "recorder/kept/engine_folders.h"
 #include "recorder/kept/engine_process.h"
-#include "recorder/kept/recorded_names.h"
 #include "sim/scene/version.h"
 
 namespace calot::recorder {

@@ -10,8 +10,8 @@
 
 #include "recorder/base/errors.h"
 #include "recorder/base/identity.h"
+#include "recorder/compliance_cache.h"
 #include "recorder/recording/reader.h"
-#include "recorder/shared_compliances.h"
 #include "sim/scene/model.h"
 #include "sim/step/stepper.h"
 

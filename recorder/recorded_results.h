@@ -2,10 +2,12 @@
 // Results of recorded steps as today's StepResult, whatever version recorded them.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <vector>
 
 #include "recorder/base/identity.h"
+#include "recorder/engine/observer.h"
 #include "recorder/recording/reader.h"
 #include "sim/judgement/judge.h"
 #include "sim/scene/description.h"
@@ -27,14 +29,33 @@ class RecordedResults {
 
   /// Today's result of the next step. Valid until the next call. @pre steps come in their order, from the first one on
   const StepResult& of(const RecordedStep& step);
+  /// Columns are counted by the header, structures by the scene: do they agree?
+  [[nodiscard]] bool fits(const StepResult& result) const {
+    return result.organ.size() == organs_ && (!hasConnective_ || result.connective.size() == connective_);
+  }
 
  private:
+  std::size_t organs_, connective_;
+  bool hasConnective_;
   bool judged_ = false;               ///< version 3, with a procedure
   std::vector<std::size_t> divided_;  ///< vessels, in the procedure's order
   std::vector<double> toClear_;       ///< of the first step, per body of fat (m^3)
   bool clearedFromStart_ = false;
   StepResult translated_;
 };
+
+/// Both hands' forces and torques at one tick, as re-simulation gave them: recordings hold them rounded.
+struct TickForces {
+  std::array<Vec3, handCount> force, torque;
+};
+
+/// Feeds observers with a recording's steps and its end, as a run would: they need not know which of both it is. There
+/// is no `keyframe` and no `view`.
+/// @param results translates those of earlier versions; null: as recorded @param forces of every tick; null: as
+/// recorded
+/// @throws Error as Recording::step(); (damaged) where `results` is of a scene with other organs or connective tissues
+void feedRecorded(Recording& recording, const std::vector<Observer*>& observers, RecordedResults* results = nullptr,
+                  const std::vector<TickForces>* forces = nullptr);
 
 /// Judges an attempt from its recorded results, whatever simulation version made them.
 class RecordedJudge {

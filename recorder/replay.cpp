@@ -8,13 +8,14 @@
 #include <stdexcept>
 #include <thread>
 
+#include "recorder/compare.h"
 #include "recorder/kept/engine_folders.h"
 #include "recorder/live/worker_pool.h"
-#include "recorder/miss_count.h"
+#include "recorder/recorded_results.h"
 #include "recorder/recording/layout.h"
 #include "recorder/recording/probe.h"
 #include "recorder/segments.h"
-#include "recorder/step_comparison.h"
+#include "recorder/step_watch.h"
 #include "sim/scene/version.h"
 
 namespace calot::recorder {
@@ -43,30 +44,6 @@ std::vector<Segment> partOf(const Recording& recording, const std::vector<Segmen
   const auto at = [&](std::size_t i) { return all.begin() + static_cast<std::ptrdiff_t>(i); };
   return {at(part.first), at(part.second) + 1};
 }
-
-/// Tells observers of the recorded steps, which were proven equal to those that re-simulation gives, with the forces
-/// that it gave.
-void passOn(Recording& recording, const std::vector<TickForces>& forces, const std::vector<Observer*>& observers) {
-  std::vector<TickOutcome> ticks;
-  for (std::uint64_t n = 0; n < recording.stepCount(); ++n) {
-    const RecordedStep& step = recording.step(n);
-    ticks = step.ticks;
-    for (std::size_t i = 0; i < ticks.size(); ++i) {
-      const TickForces& tick = forces[static_cast<std::size_t>(n) * ticks.size() + i];
-      for (std::size_t h = 0; h < handCount; ++h) {
-        ticks[i].hand[h].force = tick.force[h];
-        ticks[i].hand[h].torque = tick.torque[h];
-      }
-    }
-    const StepRecord record{n, step.samples, ticks, step.result, step.digest, step.lateness, {}, {}};
-    for (Observer* observer : observers) observer->onStep(record);
-  }
-  for (Observer* observer : observers) observer->onEnd(recording.outcome());
-}
-
-}  // namespace
-
-namespace {
 
 /// The first step from this one on that has a keyframe; the last one where none has.
 std::uint64_t nextKeyframe(const Recording& recording, std::uint64_t step) {
@@ -172,12 +149,12 @@ void judge(Recording& recording, const ChainVerdict& chain, const ReplaySettings
     report.divergence = verdict.divergence;
     report.reproducible = verdict.reproducible;
     report.misses = verdict.misses;
-    if (!report.divergence && tell) passOn(recording, forces, observers);
+    if (!report.divergence && tell) feedRecorded(recording, observers, nullptr, &forces);
   } else {
-    MissCount count;
-    observers.push_back(&count);
+    StepWatch watch;
+    observers.push_back(&watch);
     report.divergence = runOnce(recording, choice, settings, observers);
-    report.misses = count.misses;
+    report.misses = watch.misses();
     if (report.divergence) {
       ReplaySettings again = settings;
       again.progress = nullptr;

@@ -14,9 +14,8 @@
 #include "recorder/base/errors.h"
 #include "recorder/engine/engine.h"
 #include "recorder/engine_choice.h"
-#include "recorder/recording/brief_digest.h"
 #include "recorder/recording/reader.h"
-#include "recorder/step_misses.h"
+#include "recorder/step_watch.h"
 
 namespace calot::recorder {
 

@@ -12,7 +12,7 @@
 #include <stdexcept>
 #include <thread>
 
-#include "recorder/miss_count.h"
+#include "recorder/step_watch.h"
 
 namespace calot::recorder {
 
@@ -68,7 +68,7 @@ class Verifier {
     Result result;
     if (!segment.keyframe) engine_->start(recording_.header().seed);
     if (segment.keyframe) {
-      // Of which contact sets the ticks before had come to is in the recording, and checked with the segment before.
+      // The recording names the contact sets of the ticks before; the segment before verifies them.
       const RecordedStep& before = recording_.step(segment.first - 1);
       const std::array named{before.ticks.back().hand[0].contactSet, before.ticks.back().hand[1].contactSet};
       if (!engine_->restore(recording_.keyframe(*segment.keyframe), named)) {
@@ -76,11 +76,11 @@ class Verifier {
         return result;
       }
     }
-    MissCount count;
+    StepWatch watch;
     ForceLog log(forces_);
     const auto progress = [&](std::uint64_t /*step*/, std::uint64_t /*of*/) { stepped(); };
-    result.divergence = follow(recording_, *engine_, segment.end, {&count, &log}, progress);
-    result.misses = count.misses;
+    result.divergence = follow(recording_, *engine_, segment.end, {&watch, &log}, progress);
+    result.misses = watch.misses();
     return result;
   }
 

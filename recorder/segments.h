@@ -13,9 +13,10 @@
 
 #include "recorder/engine/observer.h"
 #include "recorder/engine_choice.h"
+#include "recorder/recorded_results.h"
 #include "recorder/recording/reader.h"
 #include "recorder/replay.h"
-#include "recorder/step_misses.h"
+#include "recorder/step_watch.h"
 
 namespace calot::recorder {
 
@@ -29,11 +30,6 @@ struct Segment {
 
 /// All steps of a recording, in order, without gap or overlap.
 std::vector<Segment> segmentsOf(const Recording& recording);
-
-/// Both hands' forces and torques at one tick, as re-simulation gave them: recordings hold them rounded.
-struct TickForces {
-  std::array<Vec3, handCount> force, torque;
-};
 
 /// What re-simulating and comparing a recording's segments gave.
 struct SegmentsVerdict {

@@ -5,7 +5,7 @@
 #include <array>
 
 #include "analytics/checkpoints/motion_track.h"
-#include "recorder/recording/header.h"
+#include "recorder/recording/layout.h"
 #include "recorder/recording/reader.h"
 
 namespace calot::analytics {

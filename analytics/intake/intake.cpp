@@ -8,7 +8,7 @@
 
 #include "analytics/checkpoints/motion.h"
 #include "analytics/cohort/cohort_database.h"
-#include "recorder/recording/identify.h"
+#include "recorder/recording/recording_facts.h"
 #include "sim/scene/version.h"
 
 namespace calot::analytics {
@@ -154,7 +154,7 @@ std::optional<IntakeItem> Intake::take(const Candidate& c, IntakeRest& rest, con
     assess.progress = [&](auto, auto) {
       if (stop) throw IntakeStopped();
     };
-    judged = judgedRecording(assessRecording(c.file, assess));
+    judged = assessRecording(c.file, assess);
   } catch (const IntakeStopped&) {
     return std::nullopt;
   }

@@ -8,8 +8,8 @@
 #include <string_view>
 #include <utility>
 
+#include "analytics/import_motion.h"
 #include "analytics/intake/manifest_table.h"
-#include "analytics/motion_words.h"
 #include "recorder/base/text_words.h"
 
 namespace calot::analytics {

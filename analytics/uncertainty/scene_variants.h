@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The scenes in which an attempt is run again to learn how far its figures depend on step, mesh and assumed constants.
+// Constants have their names in docs/reference/materials.md, and each a way to change it.
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "sim/scene/description.h"
@@ -35,5 +38,21 @@ int designSign(std::size_t run, std::size_t factor);
 
 /// The scene in which a run of the design takes place.
 SceneDescription perturbed(const SceneDescription& scene, std::size_t run);
+
+struct SceneConstant {
+  std::string name;
+  /// Times a positive factor, wherever the scene has it. @returns false where the scene has none.
+  std::function<bool(SceneDescription&, double)> multiply;
+};
+
+const std::vector<SceneConstant>& sceneConstants();
+
+/// Or null.
+const SceneConstant* findSceneConstant(std::string_view name);
+
+/// By how much an assumed constant may be off, either way: the share of it by which uncertainty and sensitivity change
+/// it. Assumed itself: measured viscosities and strengths of living tissue differ by more, stiffnesses by about as
+/// much.
+inline constexpr double assumedChange = 0.3;
 
 }  // namespace calot::analytics

@@ -9,7 +9,7 @@
 
 #include "analytics/checkpoints/checkpoint.h"
 #include "analytics/uncertainty/value_interval.h"
-#include "recorder/open_loop.h"
+#include "recorder/loop.h"
 
 namespace calot::analytics {
 

@@ -10,7 +10,7 @@
 
 #include "analytics/assess.h"
 #include "analytics/checkpoints/motion.h"
-#include "analytics/recordings_found.h"
+#include "analytics/cohort_files.h"
 #include "analytics/regrade.h"
 #include "analytics/share.h"
 #include "analytics/uncertainty/uncertainty.h"

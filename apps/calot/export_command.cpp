@@ -17,7 +17,7 @@
 #include "apps/common/exit_code.h"
 #include "recorder/base/errors.h"
 #include "recorder/recording/export_csv.h"
-#include "recorder/recording/header.h"
+#include "recorder/recording/layout.h"
 #include "recorder/recording/probe.h"
 #include "recorder/sources/column_map.h"
 

@@ -19,7 +19,7 @@
 #include "analytics/report/report_text.h"
 #include "apps/calot/environment.h"
 #include "apps/calot/source_options.h"
-#include "recorder/attempt.h"
+#include "recorder/loop.h"
 #include "recorder/base/errors.h"
 #include "recorder/base/file_bytes.h"
 #include "recorder/base/json_reader.h"

@@ -11,7 +11,6 @@
 #include "analytics/assess.h"
 #include "analytics/checkpoints/from_samples.h"
 #include "analytics/import_motion.h"
-#include "analytics/motion_words.h"
 #include "apps/calot/commands.h"
 #include "apps/calot/environment.h"
 #include "apps/calot/motion_import.h"

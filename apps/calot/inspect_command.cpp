@@ -13,12 +13,11 @@
 #include "apps/calot/terminal_text.h"
 #include "apps/common/exit_code.h"
 #include "recorder/base/errors.h"
-#include "recorder/recording/header.h"
+#include "recorder/recording/layout.h"
 #include "recorder/recording/probe.h"
-#include "recorder/recording/raw_statistics.h"
 #include "recorder/recording/reader.h"
-#include "recorder/recording/stored_bytes.h"
-#include "recorder/step_misses.h"
+#include "recorder/recording/recording_facts.h"
+#include "recorder/step_watch.h"
 #include "sim/scene/version.h"
 
 namespace calot::apps {

@@ -10,7 +10,7 @@
 
 #include "analytics/cohort/cohort_database.h"
 #include "analytics/cohort/withdraw.h"
-#include "analytics/withdrawal_files.h"
+#include "analytics/cohort_files.h"
 #include "apps/calot/cohort_lists.h"
 #include "apps/calot/commands.h"
 #include "apps/calot/wrong_word.h"

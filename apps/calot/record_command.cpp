@@ -9,10 +9,10 @@
 #include "apps/calot/run_report.h"
 #include "apps/calot/source_options.h"
 #include "apps/calot/wrong_word.h"
-#include "recorder/attempt.h"
 #include "recorder/base/errors.h"
 #include "recorder/formats/scene_file.h"
 #include "recorder/live/worker_pool.h"
+#include "recorder/loop.h"
 #include "recorder/prepared_scene.h"
 #include "recorder/recording/writer.h"
 

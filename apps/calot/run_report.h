@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "recorder/attempt.h"
+#include "recorder/loop.h"
 
 namespace calot::apps {
 

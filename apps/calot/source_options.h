@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "recorder/attempt.h"
+#include "recorder/loop.h"
 #include "recorder/base/identity.h"
 #include "recorder/recording/station_key.h"
 #include "recorder/recording/writer.h"

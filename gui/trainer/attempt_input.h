@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <memory>
 
-#include "recorder/attempt.h"
+#include "recorder/loop.h"
 #include "recorder/recording/writer.h"
 #include "recorder/sources/source.h"
 

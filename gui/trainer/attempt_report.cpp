@@ -85,13 +85,13 @@ AttemptFacts readFacts(const std::filesystem::path& file, const std::filesystem:
   const recorder::ChainVerdict chain = recording.verifyChain();
   if (!chain.intact)
     throw Error(ErrorKind::refused, Where{file.string()}, "its content does not agree with its chain: no figures");
-  analytics::AssessedAttempt own;
-  own.header = recording.header();
+  recorder::ReplayReport own;
   own.outcome = recording.outcome();
   own.complete = recording.complete();
   own.steps = recording.stepCount();
-  own.fileName = file.string();
-  static_cast<analytics::AttemptRecord&>(facts.attempt) = analytics::recordOf(own);
+  analytics::AttemptRecord& record = facts.attempt;
+  record = analytics::recordOf(recording.header(), own, file.string());
+  record.verification = {};  // nothing was re-simulated
   if (own.steps > 0) facts.values = analytics::valuesFromObservables(recording);
   return facts;
 }

@@ -47,12 +47,12 @@ QString putIntoCohort(const std::filesystem::path& file, const std::filesystem::
   settings.progress = [&](std::uint64_t step, std::uint64_t of) {
     control.progress(of == 0 ? 0.0 : static_cast<double>(step) / static_cast<double>(of), "Verifying");
   };
-  const analytics::Assessment found = analytics::assessRecording(file.string(), settings);
-  if (!found.attempt) throw Error(ErrorKind::damaged, Where{file.string()}, found.report.message);
+  const analytics::JudgedRecording found = analytics::assessRecording(file.string(), settings);
+  if (!found.record) throw Error(ErrorKind::damaged, Where{file.string()}, found.report.message);
   control.progress(1.0, "Storing");
   analytics::CohortDatabase database(cohort.string(), analytics::CohortDatabase::Access::create);
-  analytics::store(database, *found.attempt);
-  return badgeText(found.attempt->verification.verdict);
+  database.storeAttempt(*found.record, found.values);
+  return badgeText(found.record->verification.verdict);
 }
 
 }  // namespace

@@ -11,9 +11,9 @@
 #include "gui/trainer/hints.h"
 #include "gui/words/problem_words.h"
 #include "recorder/base/errors.h"
-#include "recorder/blended_source.h"
 #include "recorder/branch.h"
 #include "recorder/live/worker_pool.h"
+#include "recorder/live/wrapped_sources.h"
 #include "recorder/words.h"
 
 namespace calot::gui {
@@ -264,7 +264,7 @@ void TrainingSession::run(recorder::Session& session, recorder::SampleSource& so
                           recorder::ControlledSource& controlled, recorder::RecordingWriter& writer,
                           AttemptMonitor& monitor, const recorder::AttemptHeader& header,
                           const std::filesystem::path& file) {
-  tap_.follow(session);
+  tap_.begin(session);
   session.join(tap_);
   awaitPicture(session);
   if (!header.parent.empty()) countDown(controlled);

@@ -19,7 +19,7 @@
 #include "gui/trainer/motion_clock.h"
 #include "gui/trainer/view_tap.h"
 #include "recorder/formats/scene_file.h"
-#include "recorder/live/controlled_source.h"
+#include "recorder/live/wrapped_sources.h"
 #include "recorder/prepared_scene.h"
 #include "recorder/recording/station_key.h"
 

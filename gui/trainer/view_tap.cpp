@@ -11,16 +11,12 @@ constexpr std::chrono::milliseconds patience(500);
 
 }  // namespace
 
-void ViewTap::follow(const recorder::Session& session) {
-  session_ = &session;
-  viewer_ = std::make_unique<SceneViewer>(session.model());
+void ViewTap::begin(recorder::Session& session) {
   underway_ = 1;
-  give();
+  sink_(std::make_shared<const SceneView>(session.view()));
 }
 
-void ViewTap::give() { sink_(std::make_shared<const SceneView>(viewer_->view(session_->state()))); }
-
-void ViewTap::onStep(const recorder::StepRecord& /*record*/) {
+void ViewTap::onStep(const recorder::StepRecord& record) {
   const Clock::time_point now = Clock::now();
   if (now < next_) return;
   if (underway_ >= maxUnderway && now < last_ + patience) return;
@@ -29,7 +25,7 @@ void ViewTap::onStep(const recorder::StepRecord& /*record*/) {
   last_ = now;
   ++underway_;
   ++taken_;
-  give();
+  sink_(std::make_shared<const SceneView>(record.view()));
 }
 
 }  // namespace calot::gui

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "recorder/engine/session.h"
-#include "sim/scene/scene_viewer.h"
 
 namespace calot::gui {
 
@@ -24,9 +23,8 @@ class ViewTap final : public recorder::Observer {
   void onStep(const recorder::StepRecord& record) override;
   void onEnd(recorder::Outcome /*outcome*/) override {}
 
-  /// Views are of this session from here on; hands out one at once. Then it is to be joined to it.
-  /// @param session outlives its last step
-  void follow(const recorder::Session& session);
+  /// Hands out a view of a session that it is to be joined to.
+  void begin(recorder::Session& session);
   /// Any thread: a view has been shown.
   void shown() { underway_ = 0; }
   /// Has the newest one that was handed out been shown, or one after it?
@@ -35,11 +33,8 @@ class ViewTap final : public recorder::Observer {
 
  private:
   using Clock = std::chrono::steady_clock;
-  void give();
 
   Sink sink_;
-  const recorder::Session* session_ = nullptr;
-  std::unique_ptr<SceneViewer> viewer_;
   Clock::time_point next_{};  ///< when the next one is due
   Clock::time_point last_{};
   std::atomic<int> underway_{0};  ///< handed out since the last one was shown

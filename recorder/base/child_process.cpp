@@ -4,8 +4,11 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
+#include <signal.h>
 #include <spawn.h>
+#include <sys/prctl.h>
 #include <sys/socket.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -13,7 +16,6 @@
 #include <array>
 #include <cerrno>
 #include <climits>
-#include <csignal>
 #include <cstring>
 
 #include "recorder/base/errors.h"
@@ -35,16 +37,89 @@ class FileActions {
   posix_spawn_file_actions_t actions_{};
 };
 
+/// This process's end, and the child's.
+std::pair<Channel, Channel> connection(const std::string& what) {
+  std::array<int, 2> ends{};
+  if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0)
+    throw Error(ErrorKind::failure, what.empty() ? Where{} : Where{what}, std::strerror(errno));
+  return {Channel(ends[0]), Channel(ends[1])};
+}
+
+/// Waits until something can be read. @return false at the deadline
+bool waitFor(int descriptor, Channel::Deadline deadline) {
+  for (;;) {
+    int left = -1;
+    if (deadline != Channel::never) {
+      const auto ms = std::chrono::ceil<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now()).count();
+      if (ms <= 0) return false;
+      left = static_cast<int>(std::min<long long>(ms, INT_MAX));
+    }
+    pollfd ready{descriptor, POLLIN, 0};
+    const int found = ::poll(&ready, 1, left);
+    if (found > 0 || (found < 0 && errno != EINTR)) return true;
+  }
+}
+
 }  // namespace
 
+Channel::~Channel() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+bool Channel::send(std::span<const std::byte> bytes) const {
+  while (!bytes.empty()) {
+    const ssize_t n = ::send(descriptor_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) return false;
+    bytes = bytes.subspan(static_cast<std::size_t>(n));
+  }
+  return true;
+}
+
+Channel::Received Channel::receive(std::span<std::byte> bytes, Deadline deadline) const {
+  while (!bytes.empty()) {
+    if (!waitFor(descriptor_, deadline)) return Received::late;
+    const ssize_t n = ::recv(descriptor_, bytes.data(), bytes.size(), 0);
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) return Received::ended;
+    bytes = bytes.subspan(static_cast<std::size_t>(n));
+  }
+  return Received::all;
+}
+
+Channel::Received Channel::receiveRest(std::vector<std::byte>& out, Deadline deadline) const {
+  std::array<std::byte, 65536> piece;
+  for (;;) {
+    if (!waitFor(descriptor_, deadline)) return Received::late;
+    const ssize_t n = ::recv(descriptor_, piece.data(), piece.size(), 0);
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) return Received::all;
+    out.insert(out.end(), piece.begin(), piece.begin() + n);
+  }
+}
+
+bool Channel::sendMessage(std::span<const std::byte> bytes) const {
+  const std::array<std::uint64_t, 1> size{bytes.size()};
+  return send(std::as_bytes(std::span(size))) && send(bytes);
+}
+
+std::optional<std::vector<std::byte>> Channel::receiveMessage() const {
+  std::array<std::uint64_t, 1> size{};
+  if (receive(std::as_writable_bytes(std::span(size))) != Received::all) return std::nullopt;
+  std::vector<std::byte> bytes(static_cast<std::size_t>(size.front()));
+  if (receive(bytes) != Received::all) return std::nullopt;
+  return bytes;
+}
+
+std::string ProcessEnd::describe() const {
+  return signalled ? fmt::format("signal {} ({})", number, ::strsignal(number)) : fmt::format("exit code {}", number);
+}
+
 ChildProcess::ChildProcess(const std::vector<std::string>& command) {
-  std::array<int, 2> ends{};
-  // A socket and not two pipes: writing to a program that has ended is then an error and no signal.
-  if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0)
-    throw Error(ErrorKind::failure, Where{command.front()}, std::strerror(errno));
+  auto [own, childs] = connection(command.front());
   FileActions actions;
-  posix_spawn_file_actions_adddup2(actions.get(), ends[1], STDIN_FILENO);
-  posix_spawn_file_actions_adddup2(actions.get(), ends[1], STDOUT_FILENO);
+  posix_spawn_file_actions_adddup2(actions.get(), childs.descriptor(), STDIN_FILENO);
+  posix_spawn_file_actions_adddup2(actions.get(), childs.descriptor(), STDOUT_FILENO);
   posix_spawn_file_actions_addopen(actions.get(), STDERR_FILENO, "/dev/null", O_WRONLY, 0);
   posix_spawn_file_actions_addclosefrom_np(actions.get(), STDERR_FILENO + 1);
   std::vector<char*> arguments;
@@ -53,65 +128,51 @@ ChildProcess::ChildProcess(const std::vector<std::string>& command) {
   arguments.push_back(nullptr);
   std::array<char*, 1> noEnvironment{nullptr};
   const int failed =
-      posix_spawnp(&pid_, arguments.front(), actions.get(), nullptr, arguments.data(), noEnvironment.data());
-  close(ends[1]);
-  socket_ = ends[0];
-  if (failed == 0) return;
-  pid_ = -1;
-  close(socket_);
-  throw Error(ErrorKind::undecided, Where{command.front()},
-              fmt::format("cannot be started: {}", std::strerror(failed)));
-}
-
-ChildProcess::~ChildProcess() {
-  static_cast<void>(end());
-  close(socket_);
-}
-
-bool ChildProcess::send(std::span<const std::byte> bytes) {
-  while (!bytes.empty()) {
-    const ssize_t n = ::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
-    if (n < 0 && errno == EINTR) continue;
-    if (n <= 0) return false;
-    bytes = bytes.subspan(static_cast<std::size_t>(n));
+      ::posix_spawnp(&pid_, arguments.front(), actions.get(), nullptr, arguments.data(), noEnvironment.data());
+  if (failed != 0) {
+    pid_ = -1;
+    throw Error(ErrorKind::undecided, Where{command.front()},
+                fmt::format("cannot be started: {}", std::strerror(failed)));
   }
-  return true;
+  channel_ = std::move(own);
 }
 
-ChildProcess::Received ChildProcess::receive(std::span<std::byte> bytes,
-                                             std::chrono::steady_clock::time_point deadline) {
-  while (!bytes.empty()) {
-    const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now()).count();
-    if (left <= 0) return Received::late;
-    pollfd ready{socket_, POLLIN, 0};
-    const int found = poll(&ready, 1, static_cast<int>(std::min<long long>(left, INT_MAX)));
-    if (found < 0 && errno != EINTR) return Received::ended;
-    if (found <= 0) continue;
-    const ssize_t n = recv(socket_, bytes.data(), bytes.size(), 0);
-    if (n < 0 && errno == EINTR) continue;
-    if (n <= 0) return Received::ended;
-    bytes = bytes.subspan(static_cast<std::size_t>(n));
+ChildProcess::ChildProcess(const Task& task, std::mutex* quiet) {
+  auto [own, childs] = connection({});
+  {
+    std::unique_lock<std::mutex> held;
+    if (quiet != nullptr) held = std::unique_lock<std::mutex>(*quiet);
+    pid_ = ::fork();
   }
-  return Received::all;
+  if (pid_ == 0) {
+    ::close(own.descriptor());
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+    try {
+      task(childs);
+    } catch (...) {
+      ::_exit(1);  // never into the callers of the parent
+    }
+    ::_exit(0);
+  }
+  if (pid_ < 0) throw Error(ErrorKind::failure, fmt::format("no child process: {}", std::strerror(errno)));
+  channel_ = std::move(own);
 }
 
-std::string ChildProcess::end() {
-  if (pid_ < 0) return ended_;
+ProcessEnd ChildProcess::end(std::chrono::milliseconds patience) {
+  if (pid_ < 0) return end_;
   // It may be ending by itself: its own reason is the better one.
-  constexpr std::chrono::milliseconds patience{200};
-  const auto until = std::chrono::steady_clock::now() + patience;
-  shutdown(socket_, SHUT_RDWR);
+  ::shutdown(channel_.descriptor(), SHUT_RDWR);
+  const int process = static_cast<int>(::syscall(SYS_pidfd_open, pid_, 0));
+  const bool ended = waitFor(process, std::chrono::steady_clock::now() + patience);
+  ::close(process);
+  if (!ended) ::kill(pid_, SIGKILL);
   int status = 0;
-  pid_t reaped = 0;
-  while ((reaped = waitpid(pid_, &status, WNOHANG)) == 0 && std::chrono::steady_clock::now() < until) usleep(500);
-  if (reaped == 0) {
-    kill(pid_, SIGKILL);
-    waitpid(pid_, &status, 0);
+  while (::waitpid(pid_, &status, 0) < 0 && errno == EINTR) {
   }
   pid_ = -1;
-  ended_ = WIFSIGNALED(status) ? fmt::format("signal {} ({})", WTERMSIG(status), strsignal(WTERMSIG(status)))
-                               : fmt::format("exit code {}", WEXITSTATUS(status));
-  return ended_;
+  channel_ = Channel();
+  end_ = {WIFSIGNALED(status), WIFSIGNALED(status) ? WTERMSIG(status) : WEXITSTATUS(status)};
+  return end_;
 }
 
 }  // namespace calot::recorder

@@ -10,14 +10,23 @@
 #include <span>
 #include <string>
 
-#include "recorder/engine/keyframe_difference.h"
 #include "recorder/engine/observer.h"
-#include "recorder/engine/recorded_procedure.h"
+#include "sim/judgement/judgement.h"
 #include "sim/scene/digests.h"
 #include "sim/scene/scene_view.h"
 #include "sim/scene/step_result.h"
 
 namespace calot::recorder {
+
+/// /observables/procedure of recordings in version 3 of StepResult, in which the simulation judged the procedure.
+struct RecordedProcedure {
+  Phase phase = Phase::none;
+  std::uint8_t triangleCleared = 0, lowerThirdFreed = 0, twoStructures = 0;
+  bool criticalViewFrozen = false;
+  double lowerThirdAttached = 0.0;
+  std::uint32_t errors = 0, criticalErrors = 0;
+  bool operator==(const RecordedProcedure&) const = default;
+};
 
 /// What a program that is an engine has given up. Numbers are of schemas/engine.md.
 enum class Confinement : std::uint8_t {
@@ -51,6 +60,12 @@ struct EngineStep {
 
 /// Contact sets that both hands' last ticks named.
 using NamedSets = std::array<std::int64_t, handCount>;
+
+/// The first field in which two keyframes differ.
+struct KeyframeDifference {
+  std::string field;   ///< "organ.liver/position"; "state", "haptics" where no field can be named
+  std::string detail;  ///< index and both values; or empty
+};
 
 class Engine {
  public:

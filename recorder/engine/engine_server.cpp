@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "recorder/base/errors.h"
-#include "recorder/engine/result_row.h"
 #include "recorder/engine/wire_forms.h"
 #include "recorder/formats/scene_assets.h"
 #include "sim/scene/version.h"

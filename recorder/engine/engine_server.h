@@ -8,8 +8,8 @@
 #include <span>
 #include <string>
 
-#include "recorder/engine/local_engine.h"
-#include "recorder/engine/messages.h"
+#include "recorder/engine/session.h"
+#include "recorder/engine/wire.h"
 
 namespace calot::recorder {
 

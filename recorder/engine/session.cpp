@@ -98,6 +98,26 @@ void Session::step(std::span<const TickSamples> samples, std::span<const TickOut
   for (Observer* observer : observers_) observer->onStep(record);
 }
 
+std::span<const TickOutcome> Session::run(const StepInput& input) {
+  ticks_.resize(input.samples.size());
+  for (std::size_t i = 0; i < ticks_.size(); ++i) {
+    if (input.logged.empty()) {
+      ticks_[i] = tick(input.samples[i]);
+    } else {
+      const TickOutcome& logged = input.logged[i];
+      ticks_[i] = tick(input.samples[i], NamedSets{logged.hand[0].contactSet, logged.hand[1].contactSet});
+      ticks_[i].lateness = logged.lateness;
+    }
+  }
+  step(input.samples, ticks_, input.lateness);
+  return ticks_;
+}
+
+SceneView Session::view() {
+  if (!viewer_) viewer_ = std::make_unique<SceneViewer>(model_);
+  return viewer_->view(state_);
+}
+
 void Session::end(Outcome outcome) {
   for (Observer* observer : observers_) observer->onEnd(outcome);
 }
@@ -147,6 +167,32 @@ bool Session::restore(const Keyframe& keyframe, const std::optional<std::array<s
   for (std::size_t i = 0; i < sets.size(); ++i) setsOf(oldest + static_cast<std::int64_t>(i)) = std::move(sets[i]);
   stepper_.invalidate();
   return true;
+}
+
+std::unique_ptr<Session> LocalEngine::makeSession(std::uint64_t seed) {
+  auto session = std::make_unique<Session>(model_, seed, *executor_, services_);
+  session->join(newest_);
+  return session;
+}
+
+void LocalEngine::start(std::uint64_t seed) {
+  owned_ = makeSession(seed);
+  session_ = owned_.get();
+}
+
+bool LocalEngine::restore(const Keyframe& keyframe, const std::optional<NamedSets>& named) {
+  // A session that is used again keeps what it worked out of the model. The seed went into the keyframe's State.
+  if (session_ != nullptr) return session_->restore(keyframe, named);
+  std::unique_ptr<Session> fresh = makeSession(0);
+  if (!fresh->restore(keyframe, named)) return false;
+  owned_ = std::move(fresh);
+  session_ = owned_.get();
+  return true;
+}
+
+EngineStep LocalEngine::step(const StepInput& input) {
+  const std::span<const TickOutcome> ticks = session_->run(input);
+  return {session_->steps() - 1, ticks, *newest_.result, *newest_.digest};
 }
 
 }  // namespace calot::recorder

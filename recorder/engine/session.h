@@ -5,12 +5,15 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "recorder/engine/engine.h"
 #include "recorder/engine/observer.h"
+#include "recorder/engine/state_fields.h"
 #include "sim/haptics/haptic_tick.h"
 #include "sim/math/executor.h"
 #include "sim/scene/model.h"
@@ -56,6 +59,11 @@ class Session {
   /// stretched, and the step's events end with one EventKind::clockStretched: the sum over its ticks of the excess.
   void step(std::span<const TickSamples> samples, std::span<const TickOutcome> ticks, float lateness);
 
+  /// A whole step: its ticks, then the step. @param input its `logged` names contact sets and lateness of each tick;
+  /// empty: each tick uses the newest set and is in time
+  /// @returns the ticks; valid until the next call
+  std::span<const TickOutcome> run(const StepInput& input);
+
   void end(Outcome outcome);
 
   [[nodiscard]] const Model& model() const { return model_; }
@@ -77,7 +85,8 @@ class Session {
   [[nodiscard]] const HapticStates& haptics() const { return haptic_; }
   [[nodiscard]] const ContactSets& contactSets() const { return setsOf(newest_); }
 
-  [[nodiscard]] SceneView view() const { return viewOf(model_, state_); }
+  /// What is to be drawn now.
+  [[nodiscard]] SceneView view();
 
  private:
   [[nodiscard]] const ContactSets& setsOf(std::int64_t step) const {
@@ -98,6 +107,57 @@ class Session {
   StepResult flagged_;
   std::function<void(const ContactSets&)> tell_;
   std::vector<Observer*> observers_;
+  std::vector<TickOutcome> ticks_;       ///< of run()
+  std::unique_ptr<SceneViewer> viewer_;  ///< once something is drawn
+};
+
+/// This program's own simulation.
+class LocalEngine final : public Engine {
+ public:
+  /// @param model, executor outlive the engine. @param services of its session's stepper
+  LocalEngine(const Model& model, Executor& executor, const StepperServices& services = {})
+      : model_(model), executor_(&executor), services_(services) {}
+  /// Goes on with a session that is there, which outlives the engine. @pre nobody calls start()
+  explicit LocalEngine(Session& session) : model_(session.model()), session_(&session) { session.join(newest_); }
+  ~LocalEngine() override {
+    if (session_ != nullptr) session_->leave(newest_);
+  }
+
+  [[nodiscard]] const DigestLayout& layout() const override { return model_.layout(); }
+  void start(std::uint64_t seed) override;
+  [[nodiscard]] bool restore(const Keyframe& keyframe, const std::optional<NamedSets>& named) override;
+  [[nodiscard]] std::uint64_t steps() const override { return session_ != nullptr ? session_->steps() : 0; }
+  EngineStep step(const StepInput& input) override;
+  [[nodiscard]] Keyframe keyframe() override { return session_->keyframe(); }
+  [[nodiscard]] SceneView view() override { return session_->view(); }
+  [[nodiscard]] std::optional<KeyframeDifference> explain(const Keyframe& recorded) override {
+    return differenceOf(model_, recorded, session_->keyframe());
+  }
+
+  /// @pre start() or restore()
+  [[nodiscard]] const Session& session() const { return *session_; }
+
+ private:
+  /// Keeps what a step came to.
+  class Newest final : public Observer {
+   public:
+    void onStep(const StepRecord& record) override {
+      result = &record.result;
+      digest = &record.digest;
+    }
+    void onEnd(Outcome /*outcome*/) override {}
+    const StepResult* result = nullptr;
+    const StateDigest* digest = nullptr;
+  };
+
+  [[nodiscard]] std::unique_ptr<Session> makeSession(std::uint64_t seed);
+
+  const Model& model_;
+  Executor* executor_ = nullptr;
+  StepperServices services_;
+  Newest newest_;
+  std::unique_ptr<Session> owned_;
+  Session* session_ = nullptr;
 };
 
 }  // namespace calot::recorder

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A State taken apart into named arrays of numbers, for naming what differs and for state files.
+// A State taken apart into named arrays of numbers, for naming what differs and for state files; and a step's results
+// as an engine sends them, a row of each column of /observables one after the other.
 #pragma once
 
 #include <cstdint>
@@ -8,6 +9,8 @@
 #include <variant>
 #include <vector>
 
+#include "recorder/engine/engine.h"
+#include "recorder/engine/wire.h"
 #include "sim/scene/model.h"
 #include "sim/scene/state.h"
 
@@ -32,5 +35,14 @@ struct FieldDifference {
 /// The first difference in order, bit for bit, if there is one.
 std::optional<FieldDifference> firstDifference(const std::vector<StateField>& first,
                                                const std::vector<StateField>& second);
+
+/// The first difference of two keyframes' States, or of their haptic bytes.
+std::optional<KeyframeDifference> differenceOf(const Model& model, const Keyframe& recorded, const Keyframe& here);
+
+/// The columns of today's version of StepResult in a scene, in the order of recordings.
+std::vector<wire::Column> resultColumns(const Model& model);
+
+/// Appends a row. @pre the result is of that scene
+void appendResultRow(const StepResult& result, wire::Bytes& out);
 
 }  // namespace calot::recorder

@@ -3,15 +3,59 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <stdexcept>
 #include <utility>
+#include <vector>
 
+#include "recorder/base/text_words.h"
 #include "recorder/engine/wire_forms.h"
 #include "recorder/formats/scene_assets.h"
-#include "recorder/kept/receive_message.h"
-#include "recorder/kept/recorded_names.h"
+#include "recorder/recording/layout.h"
 
 namespace calot::recorder {
+
+namespace {
+
+/// Golden recordings hold no results; engines send them all the same.
+AttemptHeader withResults(AttemptHeader header) {
+  if (isMinimal(header)) header.purpose.clear();
+  return header;
+}
+
+}  // namespace
+
+ResultReader::ResultReader(const AttemptHeader& header) : layout_(withResults(header)) {
+  const std::size_t end = layout_.tickColumns + layout_.stepColumns;
+  first_ = layout_.tickColumns;
+  while (first_ < end && !layout_.columns[first_].path.starts_with("/observables")) ++first_;
+  offset_.push_back(0);
+  for (std::size_t c = first_; c < end; ++c) offset_.push_back(offset_.back() + layout_.columns[c].rowBytes());
+}
+
+std::string ResultReader::fault(const std::vector<wire::Column>& declared) const {
+  std::vector<wire::Column> ours;
+  for (std::size_t c = 0; c + 1 < offset_.size(); ++c) {
+    const Column& column = layout_.columns[first_ + c];
+    if (column.width > 0)
+      ours.push_back({column.path, numberType(column.element), static_cast<std::uint32_t>(column.width)});
+  }
+  if (ours == declared) return "";
+  const auto differing = std::mismatch(ours.begin(), ours.end(), declared.begin(), declared.end());
+  return differing.first == ours.end() ? fmt::format("{} is no result of the recording", differing.second->path)
+                                       : fmt::format("{} is no result of the engine", differing.first->path);
+}
+
+std::string ResultReader::read(std::span<const std::byte> row, StepResult& result, RecordedProcedure& procedure) const {
+  if (row.size() != offset_.back())
+    return fmt::format("results have {} bytes instead of {}", row.size(), offset_.back());
+  const auto place = [&](std::size_t column) { return row.data() + offset_[column - first_]; };
+  RowVisitor<decltype(place)> visit{layout_, place, first_, false, {}};
+  visitResult(result, visit);
+  if (layout_.procedure) visitProcedure(procedure, visit);
+  return visit.fault;
+}
 
 void EngineProcess::fail(const std::string& what) { throw Error(kind_, where_, what); }
 
@@ -20,7 +64,7 @@ void EngineProcess::send(const Request& request) {
   request_.clear();
   appendMessage(request, request_);
   // Where it has ended, receive() says so, after what it said before.
-  static_cast<void>(child_.send(request_));
+  static_cast<void>(child_.channel().send(request_));
 }
 
 std::span<const std::byte> EngineProcess::receive(std::uint32_t kind, std::uint32_t* got) {
@@ -151,6 +195,61 @@ std::optional<KeyframeDifference> EngineProcess::explain(const Keyframe& recorde
   auto answer = ask<wire::IsExplained>(wire::Explain{wire::toWire(recorded)});
   if (answer.differs == 0) return std::nullopt;
   return KeyframeDifference{std::move(answer.field), std::move(answer.detail)};
+}
+
+std::string receiveMessage(ChildProcess& child, MessageHead& head, wire::Bytes& payload) {
+  const auto deadline = std::chrono::steady_clock::now() + enginePatience;
+  std::array<std::byte, messageHead> bytes{};
+  using Received = Channel::Received;
+  Received received = child.channel().receive(bytes, deadline);
+  if (received == Received::all) {
+    head = parseHead(bytes);
+    if (head.length > maxPayload) return "answers with no message";
+    payload.resize(static_cast<std::size_t>(head.length));
+    received = child.channel().receive(payload, deadline);
+  }
+  if (received == Received::late) return fmt::format("gave no answer in {} s", enginePatience.count());
+  if (received == Received::ended) return "ended: " + child.end().describe();
+  return "";
+}
+
+namespace {
+
+std::string listFault(const char* what, const std::vector<std::string>& recorded, const std::vector<std::string>& own) {
+  if (recorded.size() != own.size())
+    return fmt::format("has {} {}s, and its scene {}", recorded.size(), what, own.size());
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    if (recorded[i] != own[i])
+      return fmt::format("{} {} is called {}, and by its scene {}", what, i, shown(recorded[i]), shown(own[i]));
+  }
+  return "";
+}
+
+}  // namespace
+
+std::string nameFault(const DigestLayout& recorded, const DigestLayout& engine) {
+  if (std::string fault = listFault("component", recorded.components, engine.components); !fault.empty()) return fault;
+  std::vector<std::string> names, own;
+  for (const DigestLayout::Field& field : recorded.fields)
+    names.push_back(fmt::format("{} of component {}", field.name, field.component));
+  for (const DigestLayout::Field& field : engine.fields)
+    own.push_back(fmt::format("{} of component {}", field.name, field.component));
+  return listFault("field", names, own);
+}
+
+std::string nameFault(const AttemptHeader& header, const Model& model) {
+  std::string fault;
+  Tissues::forEach([&]<class Kind>(std::type_identity<Kind>, TissueId kind) {
+    if constexpr (Kind::hasStructures) {
+      if (!fault.empty() || Kind::results.since > header.stepResultVersion) return;
+      std::vector<std::string> own;
+      for (const StructureModel& structure : model.structures()) {
+        if (structure.kind == kind) own.push_back(structure.name);
+      }
+      fault = listFault("structure", Kind::namesOf(header), own);
+    }
+  });
+  return fault.empty() ? nameFault(header.layout, model.layout()) : fault;
 }
 
 }  // namespace calot::recorder

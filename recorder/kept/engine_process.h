@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <chrono>
 #include <optional>
 #include <span>
 #include <string>
@@ -10,11 +11,32 @@
 #include "recorder/base/errors.h"
 #include "recorder/base/identity.h"
 #include "recorder/engine/engine.h"
-#include "recorder/engine/messages.h"
-#include "recorder/kept/result_reader.h"
+#include "recorder/engine/wire.h"
+#include "recorder/recording/layout.h"
+#include "sim/scene/model.h"
 #include "sim/scene/scene_view.h"
 
 namespace calot::recorder {
+
+/// Reads a step's results as an engine sends them, in the recording's version of StepResult.
+class ResultReader {
+ public:
+  explicit ResultReader(const AttemptHeader& header);
+
+  /// What is wrong with the columns that an engine declares for these recordings; empty: nothing.
+  [[nodiscard]] std::string fault(const std::vector<wire::Column>& declared) const;
+  /// Reads a row. @param procedure of version 3 alone
+  /// @return what of it no engine makes, or nothing @pre fault() had nothing to say
+  [[nodiscard]] std::string read(std::span<const std::byte> row, StepResult& result,
+                                 RecordedProcedure& procedure) const;
+  /// The scene has a procedure that this version of StepResult judged.
+  [[nodiscard]] bool hasProcedure() const { return layout_.procedure; }
+
+ private:
+  Layout layout_;
+  std::size_t first_ = 0;            ///< of the columns of results
+  std::vector<std::size_t> offset_;  ///< in a row, of each of them, and its end
+};
 
 /// An engine that is another program (schemas/engine.md). Whatever becomes of it is an error of the recording that it
 /// was to decide, and of nothing else: it ends, it answers nonsense, it does not answer in time.
@@ -71,5 +93,19 @@ class EngineProcess final : public Engine {
   StateDigest digest_;
   RecordedProcedure procedure_;
 };
+
+/// How long an engine may take over one answer. A step takes milliseconds, the largest scene seconds.
+inline constexpr std::chrono::seconds enginePatience{120};
+
+/// Takes an engine's next message. @returns why there is none: "ended: exit code 7"; empty where there is one
+std::string receiveMessage(ChildProcess& child, MessageHead& head, wire::Bytes& payload);
+
+/// Re-simulation computes values, not what they are called: whether a recording's structures, components and fields
+/// have the names that its own scene gives them. @return one phrase of the first that has another; or empty
+/// @pre the recording is of this program's simulation version
+std::string nameFault(const AttemptHeader& header, const Model& model);
+
+/// The same of digests alone, for an engine that is another program.
+std::string nameFault(const DigestLayout& recorded, const DigestLayout& engine);
 
 }  // namespace calot::recorder

@@ -9,9 +9,9 @@
 #include "recorder/base/child_process.h"
 #include "recorder/base/errors.h"
 #include "recorder/base/file_bytes.h"
-#include "recorder/engine/messages.h"
+#include "recorder/engine/wire.h"
 #include "recorder/engine/wire_forms.h"
-#include "recorder/kept/receive_message.h"
+#include "recorder/kept/engine_process.h"
 
 namespace calot::recorder {
 
@@ -26,7 +26,7 @@ class RawEngine {
 
   std::vector<std::byte> ask(const std::vector<std::byte>& request) {
     // Where it has ended, receiveMessage() says how.
-    static_cast<void>(child_.send(request));
+    static_cast<void>(child_.channel().send(request));
     MessageHead head;
     wire::Bytes answer;
     if (const std::string fault = receiveMessage(child_, head, answer); !fault.empty())

@@ -2,7 +2,6 @@
 #include "recorder/live/paced_clock.h"
 
 #include <time.h>
-
 #include <algorithm>
 #include <cerrno>
 
@@ -57,6 +56,23 @@ float PacedClock::finish(std::uint64_t t, Nanoseconds ready) {
   const float lateness = waited ? lagSeconds(late) : std::min(lagSeconds(late), maxLag);
   if (lateness > tickDeadline) ++missed_;
   return lateness;
+}
+
+SourceStatus waitWhilePaused(SampleSource& source, const std::function<bool()>& stopped, PacedClock& clock,
+                             SourcePauses& pauses) {
+  constexpr Nanoseconds askAgain = std::chrono::milliseconds(2);
+  SourceStatus status = source.status();
+  if (status != SourceStatus::paused) return status;
+  ++pauses.count;
+  const Nanoseconds began = monotonicNow();
+  while (status == SourceStatus::paused && !stopped()) {
+    sleepUntil(monotonicNow() + askAgain);
+    status = source.status();
+  }
+  const Nanoseconds length = monotonicNow() - began;
+  clock.pause(length);
+  pauses.seconds += std::chrono::duration<double>(length).count();
+  return status;
 }
 
 }  // namespace calot::recorder

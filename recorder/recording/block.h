@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What one flush writes: rows of every column, as bytes. Internal to this folder.
+// The content chain (schemas/recording.md, "Content chain") has one link a flush: BLAKE2b-256 over decoded values.
 #pragma once
 
 #include <array>
@@ -43,5 +44,13 @@ void appendKeyframe(const Layout& layout, const Keyframe& keyframe, std::span<co
 
 /// Reads step `at` (of this block) back, but for its events. @return an empty string, or which value is out of range.
 std::string extractStep(const Layout& layout, const Block& block, std::uint64_t at, RecordedStep& out);
+
+using ChainHead = std::array<std::uint8_t, 32>;
+
+/// Link 0: root attributes, scene, names.
+ChainHead chainStart(const AttemptHeader& header);
+
+/// The next link: the rows of a block and the counts of its row of /status. @param before the row before it.
+ChainHead chainNext(const Layout& layout, const StatusRow& before, const Block& block, const StatusRow& after);
 
 }  // namespace calot::recorder

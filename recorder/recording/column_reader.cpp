@@ -3,11 +3,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <cstring>
 #include <optional>
 #include <utility>
 
-#include "recorder/recording/types.h"
+#include "recorder/recording/hdf5.h"
+#include "recorder/recording/keyframe_code.h"
 
 namespace calot::recorder {
 
@@ -81,7 +84,7 @@ StatusRow ColumnReader::readStatus(std::uint64_t row) const {
   std::vector<std::byte> bytes;
   read(status_, statusColumn_, row, 1, bytes);
   StatusRow out;
-  if (const std::string fault = parseStatus(bytes, out); !fault.empty())
+  if (const std::string fault = parseRow(bytes, out); !fault.empty())
     throw damaged(path_, "/status", fmt::format("row {} {}", row, fault));
   if (row == 0 && (out.ticks | out.steps | out.events | out.keyframes | out.keyframeWords) != 0) {
     throw damaged(path_, "/status", "row 0 does not start at nothing");
@@ -93,17 +96,17 @@ void ColumnReader::readRawCounts(const StatusRow& before, std::uint64_t row, Sta
   if (!layout_.deviceSamples) return;
   std::vector<std::byte> bytes;
   read(rawCounts_, rawCountsColumn_, row, 1, bytes);
-  StatusRow counts;
-  parseRawCounts(bytes, counts);
+  RawCounts counts;
+  static_cast<void>(parseRow(bytes, counts));
   const auto refuse = [&](const char* why) { throw damaged(path_, rawCountsPath, fmt::format("row {} {}", row, why)); };
-  for (std::size_t h = 0; h < counts.rawSamples.size(); ++h) {
-    if (row == 0 && (counts.rawSamples[h] | counts.rawDropped[h]) != 0) refuse("does not start at nothing");
-    if (counts.rawSamples[h] < before.rawSamples[h] || counts.rawDropped[h] < before.rawDropped[h])
+  for (std::size_t h = 0; h < counts.samples.size(); ++h) {
+    if (row == 0 && (counts.samples[h] | counts.dropped[h]) != 0) refuse("does not start at nothing");
+    if (counts.samples[h] < before.rawSamples[h] || counts.dropped[h] < before.rawDropped[h])
       refuse("counts less than the row before it");
-    if (counts.rawSamples[h] - before.rawSamples[h] > fileBytes_) refuse("claims more rows than the file can hold");
+    if (counts.samples[h] - before.rawSamples[h] > fileBytes_) refuse("claims more rows than the file can hold");
   }
-  out.rawSamples = counts.rawSamples;
-  out.rawDropped = counts.rawDropped;
+  out.rawSamples = counts.samples;
+  out.rawDropped = counts.dropped;
 }
 
 void ColumnReader::checkFollows(const StatusRow& before, const StatusRow& after, std::uint64_t row) const {
@@ -154,13 +157,128 @@ void ColumnReader::readRaw(const StatusRow& before, const StatusRow& after, Bloc
     std::optional<std::uint64_t> sequence;
     for (std::uint64_t i = 0; i < rows; ++i) {
       const auto row = std::span(bytes).subspan(static_cast<std::size_t>(i) * rawSampleBytes);
-      std::string fault = parseRawSample(row, static_cast<Hand>(h), raw);
+      raw.sample.hand = static_cast<Hand>(h);
+      std::string fault = parseRow(row, raw);
       if (raw.tick < before.ticks || raw.tick >= after.ticks) fault = "is of a tick outside its flush";
       if (sequence && raw.sample.sequence <= *sequence) fault = "is out of order";
       sequence = raw.sample.sequence;
       if (!fault.empty()) throw damaged(path_, column.path, fmt::format("row {} {}", before.rawSamples[h] + i, fault));
     }
   }
+}
+
+namespace {
+
+/// How many bytes of decoded keyframes are kept for the next ones.
+constexpr std::size_t maxKnownBytes = std::size_t{64} << 20U;
+
+}  // namespace
+
+KeyframeReader::KeyframeReader(std::filesystem::path path, const Layout& layout, const ColumnReader& columns,
+                               const StatusRow& last)
+    : path_(std::move(path)), layout_(layout), columns_(columns), totalWords_(last.keyframeWords) {
+  if (layout.minimal && (last.keyframes | last.keyframeWords) != 0)
+    throw hdf5::damaged(path_, "/status", "counts keyframes, and a golden recording has none");
+  const auto refuse = [this](std::uint64_t row, const char* why) {
+    throw hdf5::damaged(path_, "/keyframes/index", fmt::format("row {} {}", row, why));
+  };
+  std::vector<std::byte> bytes;
+  columns.readRows(layout.keyframeIndex, 0, last.keyframes, bytes);
+  const std::uint64_t total = totalWords_ * 8;
+  for (std::size_t i = 0; i < last.keyframes; ++i) {
+    KeyframeRow k;
+    static_cast<void>(parseRow(std::span(bytes).subspan(i * keyframeBytes), k));
+    if (k.step >= last.steps || (i > 0 && k.step <= rows_.back().step)) refuse(i, "is out of order");
+    // Coded ones are made of their own words and of those before them.
+    const std::uint64_t most = layout.codedKeyframes ? total : total - std::min(total, k.offset);
+    if (k.offset > total || k.stateBytes > most || k.hapticsBytes > most - k.stateBytes)
+      refuse(i, "points outside /keyframes/bytes");
+    if (layout.codedKeyframes && (k.offset % 8 != 0 || (i > 0 && k.offset <= rows_.back().offset)))
+      refuse(i, "has an offset that does not rise by whole words");
+    rows_.push_back(k);
+    steps_.push_back(k.step);
+  }
+}
+
+Keyframe KeyframeReader::read(std::size_t index) {
+  const KeyframeRow& row = rows_.at(index);
+  const std::vector<std::byte> bytes = layout_.codedKeyframes ? decoded(index) : plain(index);
+  const auto haptics = bytes.begin() + static_cast<std::ptrdiff_t>(row.stateBytes);
+  return {row.step, {bytes.begin(), haptics}, {haptics, bytes.end()}};
+}
+
+std::vector<std::byte> KeyframeReader::plain(std::size_t index) const {
+  const KeyframeRow& row = rows_[index];
+  const std::uint64_t first = row.offset / 8;
+  const std::uint64_t end = (row.offset + row.stateBytes + row.hapticsBytes + 7) / 8;
+  std::vector<std::byte> bytes;
+  {
+    const hdf5::Session session;
+    columns_.readRows(layout_.keyframeWords, first, end - first, bytes);
+  }
+  bytes.erase(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(row.offset % 8));
+  bytes.resize(static_cast<std::size_t>(row.stateBytes + row.hapticsBytes));
+  return bytes;
+}
+
+std::vector<std::byte> KeyframeReader::words(std::size_t index) const {
+  const std::uint64_t first = rows_[index].offset / 8;
+  const std::uint64_t end = index + 1 < rows_.size() ? rows_[index + 1].offset / 8 : totalWords_;
+  std::vector<std::byte> bytes;
+  const hdf5::Session session;
+  columns_.readRows(layout_.keyframeWords, first, end - first, bytes);
+  return bytes;
+}
+
+Error KeyframeReader::refused(std::size_t index, const std::string& why) const {
+  return hdf5::damaged(path_, "/keyframes/bytes", fmt::format("the keyframe of step {} {}", rows_[index].step, why));
+}
+
+const std::vector<std::byte>& KeyframeReader::decoded(std::size_t index) {
+  // From the one that is wanted back to the first whose base is known, or that has none.
+  struct Coded {
+    std::size_t index;
+    std::vector<std::uint64_t> words;
+  };
+  std::vector<Coded> way;
+  for (std::size_t at = index; !known_.contains(at);) {
+    if (way.size() == maxKeyframeWay) throw refused(index, "lies too many others away from one that stands alone");
+    const std::vector<std::byte> bytes = words(at);
+    std::vector<std::uint64_t> code(bytes.size() / 8);
+    std::memcpy(code.data(), bytes.data(), code.size() * 8);
+    way.push_back({at, std::move(code)});
+    const CodedKeyframe coded(way.back().words, at);
+    if (!coded.fault().empty()) throw refused(at, coded.fault());
+    if (!coded.base()) break;
+    at = static_cast<std::size_t>(*coded.base());
+  }
+  for (; !way.empty(); way.pop_back()) {
+    const std::size_t at = way.back().index;
+    const CodedKeyframe coded(way.back().words, at);
+    const std::span<const std::byte> base =
+        coded.base() ? std::span<const std::byte>(known_.at(static_cast<std::size_t>(*coded.base())).bytes)
+                     : std::span<const std::byte>{};
+    Known now{{}, coded.base()};
+    const std::string fault = coded.decode(base, rows_[at].stateBytes + rows_[at].hapticsBytes, now.bytes);
+    if (!fault.empty()) throw refused(at, fault);
+    known_.insert_or_assign(at, std::move(now));
+  }
+  forgetAllBut(index);
+  return known_.at(index).bytes;
+}
+
+void KeyframeReader::forgetAllBut(std::size_t index) {
+  std::map<std::size_t, Known> kept;
+  std::size_t bytes = 0;
+  for (std::optional<std::uint64_t> at = index; at;) {
+    const auto entry = known_.find(static_cast<std::size_t>(*at));
+    if (entry == known_.end()) break;
+    at = entry->second.base;
+    bytes += entry->second.bytes.size();
+    if (bytes > maxKnownBytes && !kept.empty()) break;
+    kept.insert(known_.extract(entry));
+  }
+  known_ = std::move(kept);
 }
 
 }  // namespace calot::recorder

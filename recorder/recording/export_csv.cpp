@@ -9,8 +9,8 @@
 
 #include "recorder/base/csv_writer.h"
 #include "recorder/base/errors.h"
-#include "recorder/recording/header.h"
 #include "recorder/recording/layout.h"
+#include "recorder/recording/rows.h"
 
 namespace calot::recorder {
 
@@ -167,31 +167,41 @@ struct AttributeRows {
   }
 };
 
+/// Titles of a kind of packed rows, or one row of it.
+template <class Row>
+void putTitles(Table& table) {
+  const auto put = [&table]<class T>(const char* name, const char* unit, const T& /*value*/) {
+    const std::vector<const char*> parts = std::is_same_v<T, Vec3>   ? std::vector{"_x", "_y", "_z"}
+                                           : std::is_same_v<T, Quat> ? std::vector{"_w", "_x", "_y", "_z"}
+                                                                     : std::vector{""};
+    for (const char* part : parts) table.put(titled(std::string(name) + part, unit));
+  };
+  const Row row{};
+  visitRow(row, put);
+  table.endRow();
+}
+template <class Row>
+void putRow(Table& table, const Row& row) {
+  const auto put = [&table]<class T>(const char* /*name*/, const char* /*unit*/, const T& value) {
+    if constexpr (std::is_same_v<T, Vec3>) {
+      for (int i = 0; i < 3; ++i) table.put(value[i]);
+    } else if constexpr (std::is_same_v<T, Quat>) {
+      for (const double v : {value.w(), value.x(), value.y(), value.z()}) table.put(v);
+    } else {
+      table.put(value);
+    }
+  };
+  visitRow(row, put);
+  table.endRow();
+}
+
 /// Raw samples of a hand's device.
 void writeRawSamples(Recording& recording, Hand hand, Table& table) {
-  for (const char* title : {"device_time (ns)", "host_time (ns)", "sequence", "tick", "position_x (m)",
-                            "position_y (m)", "position_z (m)", "orientation_w", "orientation_x", "orientation_y",
-                            "orientation_z", "gripper (rad)", "buttons", "valid", "used"}) {
-    table.put(std::string(title));
-  }
-  table.endRow();
+  putTitles<RawSample>(table);
   constexpr std::uint64_t most = 4096;
   const std::uint64_t count = recording.rawSampleCount(hand);
   for (std::uint64_t at = 0; at < count; at += most) {
-    for (const RawSample& raw : recording.rawSamples(hand, at, std::min(most, count - at))) {
-      const DeviceSample& s = raw.sample;
-      table.put(s.deviceTime);
-      table.put(s.hostTime);
-      table.put(s.sequence);
-      table.put(raw.tick);
-      for (int i = 0; i < 3; ++i) table.put(s.position[i]);
-      for (const double v : {s.orientation.w(), s.orientation.x(), s.orientation.y(), s.orientation.z()}) table.put(v);
-      table.put(s.gripper);
-      table.put(static_cast<unsigned>(s.buttons));
-      table.put(s.valid);
-      table.put(raw.used);
-      table.endRow();
-    }
+    for (const RawSample& raw : recording.rawSamples(hand, at, std::min(most, count - at))) putRow(table, raw);
   }
 }
 
@@ -215,11 +225,7 @@ void writeAll(Recording& recording, const std::filesystem::path& stage,
   endRows(ticks);
   endRows(steps);
   Table events(stage, "/events");
-  for (const char* title :
-       {"step", "kind", "hand", "subject", "position_x (m)", "position_y (m)", "position_z (m)", "value"}) {
-    events.put(std::string(title));
-  }
-  events.endRow();
+  putTitles<Event>(events);
   for (std::uint64_t n = 0; n < recording.stepCount(); ++n) {
     const RecordedStep& step = recording.step(n);
     for (std::size_t t = 0; t < step.samples.size(); ++t) {
@@ -232,15 +238,7 @@ void writeAll(Recording& recording, const std::filesystem::path& stage,
     ValueVisitor values{layout, steps};
     visitStep(step.digest, step.brief, step.forces, step.lateness, step.result, step.procedure, values);
     endRows(steps);
-    for (const Event& e : step.result.events) {
-      events.put(e.step);
-      events.put(static_cast<unsigned>(e.kind));
-      events.put(static_cast<unsigned>(e.hand));
-      events.put(e.subject);
-      for (int i = 0; i < 3; ++i) events.put(e.position[i]);
-      events.put(e.value);
-      events.endRow();
-    }
+    for (const Event& event : step.result.events) putRow(events, event);
     if (progress) progress(n + 1);
   }
   Table attempt(stage, "/attempt");

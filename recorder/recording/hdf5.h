@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Thin layer over the HDF5 C API: handles that close themselves, one lock for the process, errors as text. Internal to
-// this folder.
+// Thin layer over the HDF5 C API: handles that close themselves, one lock for the process, errors as text; types and
+// property lists of the recording. Internal to this folder.
 #pragma once
 
 #include <hdf5.h>
-
 #include <filesystem>
 #include <mutex>
 #include <string>
 #include <utility>
 
 #include "recorder/base/errors.h"
+#include "recorder/recording/layout.h"
 
 namespace calot::recorder::hdf5 {
 
@@ -73,5 +73,17 @@ std::string reason();
 
 /// Message of a damaged file: FILE: PLACE: WHAT.
 Error damaged(const std::filesystem::path& file, const std::string& place, const std::string& what);
+
+/// The stored type of an element.
+Id elementType(Element element);
+
+/// Fixed-length UTF-8 string, padded with NUL; one byte at least.
+Id stringType(std::size_t bytes);
+
+/// Access with V110 bounds. @param metadataAttempts for SWMR readers; 0: the library's default.
+Id fileAccess(unsigned metadataAttempts);
+
+/// Access to a data set through a chunk cache that holds two of its chunks: whole chunks are written once.
+Id datasetAccess(std::size_t chunkBytes);
 
 }  // namespace calot::recorder::hdf5

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include "recorder/base/file_bytes.h"
-#include "recorder/recording/header.h"
 #include "recorder/recording/layout.h"
 
 namespace calot::recorder {

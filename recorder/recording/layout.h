@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The columns of a recording, listed once (schemas/recording.md): data sets, writer, reader, recovery, export chain
 // and comparison all run over this list. Internal to the recorder.
+// So are the root attributes: written, read, hashed and exported by the same list.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <array>
+#include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <span>
 #include <string>
 #include <string_view>
@@ -12,9 +17,10 @@
 #include <vector>
 
 #include "recorder/base/identity.h"
+#include "recorder/engine/engine.h"
 #include "recorder/engine/observer.h"
-#include "recorder/engine/recorded_procedure.h"
-#include "recorder/recording/brief_digest.h"
+#include "recorder/recording/reader.h"
+#include "sim/instruments/instruments.h"
 #include "sim/tissue/tissues.h"
 
 namespace calot::recorder {
@@ -211,5 +217,149 @@ void visitStep(Digest& digest, Brief& brief, Forces& forces, Lateness& lateness,
   visitResult(r, visit);
   if (visit.layout.procedure) visitProcedure(procedure, visit);
 }
+
+inline constexpr std::array<const char*, 3> operatorKindNames{"human", "kinematics", "performer"};
+inline constexpr std::array<const char*, 2> modeNames{"practice", "assessment"};
+inline constexpr std::array<const char*, 6> outcomeNames{"running",   "completed", "time_limit",
+                                                         "abandoned", "stopped",   "technical_failure"};
+
+/// Lists the root attributes in the order of the chain. Values: std::string, std::uint32_t, std::uint64_t,
+/// std::int64_t, double; `choice` is a string from a list.
+template <class Header, class Visitor>
+void visitAttributes(Header& h, Visitor& visit) {
+  visit.constant("format", std::string(formatName));
+  visit("format_version", h.formatVersion);
+  visit("attempt_uuid", h.attempt);
+  visit("parent_uuid", h.parent);
+  visit("fork_step", h.forkStep);
+  visit("start_utc", h.startUtc);
+  visit("software", h.software);
+  visit("build", h.build);
+  visit("simulation_version", h.simulationVersion);
+  visit("step_result_version", h.stepResultVersion);
+  visit("participant", h.participant);
+  visit.choice("operator_kind", h.provenance.kind, operatorKindNames);
+  visit("performer_profile", h.provenance.profile);
+  visit("performer_version", h.provenance.profileVersion);
+  visit("source_file", h.provenance.sourceFile);
+  visit("source_sha256", h.provenance.sourceSha256);
+  visit("device", h.provenance.device);
+  visit("calibration", h.provenance.calibration);
+  visit("station", h.station);
+  visit.choice("mode", h.mode, modeNames);
+  visit("purpose", h.purpose);
+  visit("handedness", h.handedness);
+  visit("seed", h.seed);
+  visit("tick_seconds", h.tickSeconds);
+  visit("ticks_per_step", h.ticksPerStep);
+  visit("scene_name", h.sceneName);
+  visit("scene_major", h.sceneMajor);
+  visit("scene_minor", h.sceneMinor);
+}
+
+/// Reads every visited value from one row of its column, and finds the first that no writer makes. `place(column)` is
+/// where that column's row lies.
+template <class Place>
+struct RowVisitor {
+  const Layout& layout;
+  Place place;  ///< where the row of a column lies, by its number
+  std::size_t index = 0;
+  bool input = false;  ///< samples must be finite; results too, but where the simulation ran away (unfinite)
+  std::string fault;
+  std::string unfinite = {};  ///< first result that is no finite number
+
+  template <class T>
+  void operator()(const char*, const char*, const char*, T& value) {
+    std::memcpy(&value, at(), sizeof value);
+    check(value);
+    ++index;
+  }
+  void operator()(const char*, const char*, const char*, bool& value) {
+    const auto byte = std::to_integer<unsigned>(*at());
+    if (byte > 1) fail("is neither 0 nor 1");
+    value = byte != 0;
+    ++index;
+  }
+  void operator()(const char*, const char*, const char*, InstrumentKind& value) {
+    const auto number = std::to_integer<unsigned>(*at());
+    if (!isInstrumentNumber(number)) fail("is no known instrument");
+    value = static_cast<InstrumentKind>(number);
+    ++index;
+  }
+  void operator()(const char*, const char*, const char*, Cautery& value) {
+    choice(value, Cautery::onTissue, "is no known state of the cautery");
+  }
+  void operator()(const char*, const char*, const char*, Phase& value) {
+    choice(value, Phase::done, "is no known phase");
+  }
+  void operator()(const char*, const char*, const char*, Vec3& v) {
+    std::memcpy(v.data(), at(), 3 * sizeof(double));
+    if (!v.allFinite()) failUnfinite();
+    ++index;
+  }
+  void operator()(const char*, const char*, const char*, Quat& q) {
+    std::array<double, 4> wxyz{};
+    std::memcpy(wxyz.data(), at(), sizeof wxyz);
+    q = Quat(wxyz[0], wxyz[1], wxyz[2], wxyz[3]);
+    const double norm = std::sqrt(wxyz[0] * wxyz[0] + wxyz[1] * wxyz[1] + wxyz[2] * wxyz[2] + wxyz[3] * wxyz[3]);
+    if (input && !(std::abs(norm - 1.0) <= 1e-3)) fail("is not a unit quaternion within 1e-3");
+    if (!std::isfinite(norm)) failUnfinite();
+    ++index;
+  }
+  template <class T>
+  void outside(const char*, const char*, const char*, T& value) {
+    std::memcpy(&value, at(), sizeof value);
+    if (!std::isfinite(value)) fail("is not finite");
+    if (value < T{}) fail("is negative");
+    ++index;
+  }
+  template <class T>
+  void list(const char*, const char*, const char*, std::vector<T>& values, std::size_t width) {
+    values.resize(width);
+    if (width > 0) std::memcpy(values.data(), at(), width * sizeof(T));
+    for (const T& v : values) check(v);
+    ++index;
+  }
+  template <class Part, class T>
+  void each(const char*, const char*, const char*, std::vector<Part>& parts, T Part::*member) {
+    parts.resize(layout.countOf(parts));
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      const std::byte* value = at() + i * sizeof(T);
+      if constexpr (std::is_same_v<T, bool>) {
+        const auto byte = std::to_integer<unsigned>(*value);
+        if (byte > 1) fail("is neither 0 nor 1");
+        parts[i].*member = byte != 0;
+      } else {
+        std::memcpy(&(parts[i].*member), value, sizeof(T));
+        check(parts[i].*member);
+      }
+    }
+    ++index;
+  }
+
+ private:
+  [[nodiscard]] const std::byte* at() const { return place(index); }
+  /// A number from 0 to that of the last name.
+  template <class Choice>
+  void choice(Choice& value, Choice last, const char* why) {
+    const auto code = std::to_integer<unsigned>(*at());
+    if (code > static_cast<unsigned>(last)) fail(why);
+    value = static_cast<Choice>(code);
+    ++index;
+  }
+  template <class T>
+  void check(const T& value) {
+    if constexpr (std::is_floating_point_v<T>) {
+      if (!std::isfinite(value)) failUnfinite();
+    }
+  }
+  void failUnfinite() {
+    std::string& whose = input ? fault : unfinite;
+    if (whose.empty()) whose = fmt::format("{}[{{row}}] is not finite", layout.columns[index].path);
+  }
+  void fail(const char* why) {
+    if (fault.empty()) fault = fmt::format("{}[{{row}}] {}", layout.columns[index].path, why);
+  }
+};
 
 }  // namespace calot::recorder

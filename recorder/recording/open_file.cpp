@@ -5,12 +5,16 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstring>
 #include <fstream>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "recorder/base/errors.h"
-#include "recorder/recording/shape.h"
-#include "recorder/recording/types.h"
+#include "recorder/recording/hdf5.h"
 
 namespace calot::recorder {
 
@@ -76,6 +80,185 @@ hdf5::Id openForReading(const std::filesystem::path& path, Access access) {
                 fmt::format("is cut off: {} of {} bytes are there", bytes, superblock.endOfFile), {Remedy::recover});
   }
   throw Error(ErrorKind::damaged, Where{path.string()}, fmt::format("cannot be opened: {}", why));
+}
+
+namespace {
+
+using hdf5::damaged;
+using hdf5::Id;
+
+constexpr int maxDepth = 8;
+constexpr std::size_t maxLinkName = 255;
+/// Deflate cannot shrink more than 1032 to 1.
+constexpr std::uint64_t mostUnfolding = 1040;
+constexpr unsigned externalFiles = 7;  ///< type of the message that names them (HDF5 File Format Specification 3.0)
+
+/// What stands in a group.
+struct Links {
+  std::vector<std::string> names;
+  const char* fault = nullptr;  ///< of the one that comes next; its name is `at`
+  std::string at;
+};
+
+const char* faultOf(H5L_type_t type) {
+  switch (type) {
+    case H5L_TYPE_HARD:
+      return nullptr;
+    case H5L_TYPE_SOFT:
+      return "is a soft link; a recording has no links but its own objects";
+    case H5L_TYPE_EXTERNAL:
+      return "is a link to another file; a recording has no links but its own objects";
+    default:
+      return "is a link of an unknown kind; a recording has no links but its own objects";
+  }
+}
+
+extern "C" herr_t calotTakeLink(hid_t /*group*/, const char* name, const H5L_info_t* info, void* out) {
+  Links& links = *static_cast<Links*>(out);
+  links.at = std::string(name).substr(0, maxLinkName);
+  links.fault = faultOf(info->type);
+  if (std::string_view(name).size() > maxLinkName) links.fault = "has a name that is too long";
+  if (links.names.size() >= maxLinks) links.fault = "is one name too many in its group";
+  if (links.fault != nullptr) return 1;
+  links.names.push_back(links.at);
+  return 0;
+}
+
+class ShapeCheck {
+ public:
+  ShapeCheck(const std::filesystem::path& path, std::uint64_t fileBytes) : path_(path), fileBytes_(fileBytes) {}
+
+  /// @param place of the group, ending in a slash
+  void group(hid_t group, const std::string& place, int depth) {
+    H5G_info_t info{};
+    if (H5Gget_info(group, &info) < 0) return;
+    if (info.nlinks > maxLinks)
+      refuse(place, fmt::format("holds {} names; that of a recording has at most {}", info.nlinks, maxLinks));
+    Links links;
+    const herr_t walked = H5Literate(group, H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, calotTakeLink, &links);
+    if (links.fault != nullptr) refuse(place + links.at, links.fault);
+    if (walked < 0) return;
+    for (const std::string& name : links.names) object(group, name, place + name, depth);
+  }
+
+ private:
+  [[noreturn]] void refuse(const std::string& place, const std::string& why) const { throw damaged(path_, place, why); }
+
+  void object(hid_t parent, const std::string& name, const std::string& place, int depth) {
+    H5O_info_t info{};
+    const unsigned fields = H5O_INFO_BASIC | H5O_INFO_NUM_ATTRS | H5O_INFO_HDR;
+    if (H5Oget_info_by_name2(parent, name.c_str(), &info, fields, H5P_DEFAULT) < 0) return;
+    if (info.rc > 1 || !seen_.insert(info.addr).second)
+      refuse(place, "is a second name of one object; in a recording each has one");
+    if (info.num_attrs > maxAttributes)
+      refuse(place,
+             fmt::format("has {} attributes; those of a recording have at most {}", info.num_attrs, maxAttributes));
+    if (info.type == H5O_TYPE_GROUP) {
+      if (depth == maxDepth) refuse(place, "lies too deep");
+      const Id below = hdf5::group(H5Gopen2(parent, name.c_str(), H5P_DEFAULT));
+      if (below.valid()) group(below.get(), place + "/", depth + 1);
+    } else if (info.type == H5O_TYPE_DATASET) {
+      if ((info.hdr.mesg.present >> externalFiles & 1U) != 0) refuse(place, "keeps its data in other files");
+      const Id dataset = hdf5::dataset(H5Dopen2(parent, name.c_str(), H5P_DEFAULT));
+      if (dataset.valid()) values(dataset.get(), place);
+    } else {
+      refuse(place, "is neither a group nor a data set");
+    }
+  }
+
+  void values(hid_t dataset, const std::string& place) const {
+    const Id how = hdf5::properties(H5Dget_create_plist(dataset));
+    if (!how.valid()) return;
+    const H5D_layout_t layout = H5Pget_layout(how.get());
+    // Of such a one not even the extent may be asked: that opens what it is made of.
+    if (layout == H5D_VIRTUAL) refuse(place, "is made of other data sets");
+    for (int i = 0; i < H5Pget_nfilters(how.get()); ++i) {
+      unsigned flags = 0, config = 0;
+      std::size_t parameters = 0;
+      const H5Z_filter_t filter =
+          H5Pget_filter2(how.get(), static_cast<unsigned>(i), &flags, &parameters, nullptr, 0, nullptr, &config);
+      if (filter < H5Z_FILTER_DEFLATE || filter > H5Z_FILTER_SCALEOFFSET)
+        refuse(place, fmt::format("is packed by filter {}, which does not come with HDF5", filter));
+    }
+    const Id type = hdf5::type(H5Dget_type(dataset));
+    const Id space = hdf5::space(H5Dget_space(dataset));
+    if (!type.valid() || !space.valid()) return;
+    if (H5Tdetect_class(type.get(), H5T_VLEN) > 0 || H5Tis_variable_str(type.get()) > 0)
+      refuse(place, "holds values of variable length");
+    const std::uint64_t element = H5Tget_size(type.get());
+    const int rank = H5Sget_simple_extent_ndims(space.get());
+    if (rank < 0 || rank > 2) refuse(place, "has the wrong shape");
+    std::array<hsize_t, 2> extent{1, 1};
+    if (rank > 0) H5Sget_simple_extent_dims(space.get(), extent.data(), nullptr);
+    const std::uint64_t most = fileBytes_ < UINT64_MAX / mostUnfolding ? fileBytes_ * mostUnfolding : UINT64_MAX;
+    if (product(product(extent[0], extent[1]), element) > most)
+      refuse(place, "claims more bytes than the file can hold");
+    if (layout != H5D_CHUNKED) return;
+    std::array<hsize_t, 2> chunk{1, 1};
+    if (H5Pget_chunk(how.get(), 2, chunk.data()) < 0) return;
+    const std::uint64_t bytes = product(product(chunk[0], chunk[1]), element);
+    if (bytes > maxChunkBytes)
+      refuse(place, fmt::format("has chunks of {} bytes; those of a recording have at most {}", bytes, maxChunkBytes));
+  }
+
+  /// The greatest number where there is none so great.
+  static std::uint64_t product(std::uint64_t a, std::uint64_t b) {
+    return b != 0 && a > UINT64_MAX / b ? UINT64_MAX : a * b;
+  }
+
+  const std::filesystem::path& path_;
+  std::uint64_t fileBytes_;
+  std::set<haddr_t> seen_;
+};
+
+}  // namespace
+
+void checkShape(const std::filesystem::path& path, const hdf5::Id& file, std::uint64_t fileBytes) {
+  const Id root = hdf5::group(H5Gopen2(file.get(), "/", H5P_DEFAULT));
+  if (root.valid()) ShapeCheck(path, fileBytes).group(root.get(), "/", 0);
+}
+
+std::uint32_t lookup3(std::span<const unsigned char> bytes) {
+  std::uint32_t a = 0xdeadbeefU + static_cast<std::uint32_t>(bytes.size()), b = a, c = a;
+  if (bytes.empty()) return c;
+  const auto addTwelve = [&](const unsigned char* p) {
+    std::array<std::uint32_t, 3> word;
+    std::memcpy(word.data(), p, 12);
+    a += word[0];
+    b += word[1];
+    c += word[2];
+  };
+  while (bytes.size() > 12) {
+    addTwelve(bytes.data());
+    a -= c, a ^= std::rotl(c, 4), c += b;
+    b -= a, b ^= std::rotl(a, 6), a += c;
+    c -= b, c ^= std::rotl(b, 8), b += a;
+    a -= c, a ^= std::rotl(c, 16), c += b;
+    b -= a, b ^= std::rotl(a, 19), a += c;
+    c -= b, c ^= std::rotl(b, 4), b += a;
+    bytes = bytes.subspan(12);
+  }
+  std::array<unsigned char, 12> last{};
+  std::memcpy(last.data(), bytes.data(), bytes.size());
+  addTwelve(last.data());
+  c ^= b, c -= std::rotl(b, 14);
+  a ^= c, a -= std::rotl(c, 11);
+  b ^= a, b -= std::rotl(a, 25);
+  c ^= b, c -= std::rotl(b, 16);
+  a ^= c, a -= std::rotl(c, 4);
+  b ^= a, b -= std::rotl(a, 14);
+  c ^= b, c -= std::rotl(b, 24);
+  return c;
+}
+
+bool markClosed(std::span<unsigned char> image) {
+  constexpr std::size_t version = 8, sizeOfOffsets = 9, flags = 11, checksum = 44;
+  if (image.size() < checksum + 4 || image[version] < 2 || image[version] > 3 || image[sizeOfOffsets] != 8)
+    return false;
+  image[flags] = 0;
+  const std::uint32_t sum = lookup3(image.first(checksum));
+  std::memcpy(&image[checksum], &sum, sizeof sum);
+  return true;
 }
 
 }  // namespace calot::recorder

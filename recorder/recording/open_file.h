@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Opening untrusted files. Internal to this folder.
+// Opening untrusted files: their first 48 bytes (HDF5 File Format Specification 3.0, II.A), and the one shape that
+// files of recordings have (schemas/recording-integrity.md, "Shape"). Internal to this folder.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <span>
 
 #include "recorder/recording/hdf5.h"
 #include "recorder/recording/reader.h"
@@ -22,5 +25,25 @@ Superblock readSuperblock(const std::filesystem::path& path);
 /// Opens a file for reading: the SWMR way if its writer did not close it, plainly otherwise. Refuses one that has not
 /// the shape of a recording (shape.h) before any of its data is read.
 hdf5::Id openForReading(const std::filesystem::path& path, Access access);
+
+/// Names that one group may hold, and attributes of one object. The format has 130 and at most 999 assets, and 29.
+inline constexpr std::uint64_t maxLinks = 4096;
+inline constexpr std::uint64_t maxAttributes = 256;
+/// Stored together, and so unfolded together (bytes). Those of the format have 64 KiB, names more.
+inline constexpr std::uint64_t maxChunkBytes = std::uint64_t{4} << 20U;
+
+/// Looks at every link and every data set's description, and reads no data: links to other places, second names of an
+/// object, data kept in other files or made of other data sets, filters from elsewhere, values of variable length,
+/// chunks that unfold to more than maxChunkBytes, and extents that the file cannot hold.
+/// What cannot be described is left to whoever reads it. The caller holds the HDF5 session.
+/// @throws Error damaged naming the object
+void checkShape(const std::filesystem::path& path, const hdf5::Id& file, std::uint64_t fileBytes);
+
+/// hashlittle() of lookup3 (R. Jenkins, 2006), initial value 0: the checksum of HDF5's metadata.
+std::uint32_t lookup3(std::span<const unsigned char> bytes);
+
+/// Clears the flag of an active writer in the superblock (version 2 or 3, 8-byte offsets) of a file's image.
+/// @return false if it is no such superblock.
+bool markClosed(std::span<unsigned char> image);
 
 }  // namespace calot::recorder

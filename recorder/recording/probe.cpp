@@ -2,43 +2,134 @@
 #include "recorder/recording/probe.h"
 
 #include <fmt/format.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
+#include <algorithm>
+#include <fstream>
 #include <memory>
-#include <mutex>
-#include <string>
+#include <new>
+#include <optional>
+#include <stdexcept>
 #include <thread>
+#include <utility>
 
-#include "recorder/recording/guard_process.h"
-#include "recorder/recording/guarded.h"
+#include "recorder/recording/hdf5.h"
 
 namespace calot::recorder {
 
 namespace {
 
-/// The verdict as text: intact, flush, first and last step, words.
+constexpr std::uint64_t mebibyte = std::uint64_t{1} << 20U;
+
+/// What a task came to, as it is sent: its result or the error that it threw.
+struct Answer {
+  std::uint8_t failed = 0;
+  std::string result;
+  ErrorKind kind = ErrorKind::failure;
+  std::string file, place, fault;
+  std::vector<Remedy> remedies;
+
+  Answer() = default;
+  explicit Answer(const Error& e)
+      : failed(1),
+        kind(e.kind()),
+        file(e.where().file),
+        place(e.where().place),
+        fault(e.fault()),
+        remedies(e.remedies()) {}
+  static void fields(auto& self, auto& visit) {
+    visit("failed", self.failed);
+    visit("result", self.result);
+    visit("kind", self.kind);
+    visit("file", self.file);
+    visit("place", self.place);
+    visit("fault", self.fault);
+    visit("remedies", self.remedies);
+  }
+};
+
+/// Runs the task. @param noMemory makes the error of a task that memory was lacking for
+std::string answerOf(const std::string& what, const std::function<std::string()>& task,
+                     const std::function<Error(const Where&)>& noMemory) {
+  // The reading library says in words of its own that it had no memory.
+  const auto isOfMemory = [](const Error& e) {
+    return e.fault().find("memory allocation failed") != std::string::npos;
+  };
+  try {
+    Answer answer;
+    answer.result = task();
+    return packed(answer);
+  } catch (const Error& e) {
+    return packed(Answer(isOfMemory(e) ? noMemory(e.where()) : e));
+  } catch (const std::bad_alloc&) {
+    return packed(Answer(noMemory(Where{what})));
+  } catch (const std::length_error&) {
+    return packed(Answer(noMemory(Where{what})));
+  } catch (const std::exception& e) {
+    return packed(Answer(Error(ErrorKind::failure, e.what())));
+  }
+}
+
+/// @return nothing where these bytes are no answer @throws Error the one in the answer
+std::optional<std::string> resultOf(const std::vector<std::byte>& bytes) {
+  Answer answer;
+  if (!unpack({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, answer)) return std::nullopt;
+  if (answer.failed == 0) return std::move(answer.result);
+  if (answer.kind > ErrorKind::undecided) return std::nullopt;
+  throw Error(answer.kind, Where{answer.file, answer.place}, answer.fault, std::move(answer.remedies));
+}
+
+/// Limits this process to that many bytes more than it has now, and to no image of its memory.
+void limitMemory(std::size_t bytes) {
+  const rlimit noCore{0, 0};
+  ::setrlimit(RLIMIT_CORE, &noCore);
+  std::uint64_t pages = 0;
+  std::ifstream("/proc/self/statm") >> pages;
+  if (pages == 0) return;
+  const rlim_t most = pages * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE)) + bytes;
+  const rlimit limit{most, most};
+  ::setrlimit(RLIMIT_AS, &limit);
+}
+
+/// What a guarding process is asked.
+struct Request {
+  std::int64_t seconds = 0;
+  std::uint64_t memory = 0;
+  std::string file;
+  static void fields(auto& self, auto& visit) {
+    visit("seconds", self.seconds);
+    visit("memory", self.memory);
+    visit("file", self.file);
+  }
+};
+
+/// What a guarding process does until its parent closes the connection.
+void serve(const Channel& parent, const GuardProcesses::Task& task) {
+  // What this process holds open (a pipe to another program, a file's lock) is not to stay open by a copy of it.
+  const auto own = static_cast<unsigned>(parent.descriptor());
+  ::close_range(3, own - 1, 0);
+  ::close_range(own + 1, ~0U, 0);
+  Request request;
+  while (const auto bytes = parent.receiveMessage()) {
+    if (!unpack({reinterpret_cast<const char*>(bytes->data()), bytes->size()}, request)) return;
+    const GuardLimits limits{std::chrono::seconds(request.seconds), static_cast<std::size_t>(request.memory)};
+    const std::string answer = answerOf(
+        request.file,
+        [&] {
+          return runGuarded(
+              request.file, [&] { return task(request.file); }, limits);
+        },
+        [](const Where& where) { return Error(ErrorKind::failure, where, "no memory"); });
+    if (!parent.sendMessage(std::as_bytes(std::span(answer)))) return;
+  }
+}
+
+/// Reads all of a recording.
 std::string readThrough(const std::string& file) {
   Recording recording(file);
   for (std::uint64_t n = 0; n < recording.stepCount(); ++n) recording.step(n);
-  const ChainVerdict v = recording.verifyChain();
-  return fmt::format("{} {} {} {} {}", v.intact ? 1 : 0, v.flush, v.firstStep, v.endStep, v.what);
-}
-
-ChainVerdict verdictIn(const std::string& answer) {
-  ChainVerdict verdict;
-  std::size_t at = 0;
-  const auto number = [&] {
-    std::uint64_t value = 0;
-    for (; at < answer.size() && answer[at] != ' '; ++at)
-      value = value * 10 + static_cast<std::uint64_t>(answer[at] - '0');
-    ++at;
-    return value;
-  };
-  verdict.intact = number() == 1;
-  verdict.flush = number();
-  verdict.firstStep = number();
-  verdict.endStep = number();
-  verdict.what = at < answer.size() ? answer.substr(at) : "";
-  return verdict;
+  return packed(recording.verifyChain());
 }
 
 /// The processes of this program, while there are some.
@@ -54,6 +145,88 @@ Shared& shared() {
 
 }  // namespace
 
+GuardLimits readingLimits(const std::filesystem::path& file) {
+  std::error_code error;
+  const std::uintmax_t bytes = std::filesystem::file_size(file, error);
+  GuardLimits limits;
+  limits.time = std::chrono::seconds(60 + (error ? 0 : std::min<std::uintmax_t>(bytes / mebibyte, 3600)));
+  return limits;
+}
+
+std::string runGuarded(const std::string& what, const std::function<std::string()>& task, const GuardLimits& limits) {
+  const auto tooLarge = [&](const Where& where) {
+    return Error(ErrorKind::damaged, where,
+                 fmt::format("reading it needs more than {} MiB of memory; the file is damaged or not a recording",
+                             limits.memory / mebibyte));
+  };
+  // No other thread is inside HDF5 while the process is copied: the child may use it.
+  ChildProcess child(
+      [&](const Channel& parent) {
+        limitMemory(limits.memory);
+        const std::string answer = answerOf(what, task, tooLarge);
+        static_cast<void>(parent.send(std::as_bytes(std::span(answer))));
+      },
+      &hdf5::processLock());
+  std::vector<std::byte> answer;
+  const auto received = child.channel().receiveRest(answer, std::chrono::steady_clock::now() + limits.time);
+  if (received == Channel::Received::late) {
+    child.end(std::chrono::milliseconds(0));
+    throw Error(
+        ErrorKind::damaged, Where{what},
+        fmt::format("reading it took longer than {} s; the file is damaged or not a recording", limits.time.count()));
+  }
+  const ProcessEnd end = child.end(std::chrono::seconds(5));  // unmapping what it read takes a while
+  if (!end.signalled) {
+    if (std::optional<std::string> result = resultOf(answer)) return std::move(*result);
+  }
+  throw Error(ErrorKind::damaged, Where{what},
+              fmt::format("the reading library failed on it (signal {}); the file is damaged or not a recording",
+                          end.signalled ? end.number : 0));
+}
+
+GuardProcesses::GuardProcesses(Task task, unsigned count) : task_(std::move(task)) {
+  {
+    const hdf5::Session session;
+    if (H5Fget_obj_count(static_cast<hid_t>(H5F_OBJ_ALL), H5F_OBJ_FILE) != 0) return;
+  }
+  for (unsigned i = 0; i < count; ++i) {
+    try {
+      idle_.emplace_back([this](const Channel& parent) { serve(parent, task_); }, &hdf5::processLock());
+    } catch (const Error&) {
+      return;  // fewer, or none: run() does without
+    }
+  }
+}
+
+std::string GuardProcesses::run(const std::string& file, const GuardLimits& limits) {
+  std::optional<ChildProcess> process;
+  {
+    std::unique_lock<std::mutex> held(lock_);
+    free_.wait(held, [&] { return !idle_.empty() || busy_ == 0; });
+    if (!idle_.empty()) {
+      process = std::move(idle_.back());
+      idle_.pop_back();
+      ++busy_;
+    }
+  }
+  if (process) {
+    const std::string request = packed(Request{limits.time.count(), limits.memory, file});
+    std::optional<std::vector<std::byte>> answer;
+    if (process->channel().sendMessage(std::as_bytes(std::span(request)))) answer = process->channel().receiveMessage();
+    {
+      const std::lock_guard<std::mutex> held(lock_);
+      if (answer) idle_.push_back(std::move(*process));
+      --busy_;
+      free_.notify_one();
+    }
+    if (answer) {
+      if (std::optional<std::string> result = resultOf(*answer)) return std::move(*result);
+    }
+  }
+  return runGuarded(
+      file, [&] { return task_(file); }, limits);
+}
+
 ChainVerdict probe(const std::filesystem::path& path) {
   std::shared_ptr<GuardProcesses> processes;
   {
@@ -62,9 +235,13 @@ ChainVerdict probe(const std::filesystem::path& path) {
   }
   const std::string file = path.string();
   const GuardLimits limits = readingLimits(path);
-  return verdictIn(processes ? processes->run(file, limits)
-                             : runGuarded(
-                                   file, [&] { return readThrough(file); }, limits));
+  ChainVerdict verdict;
+  if (!unpack(processes ? processes->run(file, limits)
+                        : runGuarded(
+                              file, [&] { return readThrough(file); }, limits),
+              verdict))
+    throw Error(ErrorKind::damaged, Where{file}, "the reading library failed on it; the file is damaged");
+  return verdict;
 }
 
 ProbeProcesses::ProbeProcesses(unsigned count) {

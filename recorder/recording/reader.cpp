@@ -7,10 +7,9 @@
 #include <cassert>
 #include <cmath>
 
-#include "recorder/recording/chain.h"
+#include "recorder/recording/block.h"
 #include "recorder/recording/column_reader.h"
 #include "recorder/recording/header_reader.h"
-#include "recorder/recording/keyframe_reader.h"
 #include "recorder/recording/open_file.h"
 
 namespace calot::recorder {
@@ -74,7 +73,8 @@ struct Recording::Impl {
     const std::vector<std::byte>& packed = block->column[layout->events];
     std::uint64_t latest = 0;
     for (std::uint64_t i = 0; i < status[row].events - before.events; ++i) {
-      const Event e = parseEvent(std::span(packed).subspan(static_cast<std::size_t>(i) * eventBytes));
+      Event e;
+      static_cast<void>(parseRow(std::span(packed).subspan(static_cast<std::size_t>(i) * eventBytes), e));
       const auto refuse = [&](const char* why) {
         throw hdf5::damaged(path, "/events", fmt::format("row {} {}", before.events + i, why));
       };
@@ -160,7 +160,8 @@ std::vector<RawSample> Recording::rawSamples(Hand hand, std::uint64_t first, std
   }
   std::vector<RawSample> out(static_cast<std::size_t>(count));
   for (std::size_t i = 0; i < out.size(); ++i) {
-    const std::string fault = parseRawSample(std::span(bytes).subspan(i * rawSampleBytes), hand, out[i]);
+    out[i].sample.hand = hand;
+    const std::string fault = parseRow(std::span(bytes).subspan(i * rawSampleBytes), out[i]);
     if (!fault.empty())
       throw hdf5::damaged(impl.path, impl.layout->columns[column].path, fmt::format("row {} {}", first + i, fault));
   }

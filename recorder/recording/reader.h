@@ -10,13 +10,19 @@
 #include <vector>
 
 #include "recorder/base/identity.h"
+#include "recorder/engine/engine.h"
 #include "recorder/engine/observer.h"
-#include "recorder/engine/recorded_procedure.h"
-#include "recorder/recording/brief_digest.h"
 #include "recorder/recording/device_sample.h"
 #include "recorder/recording/station_key.h"
 
 namespace calot::recorder {
+
+/// A State's digest in the short form that recordings from format version 2 on hold (schemas/recording.md, "Steps").
+struct BriefDigest {
+  std::uint64_t state = 0;           ///< XXH3-64 of the digests of components
+  std::vector<std::uint16_t> field;  ///< low 16 bits of each field's
+  bool operator==(const BriefDigest&) const = default;
+};
 
 /// One row of /status: the extent of the data after a flush.
 struct StatusRow {
@@ -51,6 +57,14 @@ struct ChainVerdict {
   std::uint64_t firstStep = 0;  ///< steps [firstStep, endStep) belong to that flush
   std::uint64_t endStep = 0;
   std::string what;  ///< one phrase for a message; empty if intact
+
+  static void fields(auto& self, auto& visit) {
+    visit("intact", self.intact);
+    visit("flush", self.flush);
+    visit("first_step", self.firstStep);
+    visit("end_step", self.endStep);
+    visit("what", self.what);
+  }
 };
 
 /// A station's signature of a recording's content (schemas/recording.md, "Signature").

@@ -84,7 +84,7 @@ std::vector<RecordedColumn> emptyColumns(const Layout& layout, const AttemptHead
 
 std::vector<std::byte> packedEvents(const std::vector<Event>& events) {
   std::vector<std::byte> bytes;
-  for (const Event& event : events) appendEvent(event, bytes);
+  for (const Event& event : events) appendRow(event, bytes);
   return bytes;
 }
 
@@ -104,7 +104,7 @@ RecordedColumns recordedColumns(Recording& recording) {
     }
     PackingVisitor visit{layout, out.steps};
     visitStep(step.digest, step.brief, step.forces, step.lateness, step.result, step.procedure, visit);
-    for (const Event& event : step.result.events) appendEvent(event, out.events);
+    for (const Event& event : step.result.events) appendRow(event, out.events);
   }
   return out;
 }
@@ -112,7 +112,7 @@ RecordedColumns recordedColumns(Recording& recording) {
 std::vector<std::byte> packedRawSamples(Recording& recording, Hand hand) {
   std::vector<std::byte> bytes;
   for (const RawSample& sample : recording.rawSamples(hand, 0, recording.rawSampleCount(hand)))
-    appendRawSample(sample, bytes);
+    appendRow(sample, bytes);
   return bytes;
 }
 

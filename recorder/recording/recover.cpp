@@ -6,13 +6,13 @@
 #include <memory>
 #include <system_error>
 
-#include "recorder/recording/chain.h"
+#include "recorder/base/text_output.h"
+#include "recorder/recording/block.h"
 #include "recorder/recording/column_reader.h"
 #include "recorder/recording/file_writer.h"
-#include "recorder/recording/guarded.h"
 #include "recorder/recording/header_reader.h"
 #include "recorder/recording/open_file.h"
-#include "recorder/recording/publish.h"
+#include "recorder/recording/probe.h"
 
 namespace calot::recorder {
 
@@ -168,30 +168,13 @@ Recovered recover(const std::filesystem::path& in, const std::filesystem::path& 
   if (std::filesystem::equivalent(in, out, ignored)) {
     throw Error(ErrorKind::invalid, Where{out.string()}, "is the input; name another output");
   }
-  refuseExisting(out, force);
+  refuseOutput(out, force);
   const std::filesystem::path temporary = temporaryName(out);
   std::filesystem::path scratch = out;
   scratch += ".cut.part";
   try {
-    const std::string answer = runGuarded(
-        in.string(),
-        [&] {
-          const Recovered r = rewrite(in, temporary, scratch);
-          return fmt::format("{} {} {} {}", r.steps, r.ticks, r.complete ? 1 : 0, r.lost);
-        },
-        readingLimits(in));
-    Recovered result;
-    std::size_t at = 0;
-    const auto number = [&] {
-      std::size_t used = 0;
-      const std::uint64_t value = std::stoull(answer.substr(at), &used);
-      at += used + 1;
-      return value;
-    };
-    result.steps = number();
-    result.ticks = number();
-    result.complete = number() == 1;
-    result.lost = at < answer.size() ? answer.substr(at) : "";
+    Recovered result = guardedRecord(
+        in.string(), [&] { return rewrite(in, temporary, scratch); }, readingLimits(in));
     std::filesystem::remove(scratch, ignored);
     publish(temporary, out, force);
     return result;

@@ -13,6 +13,13 @@ struct Recovered {
   std::uint64_t ticks = 0;  ///< saved
   bool complete = false;    ///< all of a finished attempt was there
   std::string lost;         ///< why the rest could not be saved; empty if no covered row is lost
+
+  static void fields(auto& self, auto& visit) {
+    visit("steps", self.steps);
+    visit("ticks", self.ticks);
+    visit("complete", self.complete);
+    visit("lost", self.lost);
+  }
 };
 
 /// Rewrites a recording that was left by a killed writer, or was cut off, as a clean closed file of the same attempt:

@@ -6,10 +6,9 @@
 #include <system_error>
 
 #include "recorder/base/text_output.h"
-#include "recorder/recording/guarded.h"
 #include "recorder/recording/hdf5.h"
-#include "recorder/recording/shape.h"
-#include "recorder/recording/superblock.h"
+#include "recorder/recording/open_file.h"
+#include "recorder/recording/probe.h"
 #include "sim/math/fields.h"
 
 namespace calot::recorder {

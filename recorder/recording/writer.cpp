@@ -13,10 +13,10 @@
 #include <thread>
 
 #include "recorder/base/spsc_queue.h"
+#include "recorder/base/text_output.h"
 #include "recorder/recording/file_writer.h"
 #include "recorder/recording/keyframe_code.h"
 #include "recorder/recording/keyframe_schedule.h"
-#include "recorder/recording/publish.h"
 
 namespace calot::recorder {
 
@@ -133,7 +133,7 @@ struct RecordingWriter::Impl {
     while (feed->take(end, raw)) {
       raw.tick += feedFirstTick;
       const std::size_t column = layout.raw[static_cast<std::size_t>(raw.sample.hand)];
-      appendRawSample(raw, filling->column[column]);
+      appendRow(raw, filling->column[column]);
       ++filling->rows[static_cast<std::size_t>(layout.columns[column].stream)];
     }
     const std::array<std::uint64_t, handCount> now = feed->dropped();
@@ -154,7 +154,7 @@ RecordingWriter::RecordingWriter(const std::filesystem::path& target, const Atte
                                  WriterOptions options) {
   checkHeader(header);
   assert(header.formatVersion == formatVersion);
-  refuseExisting(target, options.force);
+  refuseOutput(target, options.force);
   impl_ = std::make_unique<Impl>(target, header);
   Impl& impl = *impl_;
   const std::filesystem::path temporary = temporaryName(target);

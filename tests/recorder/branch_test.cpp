@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "recorder/base/errors.h"
-#include "recorder/blended_source.h"
+#include "recorder/live/wrapped_sources.h"
 #include "recorder/recording/writer.h"
 #include "recorder/replay.h"
 #include "tests/recorder/support/small_scene.h"

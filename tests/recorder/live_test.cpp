@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <thread>
 
-#include "recorder/attempt.h"
+#include "recorder/loop.h"
 #include "recorder/recording/writer.h"
 #include "recorder/replay.h"
 #include "tests/recorder/support/rerun.h"

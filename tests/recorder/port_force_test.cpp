@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "recorder/attempt.h"
 #include "recorder/engine/session.h"
 #include "recorder/formats/scene_file.h"
+#include "recorder/loop.h"
 #include "recorder/recording/writer.h"
 #include "recorder/replay.h"
 #include "recorder/sources/performer_source.h"

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "recorder/attempt.h"
+#include "recorder/loop.h"
 #include "recorder/recording/writer.h"
 #include "recorder/replay.h"
 #include "tests/recorder/support/small_scene.h"

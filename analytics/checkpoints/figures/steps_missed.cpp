@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How often the simulation was not as exact as its scene asks for: what the other figures must be read with.
 #include "analytics/checkpoints/checkpoint.h"
-#include "recorder/step_misses.h"
+#include "recorder/step_watch.h"
 
 namespace calot::analytics {
 namespace {

@@ -14,7 +14,7 @@
 #include "gui/render/scene_painter.h"
 #include "gui/render/smoke.h"
 #include "gui/render/view_check.h"
-#include "recorder/engine/messages.h"
+#include "recorder/engine/wire.h"
 #include "recorder/engine/wire_forms.h"
 #include "sim/scene/down.h"
 

@@ -12,10 +12,10 @@
 #include "analytics/checkpoints/collector.h"
 #include "analytics/checkpoints/from_observables.h"
 #include "analytics/cohort/cohort_database.h"
-#include "recorder/attempt.h"
 #include "recorder/engine/session.h"
 #include "recorder/formats/scene_file.h"
 #include "recorder/live/worker_pool.h"
+#include "recorder/loop.h"
 #include "recorder/recording/reader.h"
 #include "recorder/recording/writer.h"
 #include "recorder/replay.h"
@@ -183,16 +183,7 @@ TEST(CarveFat, isAssessedFromTheHandToTheCohort) {
 
   // And into the cohort and out again.
   CohortDatabase database(folder.file("c.db"), CohortDatabase::Access::create);
-  AssessedAttempt assessed;
-  assessed.header = header;
-  assessed.outcome = report.outcome;
-  assessed.complete = report.complete;
-  assessed.steps = report.steps;
-  assessed.chainHead = report.chainHead;
-  assessed.verification = {Verdict::verified, "", recorder::softwareName()};
-  assessed.values = values;
-  assessed.fileName = file;
-  EXPECT_EQ(store(database, assessed), Imported::added);
+  EXPECT_EQ(database.storeAttempt(recordOf(header, report, file), values), Imported::added);
   EXPECT_EQ(database.values(header.attempt), values);
 }
 

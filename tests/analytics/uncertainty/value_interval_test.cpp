@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "analytics/checkpoints/registry.h"
-#include "analytics/uncertainty/scene_constants.h"
 #include "analytics/uncertainty/scene_variants.h"
 #include "recorder/formats/scene_file.h"
 

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "recorder/engine/result_row.h"
+#include "recorder/engine/state_fields.h"
 #include "recorder/engine/wire_forms.h"
 #include "recorder/recording/reader.h"
 #include "sim/scene/scene_viewer.h"

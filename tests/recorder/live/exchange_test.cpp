@@ -10,7 +10,7 @@
 #include "recorder/base/newest.h"
 #include "recorder/base/ring.h"
 #include "recorder/engine/session.h"
-#include "recorder/live/contact_exchange.h"
+#include "recorder/live/haptic_thread.h"
 #include "sim/step/hand_haptics.h"
 #include "tests/recorder/support/small_scene.h"
 #include "tests/support/sanitized.h"

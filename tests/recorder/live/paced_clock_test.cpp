@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include "recorder/engine/observer.h"
-#include "recorder/live/cost_histogram.h"
 
 namespace calot::recorder {
 namespace {

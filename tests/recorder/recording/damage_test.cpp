@@ -15,7 +15,6 @@
 #include <thread>
 
 #include "recorder/base/errors.h"
-#include "recorder/recording/guarded.h"
 #include "recorder/recording/probe.h"
 #include "recorder/recording/reader.h"
 #include "recorder/recording/recover.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guarding processes that were made beforehand: as runGuarded, and not a burden to what goes on around them.
-#include "recorder/recording/guard_process.h"
+#include "recorder/recording/probe.h"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -15,7 +15,6 @@
 #include <vector>
 
 #include "recorder/base/errors.h"
-#include "recorder/recording/probe.h"
 #include "tests/recorder/recording/support/synthetic.h"
 
 namespace calot::recorder {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "recorder/attempt.h"
 #include "recorder/engine/session.h"
+#include "recorder/loop.h"
 #include "recorder/recording/writer.h"
 
 namespace calot::recorder::test {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "recorder/engine/local_engine.h"
+#include "recorder/engine/session.h"
 #include "recorder/recording/reader.h"
 
 namespace calot::recorder::test {

@@ -7,7 +7,7 @@
 #include <QSettings>
 #include <QTemporaryDir>
 
-#include "recorder/attempt.h"
+#include "recorder/loop.h"
 #include "recorder/recording/writer.h"
 #include "tests/recorder/support/small_scene.h"
 

@@ -7,11 +7,11 @@
 #include <filesystem>
 #include <thread>
 
-#include "recorder/attempt.h"
 #include "recorder/formats/scene_file.h"
 #include "recorder/live/worker_pool.h"
-#include "recorder/recording/raw_statistics.h"
+#include "recorder/loop.h"
 #include "recorder/recording/reader.h"
+#include "recorder/recording/recording_facts.h"
 #include "recorder/recording/writer.h"
 #include "recorder/replay.h"
 #include "recorder/sources/devices/device_source.h"

@@ -8,10 +8,10 @@
 #include <filesystem>
 #include <limits>
 
-#include "recorder/attempt.h"
 #include "recorder/base/errors.h"
 #include "recorder/formats/scene_file.h"
 #include "recorder/live/worker_pool.h"
+#include "recorder/loop.h"
 #include "recorder/recording/reader.h"
 #include "recorder/recording/writer.h"
 #include "recorder/replay.h"

@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "recorder/attempt.h"
 #include "recorder/formats/scene_file.h"
 #include "recorder/live/worker_pool.h"
+#include "recorder/loop.h"
 #include "recorder/recording/writer.h"
 #include "recorder/replay.h"
 #include "recorder/sources/devices/camera/camera_device.h"

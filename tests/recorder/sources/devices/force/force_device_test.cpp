@@ -12,10 +12,10 @@
 #include <memory>
 #include <thread>
 
-#include "recorder/attempt.h"
 #include "recorder/base/errors.h"
 #include "recorder/formats/scene_file.h"
 #include "recorder/live/worker_pool.h"
+#include "recorder/loop.h"
 #include "recorder/recording/reader.h"
 #include "recorder/recording/writer.h"
 #include "recorder/replay.h"

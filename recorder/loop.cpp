@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <fmt/format.h>
+#include "recorder/loop.h"
 
 #include <algorithm>
 #include <atomic>
 #include <bit>
-#include <vector>
+#include <optional>
+#include <utility>
 
-#include "recorder/attempt.h"
-#include "recorder/live/guarded_source.h"
+#include "recorder/base/errors.h"
 #include "recorder/live/haptic_thread.h"
 #include "recorder/live/paced_clock.h"
-#include "recorder/live/source_pause.h"
+#include "recorder/live/wrapped_sources.h"
+#include "recorder/recording/reader.h"
 
 namespace calot::recorder {
 
@@ -21,10 +22,8 @@ double seconds(Nanoseconds t) { return std::chrono::duration<double>(t).count();
 /// What ends an attempt before a step, apart from its source.
 class Gate {
  public:
-  Gate(const Session& session, const RunSettings& settings)
-      : stepSeconds_(session.model().stepSeconds()),
-        timeLimit_(session.model().scene().timeLimit),
-        settings_(settings) {}
+  Gate(const Model& model, const RunSettings& settings)
+      : stepSeconds_(model.stepSeconds()), timeLimit_(model.scene().timeLimit), settings_(settings) {}
 
   /// @returns running where step n may begin
   [[nodiscard]] Outcome ask(std::uint64_t step) const {
@@ -40,40 +39,13 @@ class Gate {
   const RunSettings& settings_;
 };
 
-/// Counts the steps that missed a tolerance, and notices one after which nothing that is simulated means anything.
-class StepWatch final : public Observer {
- public:
-  explicit StepWatch(const Model& model) : model_(model) {}
-
-  void onStep(const StepRecord& record) override {
-    misses_.add(record.result.misses);
-    if (!fault_.empty() || (record.result.misses & miss::runaway) == 0) return;
-    for (const Event& event : record.result.events) {
-      if (event.kind != EventKind::runaway) continue;
-      fault_ = fmt::format(
-          "step {}: the simulation of '{}' ran away ({:.3g} m/s); the attempt ends here, keep the "
-          "recording to find out why",
-          record.step, model_.structures()[event.subject].name, event.value);
-      break;
-    }
-  }
-  void onEnd(Outcome /*outcome*/) override {}
-  [[nodiscard]] const std::string& fault() const { return fault_; }
-  [[nodiscard]] const StepMisses& misses() const { return misses_; }
-
- private:
-  const Model& model_;
-  std::string fault_;
-  StepMisses misses_;
-};
-
 float lateness(Nanoseconds due) { return static_cast<float>(std::max(0.0, seconds(monotonicNow() - due))); }
 
 /// Ticks and steps on one thread.
 void runInline(Session& session, SampleSource& source, const RunSettings& settings, const StepWatch& watch,
                RunReport& report) {
   const std::uint32_t ticksPerStep = session.model().scene().ticksPerStep;
-  const Gate gate(session, settings);
+  const Gate gate(session.model(), settings);
   std::vector<TickSamples> samples(ticksPerStep);
   std::vector<TickOutcome> ticks(ticksPerStep);
   PacedClock clock(monotonicNow());
@@ -108,7 +80,7 @@ void runInline(Session& session, SampleSource& source, const RunSettings& settin
     report.maxLateness = seconds(clock.maxLateness());
     report.stretched = seconds(clock.stretched());
     if (settings.progress) settings.progress(session.steps());
-    if (!watch.fault().empty()) {
+    if (watch.ranAway()) {
       report.outcome = Outcome::technicalFailure;
       break;
     }
@@ -131,7 +103,7 @@ bool sameForce(const HandTick& a, const HandTick& b) {
 void runLive(Session& session, SampleSource& source, const RunSettings& settings, const StepWatch& watch,
              RunReport& report) {
   const std::uint32_t ticksPerStep = session.model().scene().ticksPerStep;
-  const Gate gate(session, settings);
+  const Gate gate(session.model(), settings);
   const std::uint64_t before = session.steps();
   std::atomic<bool> ranAway{false};  // the haptic thread asks before each step
   session.precompute();
@@ -152,14 +124,14 @@ void runLive(Session& session, SampleSource& source, const RunSettings& settings
     const float late = lateness(due);
     for (std::uint32_t i = 0; i < ticksPerStep; ++i) {
       const TickOutcome again =
-          session.tick(samples[i], std::array{ticks[i].hand[0].contactSet, ticks[i].hand[1].contactSet});
+          session.tick(samples[i], NamedSets{ticks[i].hand[0].contactSet, ticks[i].hand[1].contactSet});
       bool same = true;
       for (std::size_t h = 0; h < handCount; ++h) same = same && sameForce(ticks[i].hand[h], again.hand[h]);
       if (!same) ++report.disagreements;
     }
-    session.step(samples, ticks, late);
+    session.step(samples, ticks, late);  // with the forces that the hands felt
     if (settings.progress) settings.progress(session.steps());
-    ranAway.store(!watch.fault().empty());
+    ranAway.store(watch.ranAway());
   }
   const HapticReport& seen = haptics.finish();
   report.outcome = ranAway.load() ? Outcome::technicalFailure : seen.outcome;
@@ -186,7 +158,7 @@ RunReport runAttempt(Session& session, SampleSource& source, const RunSettings& 
   SampleSource& asked = guarded ? *guarded : source;
   Observer* watcher = asked.watcher();
   if (watcher != nullptr) session.join(*watcher);
-  StepWatch watch(session.model());
+  StepWatch watch;
   session.join(watch);
   if (settings.live) {
     runLive(session, asked, settings, watch, report);
@@ -194,13 +166,87 @@ RunReport runAttempt(Session& session, SampleSource& source, const RunSettings& 
     runInline(session, asked, settings, watch, report);
   }
   session.leave(watch);
-  report.fault = watch.fault();
+  report.fault = watch.fault(session.model());
   report.misses = watch.misses();
   report.steps = session.steps();
   if (watcher != nullptr) session.leave(*watcher);
   session.end(report.outcome);
   report.wallSeconds = seconds(monotonicNow() - begin);
   return report;
+}
+
+StepwiseAttempt::StepwiseAttempt(std::shared_ptr<PreparedScene> scene, std::vector<Asset> assets, std::uint64_t seed)
+    : scene_(std::move(scene)),
+      assets_(std::move(assets)),
+      seed_(seed),
+      session_(scene_->model(), seed, executor_, scene_->services()),
+      hands_(scene_->model().scene()),
+      samples_(scene_->model().scene().ticksPerStep) {
+  session_.join(watch_);
+}
+
+void StepwiseAttempt::record(const std::filesystem::path& target, const AttemptSettings& settings,
+                             const Provenance& provenance, WriterOptions options) {
+  if (writer_) throw Error(ErrorKind::invalid, Where{target.string()}, "the attempt is recorded already");
+  if (ended_ || steps() > 0)
+    throw Error(ErrorKind::invalid, Where{target.string()},
+                "a recording begins with an attempt's first step: reset, then record");
+  AttemptSettings own = settings;
+  own.seed = seed_;
+  writer_ =
+      std::make_unique<RecordingWriter>(target, makeHeader(model(), assets_, provenance, own), std::move(options));
+  session_.join(*writer_);
+}
+
+Outcome StepwiseAttempt::step(const HandCommands& wanted) {
+  if (ended_ || outcome_ != Outcome::running)
+    throw Error(ErrorKind::invalid, "the attempt is over: reset begins another one");
+  hands_.next(wanted, samples_);
+  session_.run({samples_, {}, 0.0F});
+  outcome_ = watch_.ranAway() ? Outcome::technicalFailure : Gate(model(), {}).ask(steps());
+  return outcome_;
+}
+
+void StepwiseAttempt::end(Outcome outcome) {
+  if (ended_) return;
+  ended_ = true;
+  if (outcome_ == Outcome::running) outcome_ = outcome;
+  session_.end(outcome_);
+  if (writer_) writer_->finish();
+  scene_->save();
+}
+
+AttemptInputs inputsOf(Recording& recording) {
+  AttemptInputs inputs;
+  inputs.outcome = recording.outcome();
+  inputs.seed = recording.header().seed;
+  inputs.samples.reserve(recording.tickCount());
+  inputs.lateness.reserve(recording.tickCount());
+  for (std::uint64_t n = 0; n < recording.stepCount(); ++n) {
+    const RecordedStep& step = recording.step(n);
+    inputs.samples.insert(inputs.samples.end(), step.samples.begin(), step.samples.end());
+    for (const TickOutcome& tick : step.ticks) inputs.lateness.push_back(tick.lateness);
+  }
+  inputs.lateness.resize(inputs.samples.size(), 0.0F);
+  return inputs;
+}
+
+void runOpenLoop(const Model& model, const AttemptInputs& inputs, std::span<Observer* const> observers,
+                 Executor& executor) {
+  Session session(model, inputs.seed, executor);
+  for (Observer* observer : observers) session.join(*observer);
+  const std::size_t every = model.scene().ticksPerStep;
+  std::vector<TickOutcome> late(every);
+  for (std::size_t begin = 0; begin + every <= inputs.samples.size(); begin += every) {
+    const std::span<const TickSamples> step(inputs.samples.data() + begin, every);
+    for (std::size_t i = 0; i < every; ++i) {
+      const auto newest = static_cast<std::int64_t>(session.steps()) - 1;
+      for (HandTick& hand : late[i].hand) hand.contactSet = newest;
+      late[i].lateness = begin + i < inputs.lateness.size() ? inputs.lateness[begin + i] : 0.0F;
+    }
+    session.run({step, late, 0.0F});
+  }
+  session.end(inputs.outcome);
 }
 
 }  // namespace calot::recorder
