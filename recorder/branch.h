@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <functional>
 
-#include "recorder/attempt.h"
+#include "recorder/loop.h"
 #include "recorder/engine/session.h"
 #include "recorder/recording/reader.h"
 #include "recorder/sources/source.h"
