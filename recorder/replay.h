@@ -14,7 +14,7 @@
 
 #include "recorder/base/errors.h"
 #include "recorder/engine/engine.h"
-#include "recorder/engine_choice.h"
+#include "recorder/prepared_scene.h"
 #include "recorder/recording/reader.h"
 #include "recorder/step_watch.h"
 
@@ -73,7 +73,7 @@ struct ReplaySettings {
   unsigned threads = 1;
   /// Numbers of the first and last segment to be verified; none: all.
   std::optional<std::pair<std::size_t, std::size_t>> part;
-  EngineWish engine;
+  EngineRequest engine;
   /// Makes observers of the re-simulation once the header is known and an engine is there; not asked where the engine's
   /// results are of an earlier version of StepResult (what is recorded tells them as well, once it is proven). On one
   /// thread they see every step as it is computed. On several they see, in order, the recorded steps after all were

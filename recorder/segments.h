@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "recorder/engine/observer.h"
-#include "recorder/engine_choice.h"
+#include "recorder/prepared_scene.h"
 #include "recorder/recorded_results.h"
 #include "recorder/recording/reader.h"
 #include "recorder/replay.h"

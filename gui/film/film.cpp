@@ -18,7 +18,7 @@
 #include "gui/render/image.h"
 #include "gui/render/renderer.h"
 #include "recorder/base/errors.h"
-#include "recorder/engine_choice.h"
+#include "recorder/prepared_scene.h"
 #include "recorder/kept/engine_folders.h"
 #include "recorder/recording/layout.h"
 #include "recorder/replay.h"

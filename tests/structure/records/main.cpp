@@ -13,7 +13,7 @@
 
 #include "analytics/assessment/protocol.h"
 #include "analytics/assessment/rating_form.h"
-#include "gui/trainer/scenes_page.h"
+#include "gui/trainer/course.h"
 #include "recorder/formats/scene_surface.h"
 #include "recorder/sources/tracked_motion.h"
 #include "recorder/sources/devices/calibration.h"
