@@ -7,13 +7,16 @@
 
 namespace calot::analytics {
 
-std::string plainName(const recorder::JsonPlace& place) {
-  std::string name = place.text(maxName);
-  const bool plain = std::all_of(name.begin(), name.end(), [](char c) {
+bool isPlainName(const std::string& name) {
+  return std::all_of(name.begin(), name.end(), [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' || c == '_' ||
            c == '.';
   });
-  if (!plain) place.fail("a name of letters, digits, points, hyphens and underscores is wanted");
+}
+
+std::string plainName(const recorder::JsonPlace& place) {
+  std::string name = place.text(maxName);
+  if (!isPlainName(name)) place.fail("a name of letters, digits, points, hyphens and underscores is wanted");
   return name;
 }
 

@@ -22,7 +22,13 @@ struct DeclaredDocument {
   std::string sha256;  ///< of the text, hexadecimal
 };
 
+/// A checkpoint with its subject, "path-length left"; of an outcome or external metric its name alone.
+inline std::string figureName(const std::string& checkpoint, const std::string& subject) {
+  return subject.empty() ? checkpoint : checkpoint + " " + subject;
+}
+
 /// Letters, digits, points, hyphens and underscores: names are printed, and typed.
+bool isPlainName(const std::string& name);
 std::string plainName(const recorder::JsonPlace& place);
 
 /// Reads "format" (which must be the word `format`), "formatVersion", name, version and title; keeps the text.

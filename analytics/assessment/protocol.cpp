@@ -187,7 +187,7 @@ Protocol parseProtocol(std::span<const std::byte> bytes, const std::string& file
   for (const JsonPlace& place : o.at("hypotheses").list(1, maxHypotheses)) {
     const DirectedHypothesis h = hypothesisAt(protocol, place);
     // As tables name it: the column "path-length left" is the left hand's path length.
-    if (!seen.insert(h.subject.empty() ? h.checkpoint : h.checkpoint + " " + h.subject).second)
+    if (!seen.insert(figureName(h.checkpoint, h.subject)).second)
       place.fail("a hypothesis on this figure stands above already");
     protocol.hypotheses.push_back(h);
   }
