@@ -22,6 +22,11 @@ struct DeclaredDocument {
   std::string sha256;  ///< of the text, hexadecimal
 };
 
+/// A checkpoint with its subject, "path-length left"; of an outcome or external metric its name alone.
+inline std::string figureName(const std::string& checkpoint, const std::string& subject) {
+  return subject.empty() ? checkpoint : checkpoint + " " + subject;
+}
+
 /// Names are printed, and typed.
 inline constexpr TextRule plainName{maxName, "[A-Za-z0-9_.-]+",
                                     "a name of letters, digits, points, hyphens and underscores is wanted"};

@@ -190,7 +190,7 @@ Protocol parseProtocol(std::span<const std::byte> bytes, const std::string& file
     const JsonPlace place = root.at("hypotheses").at(i);
     checkHypothesis(protocol, place, h);
     // As tables name it: the column "path-length left" is the left hand's path length.
-    if (!seen.insert(h.subject.empty() ? h.checkpoint : h.checkpoint + " " + h.subject).second)
+    if (!seen.insert(figureName(h.checkpoint, h.subject)).second)
       place.fail("a hypothesis on this figure stands above already");
   }
   if (std::none_of(protocol.hypotheses.begin(), protocol.hypotheses.end(), [](const auto& h) { return h.primary; }))

@@ -28,7 +28,8 @@ ValueTree severalTree(const DesignData& data, const std::vector<std::vector<doub
                       {"lower_quartile", *quantile(values[g], 0.25)},
                       {"upper_quartile", *quantile(values[g], 0.75)}});
   }
-  for (const DunnPair& pair : *dunn(values)) {
+  const std::vector<DunnPair> compared = *dunn(values);
+  for (const DunnPair& pair : compared) {
     pairs.push_back({{"first", data.groups[pair.first]},
                      {"second", data.groups[pair.second]},
                      {"z", pair.z},

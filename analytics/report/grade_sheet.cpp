@@ -12,7 +12,7 @@ namespace {
 
 std::string nameOf(const GradedFigure& f) {
   if (f.mark.metric) return f.mark.checkpoint + " (external)";
-  return f.mark.subject.empty() ? f.mark.checkpoint : f.mark.checkpoint + " " + f.mark.subject;
+  return figureName(f.mark.checkpoint, f.mark.subject);
 }
 
 ValueTree treeOf(const GradedFigure& f) {

@@ -103,7 +103,7 @@ ValueTree groupRows(const ValueTree& form, const ValueTree& items, const std::ve
   return rows;
 }
 
-const std::vector<TreeColumn> summaryColumns{{"n", "/n", plain},
+const std::vector<TreeColumn> scoreColumns{{"n", "/n", plain},
                                              {"blank", "/blank", countAboveZero},
                                              {"median", "/median", digits3},
                                              {"quartile 1", "/lower_quartile", digits3},
@@ -113,7 +113,7 @@ const std::vector<TreeColumn> summaryColumns{{"n", "/n", plain},
 /// Titles and cells of a group's scores between others.
 ReportTable summaryTable(const std::string& title, const ValueTree& rows, std::vector<TreeColumn> columns,
                          const std::vector<TreeColumn>& behind) {
-  columns.insert(columns.end(), summaryColumns.begin(), summaryColumns.end());
+  columns.insert(columns.end(), scoreColumns.begin(), scoreColumns.end());
   columns.insert(columns.end(), behind.begin(), behind.end());
   return tableOf(title, rows, columns);
 }

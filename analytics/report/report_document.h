@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A report as an ordered list of parts, shown identically on a terminal, by a page (page_html.h) and on paper
-// (gui/report).
-// Text of reports: tables for the terminal, numbers, text escaped for HTML, warnings about intervals.
+// A report as an ordered list of parts, shown identically on a terminal, by a page (pageHtml()) and on paper
+// (gui/report); and text of reports: tables, numbers, text escaped for HTML, warnings about intervals.
 #pragma once
 
 #include <cstddef>

@@ -102,9 +102,7 @@ void chooseByProtocol(StudyChoices& choices, const Protocol& protocol) {
   choices.family.clear();
 }
 
-std::string figureOf(const DirectedHypothesis& h) {
-  return h.subject.empty() ? h.checkpoint : h.checkpoint + " " + h.subject;
-}
+std::string figureOf(const DirectedHypothesis& h) { return figureName(h.checkpoint, h.subject); }
 
 StudyOptions byProtocol(const StudyOptions& options) {
   StudyOptions chosen = options;

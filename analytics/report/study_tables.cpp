@@ -20,8 +20,7 @@ using ShownRows = std::vector<const StudyRow*>;
 
 // Texts of cells of a row's tree.
 std::string figureText(const ValueTree& row) {
-  const std::string name = row["checkpoint"], subject = row["subject"];
-  return name + (subject.empty() ? "" : " " + subject) + (row.contains("source_sha256") ? " (external)" : "");
+  return figureName(row["checkpoint"], row["subject"]) + (row.contains("source_sha256") ? " (external)" : "");
 }
 std::string withUnit(const ValueTree& row) {
   const std::string unit = row["unit"];
@@ -140,9 +139,7 @@ std::string studyTitle(const Study& study) {
 
 std::string rowName(const StudyRow& row) { return figureOfRow(row) + (row.source.empty() ? "" : " (external)"); }
 
-std::string figureOfRow(const StudyRow& row) {
-  return row.subject.empty() ? row.checkpoint : fmt::format("{} {}", row.checkpoint, row.subject);
-}
+std::string figureOfRow(const StudyRow& row) { return figureName(row.checkpoint, row.subject); }
 
 ReportTable flowTable(const Study& study) {
   ReportTable table = tableOf("Flow", {study.counted, "="});
