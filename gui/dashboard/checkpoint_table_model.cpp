@@ -13,7 +13,6 @@
 
 #include "analytics/assessment/grade.h"
 #include "analytics/checkpoints/registry.h"
-#include "gui/attempt/attempt_recording.h"
 #include "gui/attempt/figure_text.h"
 #include "gui/attempt/theme.h"
 #include "gui/words/event_words.h"

@@ -1,16 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <memory>
-#include <string>
-#include <vector>
-
 #include "gui/attempt/background.h"
 #include "gui/dashboard/cohort_document.h"
 #include "gui/dashboard/comparison.h"
 #include "gui/dashboard/page_parts.h"
-
-class QCheckBox;
 
 namespace calot::gui {
 
