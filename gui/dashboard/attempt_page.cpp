@@ -5,10 +5,8 @@
 #include <cmath>
 #include <condition_variable>
 #include <mutex>
-#include <QBoxLayout>
 #include <QFileDialog>
 #include <QFileInfo>
-#include <QPushButton>
 #include <QSaveFile>
 
 #include "analytics/checkpoints/checkpoint.h"
@@ -17,7 +15,6 @@
 #include "gui/attempt/figure_text.h"
 #include "gui/attempt/replay_player.h"
 #include "gui/attempt/summary_panel.h"
-#include "gui/attempt/widget_parts.h"
 #include "gui/dashboard/figure_panel.h"
 #include "gui/dashboard/settings.h"
 #include "gui/render/renderer.h"

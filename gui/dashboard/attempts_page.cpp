@@ -3,23 +3,11 @@
 
 #include <algorithm>
 #include <array>
-#include <QBoxLayout>
-#include <QComboBox>
 #include <QFont>
-#include <QHeaderView>
 #include <QItemSelectionModel>
-#include <QLabel>
-#include <QLineEdit>
 #include <QMenu>
-#include <QPushButton>
-#include <QSignalBlocker>
-#include <QSplitter>
-#include <QTableView>
-#include <vector>
 
 #include "gui/attempt/figure_text.h"
-#include "gui/attempt/widget_parts.h"
-#include "gui/dashboard/page_parts.h"
 #include "gui/dashboard/settings.h"
 
 namespace calot::gui {

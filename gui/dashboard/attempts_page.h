@@ -1,25 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <memory>
 #include <optional>
 #include <QAbstractTableModel>
 #include <QSortFilterProxyModel>
-#include <QStringList>
-#include <QWidget>
-#include <string>
-#include <vector>
 
-#include "analytics/cohort/cohort_database.h"
 #include "gui/dashboard/checkpoint_table_model.h"
 #include "gui/dashboard/cohort_document.h"
 #include "gui/dashboard/page_parts.h"
-
-class QLayout;
-class QComboBox;
-class QLabel;
-class QLineEdit;
-class QTableView;
 
 namespace calot::gui {
 

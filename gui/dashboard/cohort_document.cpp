@@ -8,10 +8,8 @@
 #include <numeric>
 #include <QMetaObject>
 #include <set>
-#include <string>
 #include <utility>
 
-#include "analytics/cohort/cohort_database.h"
 #include "gui/attempt/figure_text.h"
 #include "gui/words/problem_words.h"
 

@@ -3,12 +3,10 @@
 
 #include <algorithm>
 #include <exception>
-#include <QBoxLayout>
 #include <QDockWidget>
 #include <QDragEnterEvent>
 #include <QDropEvent>
 #include <QFileInfo>
-#include <QLabel>
 #include <QMenuBar>
 #include <QMessageBox>
 #include <QMimeData>
@@ -20,17 +18,13 @@
 #include <QTimer>
 #include <QUndoStack>
 #include <QUrl>
-#include <utility>
 
 #include "gui/attempt/attempt_recording.h"
-#include "gui/attempt/theme.h"
-#include "gui/attempt/widget_parts.h"
 #include "gui/dashboard/attempt_page.h"
 #include "gui/dashboard/attempts_page.h"
 #include "gui/dashboard/dialogs.h"
 #include "gui/dashboard/figure_panel.h"
 #include "gui/dashboard/figures_page.h"
-#include "gui/dashboard/import_queue.h"
 #include "gui/dashboard/pair_page.h"
 #include "gui/dashboard/ratings_page.h"
 #include "gui/dashboard/settings.h"

@@ -2,23 +2,13 @@
 #include "gui/dashboard/dialogs.h"
 
 #include <QAction>
-#include <QBoxLayout>
-#include <QCheckBox>
-#include <QComboBox>
 #include <QDialogButtonBox>
 #include <QFormLayout>
-#include <QLabel>
-#include <QLineEdit>
 #include <QMenu>
 #include <QMenuBar>
-#include <QPushButton>
 #include <QSpinBox>
-#include <QTableWidget>
-#include <utility>
 
 #include "analytics/assessment/create_norm.h"
-#include "gui/attempt/theme.h"
-#include "gui/attempt/widget_parts.h"
 #include "gui/dashboard/settings.h"
 
 namespace calot::gui {

@@ -1,20 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <memory>
 #include <QDialog>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "gui/attempt/long_work.h"
 #include "gui/dashboard/cohort_document.h"
 #include "gui/dashboard/page_parts.h"
 
 class QFormLayout;
-class QLineEdit;
 class QMenuBar;
-class QPushButton;
 class QSpinBox;
 
 namespace calot::gui {

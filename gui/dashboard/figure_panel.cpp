@@ -3,21 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <QBoxLayout>
-#include <QComboBox>
-#include <QHeaderView>
-#include <QLabel>
-#include <QPushButton>
-#include <QSignalBlocker>
 #include <QTabWidget>
-#include <QTreeView>
-#include <utility>
 
 #include "analytics/assessment/norm_rule.h"
 #include "gui/attempt/figure_standing.h"
 #include "gui/attempt/figure_text.h"
-#include "gui/attempt/widget_parts.h"
-#include "gui/dashboard/checkpoint_table_model.h"
 #include "gui/dashboard/page_parts.h"
 #include "gui/words/problem_words.h"
 #include "recorder/base/errors.h"

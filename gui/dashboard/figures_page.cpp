@@ -3,17 +3,10 @@
 
 #include <algorithm>
 #include <exception>
-#include <QBoxLayout>
-#include <QCheckBox>
-#include <QComboBox>
-#include <QLabel>
-#include <QSignalBlocker>
-#include <QTableWidget>
 
 #include "analytics/assessment/grade.h"
 #include "gui/attempt/figure_standing.h"
 #include "gui/attempt/figure_text.h"
-#include "gui/attempt/widget_parts.h"
 #include "gui/dashboard/plot_view.h"
 #include "gui/words/problem_words.h"
 

@@ -4,13 +4,10 @@
 #include <memory>
 #include <string>
 #include <vector>
-
 #include "gui/attempt/long_work.h"
 #include "gui/dashboard/cohort_document.h"
 #include "gui/dashboard/comparison.h"
 #include "gui/dashboard/page_parts.h"
-
-class QCheckBox;
 
 namespace calot::gui {
 

@@ -4,20 +4,11 @@
 #include <algorithm>
 #include <QAbstractItemModel>
 #include <QApplication>
-#include <QBoxLayout>
-#include <QCheckBox>
 #include <QEvent>
-#include <QHeaderView>
-#include <QLabel>
 #include <QShortcut>
-#include <QSignalBlocker>
-#include <QTableWidget>
 #include <QTimer>
-#include <QTreeView>
-#include <utility>
 
 #include "gui/attempt/figure_text.h"
-#include "gui/attempt/widget_parts.h"
 #include "gui/dashboard/study_view.h"
 #include "gui/words/problem_words.h"
 #include "recorder/base/errors.h"

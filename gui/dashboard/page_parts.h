@@ -5,10 +5,14 @@
 #include <functional>
 #include <initializer_list>
 #include <memory>
+#include <QCheckBox>
+#include <QHeaderView>
 #include <QKeySequence>
+#include <QLineEdit>
+#include <QSignalBlocker>
 #include <QSplitter>
-#include <QStringList>
-#include <QWidget>
+#include <QTableWidget>
+#include <QTreeView>
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,14 +20,7 @@
 #include "analytics/cohort/cohort_database.h"
 #include "analytics/report/study.h"
 #include "gui/attempt/theme.h"
-
-class QAbstractItemModel;
-class QCheckBox;
-class QComboBox;
-class QLabel;
-class QTableView;
-class QTableWidget;
-class QTreeView;
+#include "gui/attempt/widget_parts.h"
 
 namespace calot::gui {
 

@@ -3,20 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <QBoxLayout>
-#include <QComboBox>
-#include <QLabel>
 #include <QLocale>
-#include <QSignalBlocker>
 #include <QSlider>
 #include <QStyle>
 #include <QTimer>
 #include <QToolButton>
-#include <utility>
 
 #include "gui/attempt/figure_text.h"
-#include "gui/attempt/theme.h"
-#include "gui/attempt/widget_parts.h"
 #include "gui/words/event_words.h"
 
 namespace calot::gui {

@@ -3,17 +3,12 @@
 
 #include <array>
 #include <chrono>
-#include <memory>
 #include <optional>
-#include <string>
-#include <vector>
 
 #include "gui/dashboard/cohort_document.h"
 #include "gui/dashboard/page_parts.h"
 #include "gui/dashboard/recording_view.h"
 
-class QComboBox;
-class QLabel;
 class QSlider;
 class QTimer;
 class QToolButton;

@@ -2,21 +2,13 @@
 #include "gui/dashboard/ratings_page.h"
 
 #include <algorithm>
-#include <QBoxLayout>
 #include <QButtonGroup>
-#include <QCheckBox>
-#include <QComboBox>
 #include <QCryptographicHash>
 #include <QGroupBox>
-#include <QLabel>
-#include <QLineEdit>
-#include <QPushButton>
 #include <QRadioButton>
 #include <QScrollArea>
 #include <QSettings>
-#include <QSignalBlocker>
 
-#include "gui/attempt/widget_parts.h"
 #include "gui/dashboard/settings.h"
 #include "gui/words/problem_words.h"
 #include "recorder/base/errors.h"

@@ -6,8 +6,6 @@
 #include <filesystem>
 #include <map>
 #include <optional>
-#include <string>
-#include <vector>
 
 #include "analytics/assessment/rating_form.h"
 #include "analytics/cohort/assessment_database.h"
@@ -67,13 +65,7 @@ void dropDraft(const DraftSubject& subject);
 }  // namespace calot::gui
 
 class QButtonGroup;
-class QCheckBox;
-class QComboBox;
-class QLabel;
-class QLineEdit;
-class QPushButton;
 class QScrollArea;
-class QVBoxLayout;
 
 namespace calot::gui {
 

@@ -3,21 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <initializer_list>
-#include <utility>
-
-#include <QBoxLayout>
-#include <QCheckBox>
-#include <QComboBox>
 #include <QCoreApplication>
 #include <QFileDialog>
 #include <QFont>
 #include <QImage>
-#include <QLabel>
 #include <QList>
 #include <QPainter>
-#include <QPushButton>
-#include <QSignalBlocker>
 #include <QStandardItemModel>
 #include <QTextBrowser>
 #include <QTextDocument>
@@ -27,7 +18,6 @@
 
 #include "analytics/report/study_output.h"
 #include "gui/attempt/figure_text.h"
-#include "gui/attempt/widget_parts.h"
 #include "gui/dashboard/plot_view.h"
 #include "gui/report/drawing_painter.h"
 
@@ -46,6 +36,27 @@ QString effectText(const analytics::StudyRow& row) {
   // A line ends between figures, not within one (nor at the hyphen above).
   for (QString& part : parts) part.replace(' ', QChar(QChar::Nbsp));
   return parts.join(QString::fromUtf8(" · "));
+}
+
+/// Values of a row, as Compare shows them.
+Comparison comparisonOf(const analytics::Study& study, const analytics::StudyRow& row,
+                        const std::vector<analytics::AttemptRow>& attempts) {
+  std::set<std::string> performers;  // as a row names them
+  for (const analytics::AttemptRow& a : attempts) {
+    if (a.synthetic) performers.insert(a.participant.empty() ? "attempt " + a.uuid : a.participant);
+  }
+  Comparison made;
+  made.unit = row.unit == "1" ? "" : row.unit;
+  made.synthetic = study.synthetic;
+  for (std::size_t g = 0; g < row.values.size(); ++g) {
+    ComparisonGroup& group = made.group.emplace_back();
+    group.name = study.groups[g];
+    for (std::size_t i = 0; i < row.values[g].size(); ++i) {
+      const std::string& who = row.participants[g][i];
+      group.point.push_back({who, row.values[g][i], performers.count(who) > 0});
+    }
+  }
+  return made;
 }
 
 /// What a text shows under forestAddress; null where the study has none. Any thread.
@@ -319,7 +330,8 @@ void StudyPage::showRow() {
   effect_->setText(effectText(row));
   boxes_->show(
       row_->currentText(),
-      [study = study_, &row](const analytics::PlotFrame& frame) { return analytics::boxPlotOf(*study, row, frame); },
+      [values = comparisonOf(*study_, row, document_->attempts()), name = row_->currentText().toStdString()](
+          const analytics::PlotFrame& frame) { return drawComparison(values, name, frame); },
       study_->synthetic);
   if (row.values[0].empty() || row.values[1].empty()) {
     roc_->clear("No ROC: a group has no values");

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "gui/dashboard/timeline.h"
 
-#include <algorithm>
 #include <cmath>
 #include <QEvent>
 #include <QHelpEvent>
@@ -10,9 +9,7 @@
 #include <QMouseEvent>
 #include <QPainter>
 #include <QToolTip>
-#include <utility>
 
-#include "gui/attempt/theme.h"
 #include "gui/words/event_words.h"
 
 namespace calot::gui {

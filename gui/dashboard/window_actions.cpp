@@ -4,7 +4,6 @@
 #include <atomic>
 #include <filesystem>
 #include <map>
-#include <memory>
 #include <QCoreApplication>
 #include <QElapsedTimer>
 #include <QEventLoop>

@@ -2,12 +2,10 @@
 #include "gui/report/drawing_painter.h"
 
 #include <algorithm>
-#include <clocale>
 #include <QFontDatabase>
 #include <QFontMetricsF>
 #include <QPen>
 #include <QString>
-#include <string>
 
 #include "recorder/base/errors.h"
 
@@ -84,15 +82,6 @@ void paintDrawing(QPainter& painter, const analytics::Drawing& drawing, const QR
     std::visit(ShapePainter{painter, style, look.font}, shape.form);
   }
   painter.restore();
-}
-
-OffscreenApplication::OffscreenApplication() {
-  if (QCoreApplication::instance() != nullptr) return;
-  const std::string locale = std::setlocale(LC_ALL, nullptr);
-  const QtMessageHandler before = qInstallMessageHandler([](QtMsgType, const QMessageLogContext&, const QString&) {});
-  application_ = std::make_unique<QGuiApplication>(count_, words_);
-  qInstallMessageHandler(before);
-  std::setlocale(LC_ALL, locale.c_str());
 }
 
 QFont reportFont() {

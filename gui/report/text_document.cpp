@@ -49,13 +49,18 @@ struct ReportTextDocument::Writer {
 
   /// The first block is there already, as is the one behind a table.
   void begin(const QTextBlockFormat& format, const QTextCharFormat& ink) {
-    const bool fresh = cursor.block().length() == 1;
-    if (fresh) {
+    if (cursor.block().length() == 1) {
       cursor.setBlockFormat(format);
       cursor.setBlockCharFormat(ink);
     } else {
       cursor.insertBlock(format, ink);
     }
+  }
+
+  /// A block of one text.
+  void line(const std::string& text, const QTextBlockFormat& format, const QTextCharFormat& ink) {
+    begin(format, ink);
+    cursor.insertText(QString::fromStdString(text), ink);
   }
 
   void spans(const Paragraph& paragraph, const QTextCharFormat& ink) {
@@ -75,20 +80,13 @@ struct ReportTextDocument::Writer {
     format.setBackground(QColor("#b00020"));
     QTextCharFormat ink = letters(textPoints, true);
     ink.setForeground(Qt::white);
-    begin(format, ink);
-    cursor.insertText(QString(" ") + analytics::watermarkText, ink);
-  }
-
-  void title(const std::string& text) {
-    begin(block(0.0, 3.0), letters(titlePoints, true));
-    cursor.insertText(QString::fromStdString(text), letters(titlePoints, true));
+    line(std::string(" ") + analytics::watermarkText, format, ink);
   }
 
   void operator()(const analytics::Heading& heading) {
     QTextBlockFormat format = block(5.0, 1.5);
     if (heading.newPage) format.setPageBreakPolicy(QTextFormat::PageBreak_AlwaysBefore);
-    begin(format, letters(headingPoints, true));
-    cursor.insertText(QString::fromStdString(heading.text), letters(headingPoints, true));
+    line(heading.text, format, letters(headingPoints, true));
   }
 
   void operator()(const Paragraph& paragraph) {
@@ -150,11 +148,10 @@ struct ReportTextDocument::Writer {
       for (const auto& row : table.rows)
         widest = std::max(widest, metrics.horizontalAdvance(QString::fromStdString(row[c])));
       width.push_back(widest / dotsPerMillimetre + 2.0 * cellPadding + aroundText);
-      if (isWords(c)) {
+      if (isWords(c))
         words.push_back(width.back());
-      } else {
+      else
         room -= width.back();
-      }
     }
     std::sort(words.begin(), words.end());
     double maxWords = words.empty() ? 0.0 : words.back();
@@ -207,7 +204,7 @@ ReportTextDocument::ReportTextDocument(const analytics::ReportDocument& report, 
   Writer writer{*this};
   writer.cursor.beginEditBlock();
   if (report.synthetic) writer.banner();
-  writer.title(report.title);
+  writer.line(report.title, writer.block(0.0, 3.0), letters(titlePoints, true));
   for (const auto& part : report.parts) std::visit(writer, part);
   if (report.synthetic) writer.banner();
   writer.cursor.endEditBlock();

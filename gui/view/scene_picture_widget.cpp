@@ -7,7 +7,6 @@
 #include <exception>
 #include <QMetaObject>
 #include <QPainter>
-#include <string>
 #include <utility>
 
 #include "gui/render/renderer.h"
