@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Access to single tables, which CohortDatabase and AssessmentDatabase combine: tables and rows as SQLite describes them,
-// for work that must reach every table, those of later migrations too; and the statements that follow from a table's
-// declaration. No function here begins a transaction.
+// Access to single tables, which CohortDatabase and AssessmentDatabase combine: tables and rows as SQLite describes
+// them, for work that must reach every table, those of later migrations too; and the statements that follow from a
+// table's declaration. No function here begins a transaction.
 #pragma once
 
 #include <SQLiteCpp/SQLiteCpp.h>
