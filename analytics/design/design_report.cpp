@@ -8,8 +8,8 @@
 #include <cmath>
 #include <utility>
 
-#include "analytics/statistics/rank_tests.h"
 #include "analytics/report/report_document.h"
+#include "analytics/statistics/rank_tests.h"
 #include "recorder/attempt.h"
 #include "recorder/base/errors.h"
 

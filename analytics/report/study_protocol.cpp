@@ -9,7 +9,6 @@
 
 #include "analytics/report/study_output.h"
 #include "analytics/statistics/rank_tests.h"
-#include "analytics/report/study_output.h"
 
 namespace calot::analytics {
 namespace {

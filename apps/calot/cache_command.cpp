@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // calot cache: what the user's cache folder holds.
 
-#include "apps/calot/command.h"
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include "analytics/report/report_document.h"
+#include "apps/calot/command.h"
 #include "recorder/compliance_cache.h"
 
 namespace calot::apps {
@@ -44,7 +44,7 @@ void cache(const CacheOptions& o) {
                     {"bytes", e.bytes}});
     const bool known = e.state == CacheEntry::State::usable || e.state == CacheEntry::State::otherVersion;
     table.rows.push_back({known ? e.scene : file, known ? std::to_string(e.simulationVersion) : "-",
-               known ? std::to_string(e.columns) : "-", megabytes(e.bytes), stateName(e.state)});
+                          known ? std::to_string(e.columns) : "-", megabytes(e.bytes), stateName(e.state)});
     bytes += e.bytes;
   }
   if (o.json) {

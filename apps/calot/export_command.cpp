@@ -11,7 +11,6 @@
 #include "recorder/recording/probe.h"
 #include "recorder/recording/recorded_columns.h"
 #include "recorder/sources/tracked_motion.h"
-#include "recorder/sources/tracked_motion.h"
 
 namespace calot::apps {
 

@@ -11,7 +11,6 @@
 #include "analytics/import_motion.h"
 #include "apps/calot/command.h"
 #include "recorder/sources/tracked_motion.h"
-#include "recorder/sources/tracked_motion.h"
 
 namespace calot::apps {
 

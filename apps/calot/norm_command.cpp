@@ -11,7 +11,6 @@
 #include "analytics/report/report_document.h"
 #include "analytics/report/study_output.h"
 #include "apps/calot/command.h"
-#include "analytics/report/study_output.h"
 #include "apps/calot/environment.h"
 #include "recorder/base/errors.h"
 #include "recorder/base/file_bytes.h"
@@ -28,7 +27,8 @@ struct AngoffOptions {
 void judgeByAngoff(const AngoffOptions& o) {
   const analytics::AngoffJudgement a = analytics::readAngoff(readCsvTable(o.table));
   const double judges = static_cast<double>(a.judges.size());
-  analytics::ReportTable table = analytics::tableOf("Probability that a borderline trainee passes", {"=item", "mean", "least", "most"});
+  analytics::ReportTable table =
+      analytics::tableOf("Probability that a borderline trainee passes", {"=item", "mean", "least", "most"});
   Json items = Json::array();
   for (std::size_t item = 0; item < a.items.size(); ++item) {
     double sum = 0.0, least = 1.0, most = 0.0;
@@ -132,7 +132,8 @@ void printNorm(const analytics::Norm& norm) {
   if (norm.synthetic) std::cout << analytics::watermarkText << '\n';
   for (const std::string& line : analytics::normSummary(norm)) analytics::printWrapped(line, std::cout);
   std::cout << '\n';
-  analytics::ReportTable table = analytics::tableOf("Pass marks", {"=checkpoint", "=unit", "=better", "cut", "95 %", "=rule", "="});
+  analytics::ReportTable table =
+      analytics::tableOf("Pass marks", {"=checkpoint", "=unit", "=better", "cut", "95 %", "=rule", "="});
   for (const analytics::NormCheckpoint& c : norm.checkpoints) {
     const analytics::CheckpointDefinition* d =
         c.metric ? &c.metric->definition : analytics::findCheckpoint(c.checkpoint);

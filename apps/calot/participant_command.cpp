@@ -163,7 +163,8 @@ void listParticipants(const ParticipantFilter& o) {
   const analytics::CohortDatabase database(o.cohort, Access::read);
   std::map<std::string, std::uint64_t> attempts;
   for (const analytics::AttemptRow& a : database.listAttempts()) ++attempts[a.participant];
-  analytics::ReportTable table = analytics::tableOf("", {"=participant", "=group", "=arm", "=site", "attempts", "=experience", "=consent"});
+  analytics::ReportTable table =
+      analytics::tableOf("", {"=participant", "=group", "=arm", "=site", "attempts", "=experience", "=consent"});
   const auto joined = [](const std::map<std::string, std::string>& pairs, char mark) {
     std::string text;
     for (const auto& [name, value] : pairs)

@@ -225,7 +225,8 @@ void printPower(const PowerOptions& o, const PlannedStudy& planned, const std::v
                            planned.origin);
   std::cout << fmt::format("{} simulations each, seed {}; in brackets Wilson's 95 % interval of the simulation\n\n",
                            planned.plan.simulations, o.seed);
-  analytics::ReportTable table = analytics::tableOf("", {"n (" + planned.groups[0] + ")", "n (" + planned.groups[1] + ")", "=checkpoint", "power"});
+  analytics::ReportTable table = analytics::tableOf(
+      "", {"n (" + planned.groups[0] + ")", "n (" + planned.groups[1] + ")", "=checkpoint", "power"});
   std::size_t untestable = 0;
   for (const Sized& r : results) {
     std::string nx = fmt::format("{}", r.nx), ny = fmt::format("{}", r.ny);

@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analytics/report/report_document.h"
 #include "apps/calot/command.h"
+#include "apps/calot/environment.h"
+#include "recorder/base/errors.h"
 #include "recorder/base/file_bytes.h"
 #include "recorder/base/text_output.h"
 #include "recorder/formats/mesh_file.h"
-#include "analytics/report/report_document.h"
-#include "apps/calot/environment.h"
-#include "recorder/base/errors.h"
 #include "recorder/formats/scene_check.h"
 #include "recorder/formats/scene_file.h"
 #include "sim/geometry/surface_report.h"
@@ -130,7 +130,8 @@ Json checkJson(const std::string& file, const recorder::SceneCheck& check) {
 }
 
 void printCosts(const recorder::SceneCheck& check) {
-  analytics::ReportTable table = analytics::tableOf("", {"=organ", "triangles", "edge (mm)", "tetrahedra", "cell (mm)", "=surface"});
+  analytics::ReportTable table =
+      analytics::tableOf("", {"=organ", "triangles", "edge (mm)", "tetrahedra", "cell (mm)", "=surface"});
   bool fine = false;
   for (const recorder::ContactCost& c : check.costs) {
     table.rows.push_back({c.organ, std::to_string(c.triangles), fmt::format("{:.2f}", 1000.0 * c.meanEdge),

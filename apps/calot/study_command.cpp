@@ -11,10 +11,9 @@
 #include "analytics/cohort/withdraw.h"
 #include "analytics/design/design_report.h"
 #include "analytics/report/study_output.h"
-#include "analytics/report/study_output.h"
 #include "apps/calot/command.h"
-#include "recorder/attempt.h"
 #include "apps/calot/environment.h"
+#include "recorder/attempt.h"
 #include "recorder/base/errors.h"
 #include "recorder/base/text_output.h"
 #ifdef CALOT_PDF

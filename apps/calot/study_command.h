@@ -7,7 +7,6 @@
 
 #include "analytics/report/masked_study.h"
 #include "analytics/report/report_document.h"
-#include "analytics/report/report_document.h"
 #include "analytics/report/study.h"
 #include "analytics/report/table_study.h"
 

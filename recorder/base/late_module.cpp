@@ -19,7 +19,8 @@ const void* lateModule(const std::string& name) {
   const auto* const version = static_cast<const char* const*>(::dlsym(library, "calotModuleVersion"));
   const void* const functions = ::dlsym(library, "calotModule");
   if (version == nullptr || functions == nullptr || std::string(*version) != CALOT_VERSION)
-    throw Error(ErrorKind::failure, Where{file}, "this part belongs to another version of the program; install both anew");
+    throw Error(ErrorKind::failure, Where{file},
+                "this part belongs to another version of the program; install both anew");
   return functions;
 }
 

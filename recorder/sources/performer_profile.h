@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "recorder/sources/scope/scope_assistant.h"
 #include "recorder/base/json_reader.h"
 #include "recorder/sources/scope/scope_assistant.h"
 

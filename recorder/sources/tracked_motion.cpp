@@ -275,7 +275,6 @@ class RowReader {
 
 }  // namespace
 
-
 ColumnMap readColumnMap(const std::filesystem::path& file) {
   const std::string name = file.filename().string();
   return parseColumnMap(readFileBytes(file, name, maxMapBytes), name);

@@ -10,7 +10,6 @@
 #include <string>
 #include <vector>
 
-
 namespace calot::analytics::support {
 
 inline std::vector<std::byte> bytesOf(const std::string& text) {
