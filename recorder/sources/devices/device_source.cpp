@@ -14,7 +14,6 @@
 
 namespace calot::recorder {
 namespace {
-constexpr double widestJaw = 1.2;  // rad
 }
 
 DeviceMapping::DeviceMapping(const HandDescription& hand, const CameraSample& camera,

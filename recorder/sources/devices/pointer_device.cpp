@@ -6,6 +6,7 @@
 #include <thread>
 #include <utility>
 
+#include "recorder/sources/pointing.h"
 #include "sim/math/elementary.h"
 #include "sim/math/linear.h"
 
@@ -13,7 +14,6 @@ namespace calot::recorder {
 namespace {
 
 constexpr double maxStep = 0.05;   // s; after a longer gap the pointer does not leap
-constexpr double widestJaw = 1.2;  // rad
 constexpr std::size_t maxName = 64;
 
 }  // namespace
