@@ -12,7 +12,6 @@
 #include "analytics/assessment/norm_rule.h"
 #include "analytics/checkpoints/checkpoint.h"
 #include "recorder/base/errors.h"
-#include "recorder/words.h"
 
 namespace calot::analytics {
 namespace {

@@ -11,7 +11,6 @@
 #include <utility>
 
 #include "analytics/cohort/tables.h"
-#include "recorder/words.h"
 
 namespace calot::analytics {
 

@@ -14,7 +14,6 @@
 #include <vector>
 
 #include "analytics/cohort/declared_tables.h"
-#include "recorder/words.h"
 
 namespace calot::analytics {
 

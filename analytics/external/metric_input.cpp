@@ -14,7 +14,6 @@
 #include <utility>
 
 #include "recorder/base/errors.h"
-#include "recorder/words.h"
 #include "sim/judgement/judge.h"
 
 namespace calot::analytics {

@@ -12,7 +12,7 @@
 #include "analytics/cohort/cohort_database.h"
 #include "analytics/import_motion.h"
 #include "recorder/base/errors.h"
-#include "recorder/sources/column_map.h"
+#include "recorder/sources/tracked_motion.h"
 
 namespace calot::analytics {
 

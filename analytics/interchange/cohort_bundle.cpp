@@ -22,7 +22,6 @@
 #include "recorder/base/csv_writer.h"
 #include "recorder/base/errors.h"
 #include "recorder/base/text_words.h"
-#include "recorder/words.h"
 
 namespace calot::analytics {
 namespace {

@@ -2,11 +2,12 @@
 #include "analytics/report/study_rows.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "analytics/report/report_text.h"
+#include "analytics/report/report_document.h"
 #include "analytics/report/study_protocol.h"
 #include "analytics/statistics/descriptive.h"
 #include "analytics/statistics/rank_tests.h"
@@ -14,12 +15,6 @@
 
 namespace calot::analytics {
 namespace {
-
-std::string joined(const std::vector<std::string>& parts) {
-  std::string text;
-  for (const std::string& part : parts) text += (text.empty() ? "" : ", ") + part;
-  return text;
-}
 
 /// Values that agree to eleven digits are treated as tied: ranks must not depend on rounding errors. Each becomes the
 /// least one that it agrees with.
@@ -152,8 +147,9 @@ void adjustFamily(Study& study, const StudyChoices& choices) {
         return r.adjusted && r.adjusted->analysis ? std::optional(r.adjusted->analysis->p) : std::nullopt;
       },
       [](StudyRow& r, double p) { r.adjusted->holm = p; });
-  study.family = fmt::format("Holm: adjusted over the {} rank test{} of {}", tests, tests == 1 ? "" : "s",
-                             choices.family.empty() ? "this study" : joined(choices.family));
+  study.family =
+      fmt::format("Holm: adjusted over the {} rank test{} of {}", tests, tests == 1 ? "" : "s",
+                  choices.family.empty() ? "this study" : fmt::format("{}", fmt::join(choices.family, ", ")));
   if (analyses > 0) study.family += fmt::format("; the {} with the baseline are a family of their own", analyses);
   study.family += ".";
 }
