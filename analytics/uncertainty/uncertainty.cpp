@@ -18,6 +18,7 @@
 #include "recorder/formats/scene_file.h"
 #include "recorder/live/worker_pool.h"
 #include "recorder/recording/reader.h"
+#include "sim/math/record.h"
 #include "sim/scene/version.h"
 
 namespace calot::analytics {
@@ -182,36 +183,36 @@ SceneDescription perturbed(const SceneDescription& scene, std::size_t run) {
 
 namespace {
 
-template <class T>
-concept HasFields = requires {
-  &T::template fields<T, int>;
-};
-template <class T>
-concept IsList = requires {
-  typename T::value_type;
+/// The text of a record's field "name"; empty where it has none.
+std::string nameOfItem(const Record& record, void* object) {
+  for (const Field& field : record.fields) {
+    if (field.name == std::string_view("name")) return *static_cast<std::string*>(field.value.get(object));
+  }
+  return {};
 }
-&&HasFields<typename T::value_type>;
 
-/// Multiplies what a path of names leads to. @returns whether there is such a number other than 0
-template <class T>
-bool multiplyAt(T& part, std::string_view path, double factor) {
+/// Multiplies what a path of fields, of names of a list's items, or of * for each leads to.
+/// @returns whether there is such a number other than 0
+bool multiplyAt(const Access& access, void* value, std::string_view path, double factor) {
   const std::size_t end = std::min(path.find('.'), path.size());
   const std::string_view name = path.substr(0, end), rest = path.substr(std::min(end + 1, path.size()));
   bool found = false;
-  if constexpr (std::is_same_v<T, double>) {
-    found = part != 0.0;
-    part *= factor;
-  } else if constexpr (IsList<T>) {
-    for (auto& one : part) {
-      bool meant = name == "*";
-      if constexpr (requires { one.name; }) meant = meant || name == one.name;
-      if (meant) found = multiplyAt(one, rest, factor) || found;
+  if (access.type == Access::Type::numbers && access.count == 0) {
+    double& number = *static_cast<double*>(value);
+    found = number != 0.0;
+    number *= factor;
+  } else if (access.type == Access::Type::list) {
+    for (std::size_t i = 0; i < access.items(value); ++i) {
+      void* const item = access.itemAt(value, i);
+      if (name == "*" || name == nameOfItem(access.item->record(), item))
+        found = multiplyAt(*access.item, item, rest, factor) || found;
     }
-  } else if constexpr (HasFields<T>) {
-    const auto visit = [&](const char* field, auto& member) {
-      if (name == field) found = multiplyAt(member, rest, factor);
-    };
-    T::fields(part, visit);
+  } else if (access.type == Access::Type::record) {
+    for (const Field& field : access.record().fields) {
+      const bool isThere = field.value.get != nullptr && (field.value.has == nullptr || field.value.has(value));
+      if (isThere && (name == "*" || name == field.name))
+        found = multiplyAt(field.value, field.value.get(value), rest, factor) || found;
+    }
   }
   return found;
 }
@@ -232,7 +233,7 @@ bool SceneConstant::multiply(SceneDescription& scene, double factor) const {
   if (name == bedStrength) {
     for (ConnectiveDescription& bed : scene.connective) bed.fractureEnergy *= factor * factor;
   }
-  return multiplyAt(scene, name, factor);
+  return multiplyAt({.type = Access::Type::record, .record = &recordOf<SceneDescription>}, &scene, name, factor);
 }
 
 const std::vector<SceneConstant>& sceneConstants() {
