@@ -57,8 +57,9 @@ TEST(Design, ConstantsLeadToTheNumbersThatTheyName) {
   SceneDescription scene;
   for (const char* name : {"liver", "gallbladder"}) scene.organs.emplace_back().name = name;
   for (OrganDescription& organ : scene.organs) organ.burnThrough = 2.0;
-  scene.vessels.emplace_back();
-  scene.connective.emplace_back();
+  scene.vessels.emplace_back().burnThrough = 1.0;
+  ConnectiveDescription& bed = scene.connective.emplace_back();
+  for (double* constant : {&bed.stiffness, &bed.damping, &bed.strength, &bed.fadeTime}) *constant = 1.0;
   scene.fat.emplace_back().attachments.emplace_back().stiffness = 3.0;
   scene.retraction.emplace_back();
   const SceneDescription before = scene;
