@@ -55,19 +55,19 @@ Error databaseError(int sqliteCode, const std::string& words, const std::string&
 
 namespace {
 
-using Access = CohortDatabase::Access;
+using CohortAccess = CohortDatabase::Access;
 
 /// Refuses files that SQLite would silently treat as an empty database.
-void checkFile(const std::string& path, Access access) {
+void checkFile(const std::string& path, CohortAccess access) {
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
   const auto refuse = [&](const char* fault) { throw Error(ErrorKind::damaged, Where{path}, fault); };
   if (!std::filesystem::exists(status)) {
-    if (access != Access::create) refuse("no such cohort database");
+    if (access != CohortAccess::create) refuse("no such cohort database");
     return;
   }
   if (!std::filesystem::is_regular_file(status)) refuse("not a cohort database (not a file)");
-  if (access != Access::create && std::filesystem::file_size(path, error) == 0)
+  if (access != CohortAccess::create && std::filesystem::file_size(path, error) == 0)
     refuse("not a cohort database (empty file)");
 }
 
@@ -84,9 +84,9 @@ std::string uriOf(const std::string& path) {
   return uri + "?immutable=1";
 }
 
-std::unique_ptr<SQLite::Database> connect(const std::string& path, Access access, int patience) {
-  if (access != Access::read) {
-    const int create = access == Access::create ? SQLite::OPEN_CREATE : 0;
+std::unique_ptr<SQLite::Database> connect(const std::string& path, CohortAccess access, int patience) {
+  if (access != CohortAccess::read) {
+    const int create = access == CohortAccess::create ? SQLite::OPEN_CREATE : 0;
     return std::make_unique<SQLite::Database>(path, SQLite::OPEN_READWRITE | create, patience);
   }
   auto db = std::make_unique<SQLite::Database>(path, SQLite::OPEN_READONLY, patience);
@@ -191,7 +191,7 @@ void migrate(SQLite::Database& db, const std::string& path) {
 
 }  // namespace
 
-std::unique_ptr<SQLite::Database> openCohort(const std::string& path, Access access,
+std::unique_ptr<SQLite::Database> openCohort(const std::string& path, CohortAccess access,
                                              std::chrono::milliseconds patience) {
   return guarded(path, [&] {
     checkFile(path, access);
@@ -203,7 +203,7 @@ std::unique_ptr<SQLite::Database> openCohort(const std::string& path, Access acc
       return schemaOf(*db, path);
     }();
     const int known = static_cast<int>(cohortMigrations().size());
-    if (access == Access::read) {
+    if (access == CohortAccess::read) {
       if (version == 0) throw Error(ErrorKind::damaged, Where{path}, "not a cohort database (no tables)");
       if (version < known) {
         throw Error(ErrorKind::failure, Where{path},
@@ -212,7 +212,7 @@ std::unique_ptr<SQLite::Database> openCohort(const std::string& path, Access acc
       }
       return db;
     }
-    if (version == 0 && access != Access::create) {
+    if (version == 0 && access != CohortAccess::create) {
       throw Error(ErrorKind::damaged, Where{path}, "not a cohort database (no tables)");
     }
     if (sqlite3_db_readonly(db->getHandle(), "main") == 1) throw databaseError(SQLITE_READONLY, "", path);

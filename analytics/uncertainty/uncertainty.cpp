@@ -193,21 +193,21 @@ std::string nameOfItem(const Record& record, void* object) {
 
 /// Multiplies what a path of fields, of names of a list's items, or of * for each leads to.
 /// @returns whether there is such a number other than 0
-bool multiplyAt(const Access& access, void* value, std::string_view path, double factor) {
+bool multiplyAt(const calot::Access& access, void* value, std::string_view path, double factor) {
   const std::size_t end = std::min(path.find('.'), path.size());
   const std::string_view name = path.substr(0, end), rest = path.substr(std::min(end + 1, path.size()));
   bool found = false;
-  if (access.type == Access::Type::numbers && access.count == 0) {
+  if (access.type == calot::Access::Type::numbers && access.count == 0) {
     double& number = *static_cast<double*>(value);
     found = number != 0.0;
     number *= factor;
-  } else if (access.type == Access::Type::list) {
+  } else if (access.type == calot::Access::Type::list) {
     for (std::size_t i = 0; i < access.items(value); ++i) {
       void* const item = access.itemAt(value, i);
       if (name == "*" || name == nameOfItem(access.item->record(), item))
         found = multiplyAt(*access.item, item, rest, factor) || found;
     }
-  } else if (access.type == Access::Type::record) {
+  } else if (access.type == calot::Access::Type::record) {
     for (const Field& field : access.record().fields) {
       const bool isThere = field.value.get != nullptr && (field.value.has == nullptr || field.value.has(value));
       if (isThere && (name == "*" || name == field.name))
@@ -233,7 +233,8 @@ bool SceneConstant::multiply(SceneDescription& scene, double factor) const {
   if (name == bedStrength) {
     for (ConnectiveDescription& bed : scene.connective) bed.fractureEnergy *= factor * factor;
   }
-  return multiplyAt({.type = Access::Type::record, .record = &recordOf<SceneDescription>}, &scene, name, factor);
+  return multiplyAt({.type = calot::Access::Type::record, .record = &calot::recordOf<SceneDescription>}, &scene, name,
+                    factor);
 }
 
 const std::vector<SceneConstant>& sceneConstants() {
