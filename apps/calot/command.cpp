@@ -45,6 +45,19 @@ void print(const std::string& text) {
 
 }  // namespace
 
+Json jsonOf(const analytics::Fields& fields) {
+  Json object;
+  for (const auto& [name, value] : fields) {
+    Json& member = object[name];
+    std::visit(
+        [&](const auto& v) {
+          if constexpr (!std::is_same_v<std::remove_cvref_t<decltype(v)>, std::monostate>) member = v;
+        },
+        value);
+  }
+  return object;
+}
+
 Json resultOf(std::string_view what, const Json& body) {
   Json result{{"schema", fmt::format("calot-{}", what)}, {"version", resultVersion}};
   for (const auto& member : body.items()) result[member.key()] = member.value();

@@ -16,6 +16,7 @@
 #include <utility>
 #include <vector>
 
+#include "analytics/cohort/cohort_database.h"
 #include "analytics/report/report_document.h"
 #include "apps/calot/environment.h"
 #include "apps/common/program.h"
@@ -132,6 +133,9 @@ inline CLI::Option* addThreads(CLI::App& command, unsigned& count, const std::st
 
 /// The value of an option that the command line has, which may be empty: --group "" takes a group away.
 std::optional<std::string> givenOf(const CLI::App& command, const std::string& option, const std::string& value);
+
+/// A row of a cohort as an object.
+[[nodiscard]] Json jsonOf(const analytics::Fields& fields);
 
 /// Head of every result: {"schema": "calot-<what>", "version": N}. The version is raised when a member
 /// changes its meaning or goes; new members alone do not raise it.
