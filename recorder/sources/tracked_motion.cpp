@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+#include "recorder/base/record_reader.h"
 #include "recorder/sources/tracked_motion.h"
 
 #include <fmt/format.h>
