@@ -23,7 +23,7 @@ struct DeclaredDocument {
 };
 
 /// Names are printed, and typed.
-inline constexpr TextRule plainName{maxName, "[A-Za-z0-9_.-]+",
+inline constexpr TextRule plainName{maxName, "^[A-Za-z0-9_.-]+$",
                                     "a name of letters, digits, points, hyphens and underscores is wanted"};
 inline constexpr TextRule anyName{maxName}, anyText{maxText};
 
