@@ -7,6 +7,8 @@
 #include <cassert>
 #include <cmath>
 
+#include "sim/math/record.h"
+
 namespace calot::analytics {
 namespace {
 
@@ -73,116 +75,97 @@ SceneDescription perturbed(const SceneDescription& scene, std::size_t run) {
 
 namespace {
 
-/// One of an organ.
-SceneConstant ofOrgan(const std::string& organ, const std::string& name,
-                      const std::function<double&(OrganDescription&)>& of) {
-  return {fmt::format("organs.{}.{}", organ, name), [organ, of](SceneDescription& scene, double factor) {
-            const auto found =
-                std::find_if(scene.organs.begin(), scene.organs.end(), [&](const auto& o) { return o.name == organ; });
-            if (found == scene.organs.end() || of(*found) == 0.0) return false;
-            of(*found) *= factor;
-            return true;
-          }};
+using Use = std::function<void(double&)>;
+
+void useNumbers(const Record& record, void* object, std::string_view path, const Use& use);
+
+/// Does a part of a path name this item of a list, or every one?
+bool isNamed(std::string_view part, const Access& item, void* object) {
+  if (part == "*") return true;
+  const std::vector<Field>& fields = item.record().fields;
+  const auto name =
+      std::find_if(fields.begin(), fields.end(), [](const Field& f) { return f.name == std::string("name"); });
+  return name != fields.end() && *static_cast<const std::string*>(name->value.get(object)) == part;
 }
 
-/// One of every element of a list.
-template <class Part>
-SceneConstant ofEach(const std::string& name, std::vector<Part> SceneDescription::*list,
-                     const std::function<double&(Part&)>& of) {
-  return {name, [list, of](SceneDescription& scene, double factor) {
-            for (Part& part : scene.*list) of(part) *= factor;
-            return !(scene.*list).empty();
-          }};
-}
-
-SceneConstant ofHands(const std::string& name, double HandDescription::*member) {
-  return {"hands.*." + name, [member](SceneDescription& scene, double factor) {
-            for (HandDescription& hand : scene.hands) hand.*member *= factor;
-            return true;
-          }};
-}
-
-SceneConstant ofCautery(const std::string& name, double CauteryDescription::*member) {
-  return {"cautery." + name, [member](SceneDescription& scene, double factor) {
-            scene.cautery.*member *= factor;
-            return true;
-          }};
-}
-
-void addOrgans(std::vector<SceneConstant>& all) {
-  using Organ = OrganDescription;
-  for (const char* organ : {"liver", "gallbladder"}) {
-    all.push_back(ofOrgan(organ, "material.youngModulus", [](Organ& o) -> double& { return o.material.youngModulus; }));
-    all.push_back(
-        ofOrgan(organ, "material.stiffnessDamping", [](Organ& o) -> double& { return o.material.stiffnessDamping; }));
-    all.push_back(ofOrgan(organ, "material.density", [](Organ& o) -> double& { return o.material.density; }));
-    all.push_back(ofOrgan(organ, "friction", [](Organ& o) -> double& { return o.friction; }));
-    all.push_back(ofOrgan(organ, "burnThrough", [](Organ& o) -> double& { return o.burnThrough; }));
+void useNumbers(const Access& access, void* value, std::string_view path, const Use& use) {
+  if (access.type == Access::Type::numbers) {
+    use(*static_cast<double*>(value));
+  } else if (access.type == Access::Type::record) {
+    useNumbers(access.record(), value, path, use);
+  } else if (access.type == Access::Type::list) {
+    const std::string_view part = path.substr(0, path.find('.'));
+    for (std::size_t i = 0; i < access.items(value); ++i) {
+      void* const item = access.itemAt(value, i);
+      if (isNamed(part, *access.item, item)) useNumbers(*access.item, item, path.substr(part.size() + 1), use);
+    }
   }
-  // Times 0.5 - nu, which compressibility goes with: nu itself may not reach one half.
-  all.push_back({"organs.*.material.poissonRatio (0.5 - nu)", [](SceneDescription& scene, double factor) {
-                   for (Organ& organ : scene.organs) {
-                     organ.material.poissonRatio = 0.5 - factor * (0.5 - organ.material.poissonRatio);
-                   }
-                   return true;
-                 }});
 }
 
-void addBed(std::vector<SceneConstant>& all) {
-  using Bed = ConnectiveDescription;
-  const auto list = &SceneDescription::connective;
-  all.push_back(ofEach<Bed>("connective.*.stiffness", list, [](Bed& b) -> double& { return b.stiffness; }));
-  all.push_back(ofEach<Bed>("connective.*.damping", list, [](Bed& b) -> double& { return b.damping; }));
-  // With the share of the fracture's energy that is stored when it begins, sigma^2 / (2 k G_c), as it was.
-  all.push_back({"connective.*.strength", [](SceneDescription& scene, double factor) {
-                   for (Bed& bed : scene.connective) {
-                     bed.strength *= factor;
-                     bed.fractureEnergy *= factor * factor;
-                   }
-                   return !scene.connective.empty();
-                 }});
-  all.push_back(ofEach<Bed>("connective.*.fadeTime", list, [](Bed& b) -> double& { return b.fadeTime; }));
+/// Visits the numbers that a path of keys of a scene file leads to; "*" is every key, or every item.
+void useNumbers(const Record& record, void* object, std::string_view path, const Use& use) {
+  const std::string_view key = path.substr(0, path.find('.'));
+  const std::string_view rest = path.substr(std::min(key.size() + 1, path.size()));
+  for (const Field& field : record.fields) {
+    if ((key == "*" || key == field.name) && field.value.get != nullptr)
+      useNumbers(field.value, field.value.get(object), rest, use);
+  }
 }
 
-void addVesselsAndFat(std::vector<SceneConstant>& all) {
-  using Vessel = VesselDescription;
-  using Fat = FatDescription;
-  const auto vessels = &SceneDescription::vessels;
-  all.push_back(ofEach<Vessel>("vessels.*.material.youngModulus", vessels,
-                               [](Vessel& v) -> double& { return v.material.youngModulus; }));
-  all.push_back(ofEach<Vessel>("vessels.*.wall", vessels, [](Vessel& v) -> double& { return v.wall; }));
-  all.push_back(
-      ofEach<Vessel>("vessels.*.ultimateStrain", vessels, [](Vessel& v) -> double& { return v.ultimateStrain; }));
-  all.push_back(ofEach<Vessel>("vessels.*.burnThrough", vessels, [](Vessel& v) -> double& { return v.burnThrough; }));
-  all.push_back(ofEach<Vessel>("vessels.*.friction", vessels, [](Vessel& v) -> double& { return v.friction; }));
-  all.push_back(ofEach<Fat>("fat.*.material.youngModulus", &SceneDescription::fat,
-                            [](Fat& f) -> double& { return f.material.youngModulus; }));
-  all.push_back(ofEach<Fat>("fat.*.friction", &SceneDescription::fat, [](Fat& f) -> double& { return f.friction; }));
-  all.push_back({"fat.*.attachments.*.stiffness", [](SceneDescription& scene, double factor) {
-                   for (Fat& fat : scene.fat) {
-                     for (FatAttachmentDescription& attachment : fat.attachments) attachment.stiffness *= factor;
-                   }
-                   return !scene.fat.empty();
-                 }});
+/// Multiplies the numbers of a path. @returns false where none differs from 0
+bool multiplyAll(SceneDescription& scene, std::string_view path, double factor) {
+  bool changed = false;
+  useNumbers(recordOf<SceneDescription>(), &scene, path, [&](double& number) {
+    changed = changed || number != 0.0;
+    number *= factor;
+  });
+  return changed;
 }
 
 std::vector<SceneConstant> listed() {
   std::vector<SceneConstant> all;
-  addOrgans(all);
-  addBed(all);
-  addVesselsAndFat(all);
-  all.push_back(ofEach<RetractionDescription>("retraction.*.stiffness", &SceneDescription::retraction,
-                                              [](RetractionDescription& r) -> double& { return r.stiffness; }));
-  all.push_back(ofHands("couplingStiffness", &HandDescription::couplingStiffness));
-  all.push_back(ofHands("slipForce", &HandDescription::slipForce));
-  all.push_back(ofHands("tearForce", &HandDescription::tearForce));
-  all.push_back(ofCautery("power", &CauteryDescription::power));
-  all.push_back(ofCautery("reach", &CauteryDescription::reach));
-  all.push_back(ofCautery("recession", &CauteryDescription::recession));
-  all.push_back(ofCautery("coagulationPace", &CauteryDescription::coagulationPace));
-  all.push_back(ofCautery("cutChar", &CauteryDescription::cutChar));
-  all.push_back(ofCautery("spot", &CauteryDescription::spot));
-  all.push_back(ofCautery("charTime", &CauteryDescription::charTime));
+  const auto add = [&](const std::string& path) {
+    all.push_back({path, [path](SceneDescription& scene, double factor) { return multiplyAll(scene, path, factor); }});
+  };
+  for (const char* organ : {"liver", "gallbladder"}) {
+    for (const char* key :
+         {"material.youngModulus", "material.stiffnessDamping", "material.density", "friction", "burnThrough"})
+      add(fmt::format("organs.{}.{}", organ, key));
+  }
+  // Times 0.5 - nu, which compressibility goes with: nu itself may not reach one half.
+  all.push_back({"organs.*.material.poissonRatio (0.5 - nu)", [](SceneDescription& scene, double factor) {
+                   useNumbers(recordOf<SceneDescription>(), &scene, "organs.*.material.poissonRatio",
+                              [&](double& nu) { nu = 0.5 - factor * (0.5 - nu); });
+                   return true;
+                 }});
+  // With the share of the fracture's energy that is stored when it begins, sigma^2 / (2 k G_c), as it was.
+  all.push_back({"connective.*.strength", [](SceneDescription& scene, double factor) {
+                   multiplyAll(scene, "connective.*.fractureEnergy", factor * factor);
+                   return multiplyAll(scene, "connective.*.strength", factor);
+                 }});
+  for (const char* path : {"connective.*.stiffness",
+                           "connective.*.damping",
+                           "connective.*.fadeTime",
+                           "vessels.*.material.youngModulus",
+                           "vessels.*.wall",
+                           "vessels.*.ultimateStrain",
+                           "vessels.*.burnThrough",
+                           "vessels.*.friction",
+                           "fat.*.material.youngModulus",
+                           "fat.*.friction",
+                           "fat.*.attachments.*.stiffness",
+                           "retraction.*.stiffness",
+                           "hands.*.couplingStiffness",
+                           "hands.*.slipForce",
+                           "hands.*.tearForce",
+                           "cautery.power",
+                           "cautery.reach",
+                           "cautery.recession",
+                           "cautery.coagulationPace",
+                           "cautery.cutChar",
+                           "cautery.spot",
+                           "cautery.charTime"})
+    add(path);
   return all;
 }
 
