@@ -15,7 +15,7 @@
 #include "analytics/assessment/protocol.h"
 #include "analytics/assessment/rating_form.h"
 #include "gui/trainer/course.h"
-#include "recorder/formats/scene_surface.h"
+#include "recorder/formats/scene_assets.h"
 #include "recorder/sources/column_map.h"
 #include "recorder/sources/devices/calibration.h"
 #include "recorder/sources/performer_profile.h"
