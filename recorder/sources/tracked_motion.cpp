@@ -153,7 +153,7 @@ constexpr double maxMotion = 1e6;  // s
 constexpr double unitLength = 1e-2;
 constexpr double root = 0.70710678118654752440;  // of 1/2
 
-constexpr TextRule columnName{200}, word{60, "[!-~]+", "a word without blanks is wanted"};
+constexpr TextRule columnName{200}, word{60, "^[!-~]+$", "a word without blanks is wanted"};
 
 const FieldWords lengths{{"m", 0}, {"cm", 1}, {"mm", 2}}, times{{"s", 0}, {"ms", 1}, {"us", 2}, {"ns", 3}},
     axes{{"z", 0}, {"-z", 1}, {"x", 2}, {"-x", 3}, {"y", 4}, {"-y", 5}};
