@@ -2,7 +2,6 @@
 #pragma once
 
 #include "gui/attempt/background.h"
-#include "gui/dashboard/cohort_document.h"
 #include "gui/dashboard/comparison.h"
 #include "gui/dashboard/page_parts.h"
 

@@ -9,7 +9,6 @@
 
 #include "analytics/assessment/rating_form.h"
 #include "analytics/cohort/assessment_database.h"
-#include "gui/dashboard/cohort_document.h"
 #include "gui/dashboard/page_parts.h"
 #include "gui/dashboard/recording_view.h"
 
