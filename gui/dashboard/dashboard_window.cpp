@@ -107,7 +107,7 @@ DashboardWindow::DashboardWindow(const AssessProgram& program, const std::vector
   layout->addWidget(problem_);
   layout->addWidget(stack_, 1);
   setCentralWidget(centre);
-  rating_->setForms(readForms(assetFolders));
+  rating_->readForms(assetFolders);
   buildImport();
   buildMenus();
   connectPages();
