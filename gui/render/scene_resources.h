@@ -42,14 +42,13 @@ class ScenePrograms {
   /// The lit surface in one look.
   [[nodiscard]] const ShaderProgram& surface(const DrawPart& part);
 
-  const ShaderProgram shadow, prepass, surround, sheet, smoke, occlusion, backdrop, blur, compose;
-
  private:
   const GlFunctions& gl_;
-  const char* choices_;
+  const char* choices_;  ///< of the quality
   std::map<std::pair<int, bool>, std::unique_ptr<ShaderProgram>> surface_;
 
-  ScenePrograms(const GlFunctions& gl, const char* choices);
+ public:
+  const ShaderProgram shadow, prepass, surround, sheet, smoke, occlusion, backdrop, blur, compose;
 };
 
 /// Use of each texture unit.
