@@ -14,7 +14,7 @@
 
 #include "gui/film/film_writer.h"
 #include "gui/film/look_ahead.h"
-#include "gui/film/moment_track.h"
+#include "gui/film/overlay.h"
 #include "gui/render/image.h"
 #include "gui/render/renderer.h"
 #include "recorder/base/errors.h"
