@@ -14,7 +14,7 @@
 #include "analytics/checkpoints/collector.h"
 #include "gui/film/lettering.h"
 #include "gui/render/image.h"
-#include "gui/render/smoke.h"
+#include "gui/render/translucent.h"
 #include "gui/words/event_words.h"
 #include "recorder/recorded_results.h"
 #include "recorder/recording/reader.h"

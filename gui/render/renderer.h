@@ -9,7 +9,7 @@
 
 #include "gui/render/graphics.h"
 #include "gui/render/image.h"
-#include "gui/render/smoke.h"
+#include "gui/render/translucent.h"
 #include "sim/scene/scene_view.h"
 
 namespace calot::gui {

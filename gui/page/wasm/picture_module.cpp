@@ -12,7 +12,7 @@
 #include "gui/page/wasm/web_context.h"
 #include "gui/render/draw_list.h"
 #include "gui/render/scene_painter.h"
-#include "gui/render/smoke.h"
+#include "gui/render/translucent.h"
 #include "gui/render/view_check.h"
 #include "recorder/engine/wire.h"
 #include "recorder/engine/wire_forms.h"
