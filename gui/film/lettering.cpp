@@ -3,7 +3,6 @@
 
 #include <ft2build.h>
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <vector>
 
