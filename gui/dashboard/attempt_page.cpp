@@ -170,7 +170,7 @@ void AttemptPage::clear() {
   reader_->stop();
   replay_->close();
   banner_->showText("Choose an attempt on the page Attempts: double-click it, or press Enter.");
-  summary_->clear();
+  summary_->hide();
   figures_->clear();
   picture_->showText("No attempt is chosen.");
   find_->hide();

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "gui/render/translucent.h"
 
 #include <algorithm>
@@ -190,20 +189,19 @@ constexpr double densest = 0.45;                      // opacity
 }  // namespace
 
 void SmokeTrail::add(double time, std::span<const Event> events) {
-  while (!source_.empty() && source_.front().time < time - smokeSeconds) source_.pop_front();
+  while (!puff_.empty() && -puff_.front().age < time - smokeSeconds) puff_.pop_front();
   std::uint32_t nth = 0;
   for (const Event& event : events) {
     if (event.kind != EventKind::smoke) continue;
     const auto number = static_cast<std::uint32_t>(event.step) * 8U + nth++;
-    source_.push_back({event.position, time, std::sqrt(std::clamp(event.value / fullEnergy, 0.0, 1.0)), number});
+    puff_.push_back({event.position, -time, std::sqrt(std::clamp(event.value / fullEnergy, 0.0, 1.0)), number});
   }
 }
 
 std::vector<Puff> SmokeTrail::at(double time) const {
-  std::vector<Puff> puffs;
-  for (const Source& source : source_)
-    if (const double age = time - source.time; age < smokeSeconds)
-      puffs.push_back({source.p_W, age, source.strength, source.number});
+  std::vector<Puff> puffs(puff_.begin(), puff_.end());
+  for (Puff& puff : puffs) puff.age += time;
+  std::erase_if(puffs, [](const Puff& puff) { return puff.age >= smokeSeconds; });
   return puffs;
 }
 

@@ -55,12 +55,7 @@ class SmokeTrail {
   [[nodiscard]] std::vector<Puff> at(double time) const;
 
  private:
-  struct Source {
-    Vec3 p_W = Vec3::Zero();
-    double time = 0.0, strength = 0.0;
-    std::uint32_t number = 0;
-  };
-  std::deque<Source> source_;
+  std::deque<Puff> puff_;  ///< their ages at time 0: those not yet there are below it
 };
 
 /// A corner of a puff's square, which faces the camera.

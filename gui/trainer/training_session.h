@@ -15,7 +15,6 @@
 #include <vector>
 
 #include "gui/trainer/attempt_monitor.h"
-#include "gui/trainer/picture_timing.h"
 #include "recorder/formats/scene_file.h"
 #include "recorder/live/wrapped_sources.h"
 #include "recorder/loop.h"
