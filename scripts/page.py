@@ -31,14 +31,14 @@ LINK = ["--target=wasm32-wasi", "-mexec-model=reactor", "-O2", "-Wl,-s", f"-Wl,-
 FOREIGN = {**engine.FOREIGN, "GL": "GL", "KHR": "KHR"}
 # What each module consists of: patterns of files, "-" leaves some out.
 MODULES = {
-    "proof": ["gui/page/wasm/thrown.cpp", "gui/page/wasm/proof_module.cpp", "gui/page/wasm/blake2b.cpp", "recorder/recording/keyframe_code.cpp", "sim/math/fields.cpp"],
+    "proof": ["gui/page/wasm/thrown.cpp", "gui/page/wasm/proof_module.cpp", "recorder/recording/keyframe_code.cpp", "sim/math/fields.cpp"],
     "judge": ["gui/page/wasm/thrown.cpp", "gui/page/wasm/judge_module.cpp", "gui/words/event_words.cpp", "analytics/checkpoints/phases.cpp",
-              "sim/judgement/judge.cpp", "recorder/engine/wire_forms.cpp", "sim/instruments/*.cpp", "sim/math/*.cpp", "sim/geometry/*.cpp",
+              "sim/judgement/judge.cpp", "recorder/engine/wire.cpp", "sim/instruments/*.cpp", "sim/math/*.cpp", "sim/geometry/*.cpp",
               "sim/scene/step_result.cpp", "sim/tissue/connective/connective_kind.cpp",
               *[p for p in source_patterns(ROOT, "module") if "recorder/formats/" in p or "recorder/base/" in p]],
-    "picture": ["gui/page/wasm/thrown.cpp", "gui/page/wasm/web_context.cpp", "gui/page/wasm/picture_module.cpp", "gui/render/*.cpp",
+    "picture": ["gui/page/wasm/thrown.cpp", "gui/page/wasm/picture_module.cpp", "gui/render/*.cpp",
                 "- gui/render/graphics.cpp", "- gui/render/image.cpp",
-                "- gui/render/renderer.cpp", "recorder/engine/wire_forms.cpp", "sim/instruments/*.cpp", "sim/math/*.cpp"],
+                "- gui/render/renderer.cpp", "recorder/engine/wire.cpp", "sim/instruments/*.cpp", "sim/math/*.cpp"],
 }
 POLICY = ("default-src 'none'; script-src 'sha256-{script}' 'wasm-unsafe-eval'; style-src 'sha256-{style}'; worker-src blob:; img-src data:; "
           "connect-src 'none'; base-uri 'none'; form-action 'none'")

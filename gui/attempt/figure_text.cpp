@@ -7,10 +7,9 @@
 #include <QLocale>
 #include <QTimeZone>
 
-#include "analytics/checkpoints/registry.h"
-#include "analytics/report/report_text.h"
+#include "analytics/checkpoints/checkpoint.h"
+#include "analytics/report/report_document.h"
 #include "gui/attempt/theme.h"
-#include "recorder/words.h"
 
 namespace calot::gui {
 

@@ -11,8 +11,8 @@
 #include <string_view>
 #include <vector>
 
+#include "analytics/checkpoints/checkpoint.h"
 #include "analytics/checkpoints/phases.h"
-#include "analytics/checkpoints/registry.h"
 #include "recorder/base/errors.h"
 #include "recorder/formats/scene_file.h"
 #include "recorder/recording/layout.h"

@@ -9,7 +9,6 @@
 #include <string_view>
 
 #include "gui/words/event_words.h"
-#include "recorder/words.h"
 #include "sim/instruments/instruments.h"
 
 namespace calot::gui {

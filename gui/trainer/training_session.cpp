@@ -17,7 +17,6 @@
 #include "recorder/sources/devices/device_source.h"
 #include "recorder/sources/devices/mouse_device.h"
 #include "recorder/sources/scope/scope_source.h"
-#include "recorder/words.h"
 
 namespace calot::gui {
 namespace {

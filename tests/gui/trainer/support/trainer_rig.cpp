@@ -8,8 +8,8 @@
 
 #include "recorder/base/errors.h"
 #include "recorder/replay.h"
+#include "recorder/sources/devices/device_script.h"
 #include "recorder/sources/devices/device_source.h"
-#include "recorder/sources/devices/scripted_device.h"
 
 namespace calot::gui::trainertest {
 
