@@ -23,9 +23,9 @@ bool isTissue(Appearance a) { return a < Appearance::insulation && !isSurroundin
 
 }  // namespace
 
-bool LooksDrawn::note(const DrawList& list, const RenderSettings& settings) {
+bool noteLooks(LooksDrawn& drawn, const DrawList& list, const RenderSettings& settings) {
   bool isNew = false;
-  const auto add = [&](int look) { isNew = drawn_.insert({settings.quality, look}).second || isNew; };
+  const auto add = [&](int look) { isNew = drawn.insert({settings.quality, look}).second || isNew; };
   for (const DrawPart& part : list.part) add(lookOf(part));
   if (!list.sheets.index.empty()) add(sheetLook);
   if (!list.smoke.index.empty()) add(smokeLook);
