@@ -149,16 +149,11 @@ void CohortWriter::write(const std::string& database, Change change, std::functi
       change(cohort);
     });
     if (!fault.isEmpty()) undone();
-    back->pass([&](CohortWriter& writer) {
-      QMetaObject::invokeMethod(
-          &writer,
-          [&writer, fault] {
-            if (fault.isEmpty())
-              emit writer.written();
-            else
-              emit writer.failed(fault);
-          },
-          Qt::QueuedConnection);
+    Link<CohortWriter>::post(back, [fault](CohortWriter& writer) {
+      if (fault.isEmpty())
+        emit writer.written();
+      else
+        emit writer.failed(fault);
     });
   });
 }
