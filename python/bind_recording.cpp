@@ -5,6 +5,7 @@
 #include <string>
 
 #include "python/bindings.h"
+#include "recorder/recording/attribute_output.h"
 #include "recorder/recording/layout.h"
 #include "recorder/recording/probe.h"
 #include "recorder/recording/recorded_columns.h"

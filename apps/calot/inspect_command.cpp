@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "apps/calot/command.h"
+#include "recorder/recording/attribute_output.h"
 #include "recorder/recording/layout.h"
 #include "recorder/recording/probe.h"
 #include "recorder/recording/reader.h"

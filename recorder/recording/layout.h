@@ -257,27 +257,6 @@ void visitAttributes(Header& h, Visitor& visit) {
   visit("scene_minor", h.sceneMinor);
 }
 
-/// Visitor that assigns each attribute to `out[name]`: of a JSON object, of a dictionary.
-template <class Out>
-struct AttributesTo {
-  Out& out;
-
-  template <class T>
-  void operator()(const char* name, const T& value) {
-    out[name] = value;
-  }
-  template <class T>
-  void constant(const char* name, const T& value) {
-    out[name] = value;
-  }
-  template <class T, std::size_t N>
-  void choice(const char* name, const T& value, const std::array<const char*, N>& names) {
-    out[name] = names[static_cast<std::size_t>(value)];
-  }
-};
-template <class Out>
-AttributesTo(Out&) -> AttributesTo<Out>;
-
 /// Reads every visited value from one row of its column, and finds the first that no writer makes. `place(column)` is
 /// where that column's row lies.
 template <class Place>
