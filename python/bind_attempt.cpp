@@ -11,7 +11,6 @@
 #include "recorder/prepared_scene.h"
 #include "recorder/recording/writer.h"
 #include "recorder/sources/performer.h"
-#include "recorder/words.h"
 
 namespace py = pybind11;
 

@@ -6,11 +6,10 @@
 #include <string>
 
 #include "analytics/assess.h"
-#include "analytics/checkpoints/registry.h"
+#include "analytics/checkpoints/checkpoint.h"
 #include "analytics/cohort/cohort_database.h"
 #include "analytics/cohort/withdraw.h"
 #include "python/bindings.h"
-#include "recorder/words.h"
 
 namespace py = pybind11;
 
@@ -18,12 +17,11 @@ namespace calot::python {
 
 namespace {
 
-/// A value with the keys of `calot assess` in its JSON form.
-py::dict valueDict(const analytics::CheckpointValue& v) {
-  return py::dict("name"_a = v.name, "subject"_a = v.subject, "version"_a = v.version, "value"_a = v.value,
-                  "unit"_a = v.unit, "origin"_a = analytics::nameOf(v.origin), "filter"_a = v.filter,
-                  "availability"_a = analytics::nameOf(v.availability), "reason"_a = v.reason, "note"_a = v.note,
-                  "coverage"_a = v.coverage);
+/// A row by the names that `calot` gives its columns in JSON.
+py::dict dictOf(const analytics::Fields& fields) {
+  py::dict row;
+  for (const auto& [name, value] : fields) row[py::str(name)] = value;
+  return row;
 }
 
 /// Judges a recording as `calot assess` does, and stores the values where a cohort is named.
@@ -54,7 +52,7 @@ py::tuple assessed(const std::filesystem::path& file, unsigned threads, double c
     return result;
   });
   py::list values;
-  for (const analytics::CheckpointValue& v : judged.values) values.append(valueDict(v));
+  for (const analytics::CheckpointValue& v : judged.values) values.append(dictOf(fieldsOf(v)));
   return py::make_tuple(reportOf(judged.report), values);
 }
 
@@ -78,22 +76,8 @@ struct CohortReader {
   analytics::CohortDatabase database;
 };
 
-py::dict attemptDict(const analytics::AttemptRow& a) {
-  return py::dict("attempt"_a = a.uuid, "parent"_a = a.parent, "participant"_a = a.participant, "group"_a = a.group,
-                  "arm"_a = a.arm, "site"_a = a.site, "scene"_a = a.scene, "scene_major"_a = a.sceneMajor,
-                  "scene_minor"_a = a.sceneMinor, "operator"_a = recorder::wordFor(a.operatorKind),
-                  "profile"_a = a.profile, "profile_version"_a = a.profileVersion, "synthetic"_a = a.synthetic,
-                  "mode"_a = recorder::wordFor(a.mode), "purpose"_a = a.purpose,
-                  "outcome"_a = recorder::wordFor(a.outcome), "start_utc"_a = a.startUtc, "seed"_a = a.seed,
-                  "device"_a = a.device, "station"_a = a.station, "simulation_version"_a = a.simulationVersion,
-                  "key"_a = a.comparabilityKey, "file"_a = a.fileName, "complete"_a = a.complete,
-                  "seconds"_a = static_cast<double>(a.steps) * a.stepSeconds,
-                  "verdict"_a = analytics::nameOf(a.verification.verdict), "excluded"_a = a.excluded,
-                  "withdrawn"_a = a.withdrawn, "tags"_a = a.tags);
-}
-
 py::dict cohortValueDict(const analytics::AttemptValue& v) {
-  py::dict row = valueDict(v.value);
+  py::dict row = dictOf(fieldsOf(v.value));
   const bool bounded = v.interval && v.interval->lower;
   row["attempt"] = v.attempt;
   row["lower"] = bounded ? v.interval->lower : std::nullopt;
@@ -101,9 +85,9 @@ py::dict cohortValueDict(const analytics::AttemptValue& v) {
   return row;
 }
 
-py::dict participantDict(const analytics::Participant& p) {
-  return py::dict("participant"_a = p.pseudonym, "group"_a = p.group, "arm"_a = p.arm, "site"_a = p.site,
-                  "experience"_a = p.experience, "consent"_a = p.consent);
+template <class Row>
+py::dict rowDict(const Row& row) {
+  return dictOf(fieldsOf(row));
 }
 
 /// Rows of the cohort as a list of dicts.
@@ -127,9 +111,9 @@ void bindCohort(py::module_& m) {
   m.def("checkpoints", checkpoints, "What is known of every checkpoint.");
   py::class_<CohortReader>(m, "Cohort", "A cohort's database, opened for reading.")
       .def(py::init<const std::filesystem::path&>(), "path"_a, py::call_guard<py::gil_scoped_release>())
-      .def("attempts", listOf([](const auto& d) { return d.listAttempts(); }, attemptDict))
+      .def("attempts", listOf([](const auto& d) { return d.listAttempts(); }, rowDict<analytics::AttemptRow>))
       .def("values", listOf([](const auto& d) { return d.allValues(); }, cohortValueDict))
-      .def("participants", listOf([](const auto& d) { return d.participants(); }, participantDict));
+      .def("participants", listOf([](const auto& d) { return d.participants(); }, rowDict<analytics::Participant>));
   m.def("record_export", analytics::recordExport, "cohort"_a, "kind"_a, "target"_a, "attempts"_a,
         py::call_guard<py::gil_scoped_release>(),
         "Registers in a cohort an export of attempts to a file or folder, so that a withdrawal lists it.");

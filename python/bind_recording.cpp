@@ -5,11 +5,9 @@
 #include <string>
 
 #include "python/bindings.h"
-#include "recorder/recording/attribute_output.h"
 #include "recorder/recording/layout.h"
 #include "recorder/recording/probe.h"
 #include "recorder/recording/recorded_columns.h"
-#include "recorder/words.h"
 
 namespace py = pybind11;
 
@@ -52,8 +50,8 @@ class OpenedRecording {
 
 py::dict headerOf(const OpenedRecording& opened) {
   py::dict out;
-  recorder::AttributesTo visit{out};
-  recorder::visitAttributes(opened.recording().header(), visit);
+  recorder::forEachAttribute(opened.recording().header(),
+                             [&](const char* name, const auto& value) { out[name] = value; });
   return out;
 }
 

@@ -10,7 +10,6 @@
 #include "recorder/engine/state_fields.h"
 #include "recorder/prepared_scene.h"
 #include "recorder/recording/probe.h"
-#include "recorder/replay_words.h"
 #include "sim/math/executor.h"
 
 namespace py = pybind11;

@@ -5,7 +5,6 @@
 
 #include "analytics/cohort/cohort_database.h"
 #include "apps/calot/command.h"
-#include "recorder/words.h"
 
 namespace calot::apps {
 namespace {
@@ -27,15 +26,17 @@ bool isAsked(const AttemptRow& a, const AttemptFilter& o) {
 
 std::string whoOf(const AttemptRow& a) { return a.participant.empty() ? a.profile : a.participant; }
 
-Json jsonOf(const AttemptRow& a) {
-  return {{"attempt", a.uuid},        {"participant", a.participant},
-          {"group", a.group},         {"synthetic", a.synthetic},
-          {"profile", a.profile},     {"scene", a.scene},
-          {"mode", wordFor(a.mode)},  {"outcome", wordFor(a.outcome)},
-          {"start_utc", a.startUtc},  {"seconds", static_cast<double>(a.steps) * a.stepSeconds},
-          {"file", a.fileName},       {"verdict", nameOf(a.verification.verdict)},
-          {"excluded", a.excluded},   {"exclusion_reason", a.exclusionReason},
-          {"withdrawn", a.withdrawn}, {"tags", a.tags}};
+Json jsonOf(const analytics::Fields& fields) {
+  Json object;
+  for (const auto& [name, value] : fields) {
+    Json& member = object[name];
+    std::visit(
+        [&](const auto& v) {
+          if constexpr (!std::is_same_v<std::remove_cvref_t<decltype(v)>, std::monostate>) member = v;
+        },
+        value);
+  }
+  return object;
 }
 
 /// Beginnings of the uuids, as long as it takes to distinguish all of the database: what other commands accept.
@@ -55,18 +56,18 @@ std::size_t distinctLength(const std::vector<AttemptRow>& rows) {
 void listAttempts(const AttemptFilter& o) {
   const std::vector<AttemptRow> rows = analytics::CohortDatabase(o.cohort, Access::read).listAttempts();
   const std::size_t length = distinctLength(rows);
-  analytics::TextTable table =
-      tableOf({"attempt", "who", "group", "scene", "day (UTC)", ">seconds", "outcome", "verdict", "tags"});
+  analytics::ReportTable table = analytics::tableOf(
+      "", {"=attempt", "=who", "=group", "=scene", "=day (UTC)", "seconds", "=outcome", "=verdict", "=tags"});
   std::string notes;
   std::size_t synthetic = 0;
   Json list = Json::array();
   for (const AttemptRow& a : rows) {
     if (!isAsked(a, o)) continue;
-    list.push_back(jsonOf(a));
+    list.push_back(jsonOf(fieldsOf(a)));
     const std::string beginning = a.uuid.substr(0, length);
-    table.add({beginning, whoOf(a), a.group, a.scene, a.startUtc.substr(0, 10),
-               fmt::format("{:.1f}", static_cast<double>(a.steps) * a.stepSeconds), wordFor(a.outcome),
-               nameOf(a.verification.verdict), fmt::format("{}", fmt::join(a.tags, ", "))});
+    table.rows.push_back({beginning, whoOf(a), a.group, a.scene, a.startUtc.substr(0, 10),
+                          fmt::format("{:.1f}", static_cast<double>(a.steps) * a.stepSeconds), wordFor(a.outcome),
+                          nameOf(a.verification.verdict), fmt::format("{}", fmt::join(a.tags, ", "))});
     if (a.excluded) notes += fmt::format("{} is excluded: {}\n", beginning, a.exclusionReason);
     synthetic += a.synthetic ? 1 : 0;
   }

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // calot cache: what the user's cache folder holds.
 
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include "analytics/report/report_document.h"
 #include "apps/calot/command.h"
 #include "recorder/compliance_cache.h"
 
@@ -29,7 +33,7 @@ void cache(const CacheOptions& o) {
   }
   Json rows = Json::array();
   std::uint64_t bytes = 0;
-  analytics::TextTable table = tableOf({"scene", ">simulation", ">columns", ">size", ""});
+  analytics::ReportTable table = analytics::tableOf("", {"=scene", "simulation", "columns", "size", "="});
   for (const CacheEntry& e : entries) {
     const std::string file = e.file.filename().string();
     rows.push_back({{"file", file},
@@ -39,8 +43,8 @@ void cache(const CacheOptions& o) {
                     {"columns", e.columns},
                     {"bytes", e.bytes}});
     const bool known = e.state == CacheEntry::State::usable || e.state == CacheEntry::State::otherVersion;
-    table.add({known ? e.scene : file, known ? std::to_string(e.simulationVersion) : "-",
-               known ? std::to_string(e.columns) : "-", megabytes(e.bytes), stateName(e.state)});
+    table.rows.push_back({known ? e.scene : file, known ? std::to_string(e.simulationVersion) : "-",
+                          known ? std::to_string(e.columns) : "-", megabytes(e.bytes), stateName(e.state)});
     bytes += e.bytes;
   }
   if (o.json) {
@@ -48,7 +52,7 @@ void cache(const CacheOptions& o) {
   } else if (!folder) {
     fmt::print("no cache folder: CALOT_CACHE is off, or there is no home\n");
   } else {
-    if (table.rows() > 0) table.print(std::cout);
+    if (!table.rows.empty()) table.print(std::cout);
     std::cout << fmt::format("{}: {}{} entries, {}\n", folder->string(), o.clean ? "removed " : "", entries.size(),
                              megabytes(bytes));
   }

@@ -11,14 +11,14 @@
 #include "apps/calot/command.h"
 #include "apps/calot/source_options.h"
 #include "gui/film/lettering.h"
-#include "gui/render/png_file.h"
+#include "gui/render/image.h"
+#include "recorder/base/errors.h"
 #include "recorder/base/text_output.h"
-#include "recorder/sources/devices/calibration_fit.h"
+#include "recorder/sources/devices/calibration.h"
 #include "recorder/sources/devices/camera/camera_calibration.h"
 #include "recorder/sources/devices/camera/camera_device.h"
 #include "recorder/sources/devices/camera/marker_sheets.h"
-#include "recorder/sources/devices/camera/open_camera.h"
-#include "recorder/sources/devices/device_pump.h"
+#include "recorder/sources/devices/device_source.h"
 #include "recorder/sources/devices/mouse_device.h"
 
 namespace calot::apps {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // calot checkpoints: what this build computes, and how it is defined.
 
-#include "analytics/checkpoints/registry.h"
+#include "analytics/checkpoints/checkpoint.h"
 #include "apps/calot/command.h"
 
 namespace calot::apps {

@@ -78,16 +78,6 @@ std::optional<std::string> givenOf(const CLI::App& command, const std::string& o
   return command.count(option) > 0 ? std::optional(value) : std::nullopt;
 }
 
-std::vector<std::pair<std::string, analytics::TextTable::Align>> columnsOf(const std::vector<std::string>& names) {
-  using Align = analytics::TextTable::Align;
-  std::vector<std::pair<std::string, Align>> aligned;
-  for (const std::string& name : names) {
-    const bool right = name.starts_with('>');
-    aligned.emplace_back(name.substr(right ? 1 : 0), right ? Align::right : Align::left);
-  }
-  return aligned;
-}
-
 namespace {
 
 constexpr std::size_t withoutTerminal = 80;

@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-#include "analytics/report/report_text.h"
+#include "analytics/report/report_document.h"
 #include "apps/calot/environment.h"
 #include "apps/common/program.h"
 #include "recorder/base/errors.h"
@@ -143,12 +143,6 @@ void printResult(std::string_view what, const Json& body);
 
 /// The same on one line, flushed: of results that come one after the other.
 void printResultLine(std::string_view what, const Json& body);
-
-/// Columns of a table; ">" before a name aligns its column to the right.
-std::vector<std::pair<std::string, analytics::TextTable::Align>> columnsOf(const std::vector<std::string>& names);
-inline analytics::TextTable tableOf(const std::vector<std::string>& columns) {
-  return analytics::TextTable(columnsOf(columns));
-}
 
 /// Columns of the terminal that stdout is, from 60 to 160; 80 where it is none.
 std::size_t terminalColumns();

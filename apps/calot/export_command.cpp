@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 #include "analytics/checkpoints/collector.h"
-#include "analytics/checkpoints/motion_track.h"
 #include "analytics/cohort/withdraw.h"
 #include "analytics/interchange/motion_tables.h"
 #include "apps/calot/command.h"
+#include "apps/calot/environment.h"
 #include "apps/calot/import_command.h"
-#include "recorder/recording/export_csv.h"
+#include "recorder/base/errors.h"
 #include "recorder/recording/layout.h"
 #include "recorder/recording/probe.h"
-#include "recorder/sources/column_map.h"
+#include "recorder/recording/recorded_columns.h"
+#include "recorder/sources/tracked_motion.h"
 
 namespace calot::apps {
 

@@ -8,18 +8,19 @@
 #include <cstdio>
 #include <set>
 
+#include "analytics/checkpoints/checkpoint.h"
 #include "analytics/checkpoints/collector.h"
-#include "analytics/checkpoints/registry.h"
 #include "apps/calot/command.h"
 #include "apps/calot/replay_report.h"
 #include "apps/calot/source_options.h"
 #include "recorder/base/file_bytes.h"
-#include "recorder/base/json_reader.h"
+#include "recorder/base/record_reader.h"
 #include "recorder/base/text_output.h"
 #include "recorder/formats/scene_file.h"
 #include "recorder/live/worker_pool.h"
 #include "recorder/loop.h"
 #include "recorder/recording/writer.h"
+#include "sim/math/record.h"
 #include "sim/scene/version.h"
 
 namespace calot::apps {
@@ -33,6 +34,7 @@ struct GoldenValue {
   std::string name, subject;
   std::uint32_t version = 0;  ///< of the checkpoint's definition
   double value = 0.0;
+  static std::vector<Field> fields();
   bool operator==(const GoldenValue&) const = default;
 };
 
@@ -43,6 +45,8 @@ struct GoldenEntry {
   std::uint32_t seed = 1;
   double seconds = 0.0;  ///< 0: until the performer ends
   std::vector<GoldenValue> values;
+
+  static std::vector<Field> fields();
 };
 
 struct GoldenList {
@@ -50,67 +54,63 @@ struct GoldenList {
   std::string reason;                   ///< why they were made anew
   std::string valuesReason;             ///< why values were taken over since; empty: they were not
   std::vector<GoldenEntry> recordings;
+
+  static std::vector<Field> fields();
 };
 
-using recorder::JsonObject;
-using recorder::JsonPlace;
-using recorder::ObjectRule;
-
-constexpr double maxSeconds = 36000.0;
-constexpr double any = 1e300;
 constexpr std::size_t maxBytes = 4U << 20U;
+constexpr Range whole = within(0, 4294967295.0), positive = within(1, 4294967295.0), any = within(-1e300, 1e300);
+constexpr TextRule shortText{100}, longText{1000};
 
-const ObjectRule rootRule{
-    "", {{"simulation_version", true, 1, 4294967295.0}, {"reason"}, {"values_reason", false}, {"recordings"}}};
-const ObjectRule recordingRule{"recording",
-                               {{"file"},
-                                {"scene"},
-                                {"performer"},
-                                {"seed", true, 0, 4294967295.0},
-                                {"seconds", true, 0, maxSeconds},
-                                {"checkpoints", false}}};
-const ObjectRule valueRule{
-    "value", {{"name"}, {"subject", false}, {"version", true, 1, 4294967295.0}, {"value", true, -any, any}}};
-
-GoldenValue readValue(const JsonPlace& place) {
-  const JsonObject o = place.object(valueRule);
-  GoldenValue v;
-  o.read("name", v.name, 100);
-  o.read("subject", v.subject, 100);
-  o.read("version", v.version);
-  o.read("value", v.value);
-  return v;
+std::vector<Field> GoldenValue::fields() {
+  using S = GoldenValue;
+  return {
+      object("value", "Value of a checkpoint"),
+      {"name", at<S, &S::name>, shortText, "Checkpoint"},
+      optional("subject", at<S, &S::subject>, shortText, "Subject"),
+      {"version", at<S, &S::version>, "", positive, "Version of its definition"},
+      {"value", at<S, &S::value>, "", any, "Value"},
+  };
 }
 
-GoldenEntry readEntry(const JsonPlace& place) {
-  const JsonObject o = place.object(recordingRule);
-  GoldenEntry e;
-  o.read("file", e.file, 100);
-  o.read("scene", e.scene, 100);
-  o.read("performer", e.performer, 100);
-  o.read("seed", e.seed);
-  o.read("seconds", e.seconds);
-  if (e.file.empty() || e.file.front() == '.' || std::filesystem::path(e.file).filename() != e.file)
-    o.at("file").fail("is no file's name: a name without folders is wanted");
-  if (o.has("checkpoints")) {
-    for (const JsonPlace& value : o.at("checkpoints").list(0, 1000)) e.values.push_back(readValue(value));
-  }
-  return e;
+std::vector<Field> GoldenEntry::fields() {
+  using S = GoldenEntry;
+  return {
+      object("recording", "Golden recording"),
+      {"file", at<S, &S::file>, shortText, "Base name"},
+      {"scene", at<S, &S::scene>, shortText, "Scene"},
+      {"performer", at<S, &S::performer>, shortText, "Performer"},
+      {"seed", at<S, &S::seed>, "", whole, "Seed"},
+      {"seconds", at<S, &S::seconds>, "s", within(0, 36000), "Longest duration"},
+      optional("checkpoints", at<S, &S::values>, "Values of checkpoints").items(0, 1000),
+  };
+}
+
+std::vector<Field> GoldenList::fields() {
+  using S = GoldenList;
+  return {
+      object("", "Golden recordings"),
+      {"simulation_version", at<S, &S::simulationVersion>, "", positive, "Simulation version of all recordings"},
+      {"reason", at<S, &S::reason>, longText, "Reason to make them anew"},
+      optional("values_reason", at<S, &S::valuesReason>, longText, "Reason to take over values since"),
+      Field("recordings", at<S, &S::recordings>, "Recordings").items(1, 1000),
+  };
 }
 
 /// @throws Error (damaged) naming file and place; a name of a file that is no base name, or is given twice, is refused.
 GoldenList readGoldenList(const std::filesystem::path& file) {
   const std::vector<std::byte> bytes = recorder::readFileBytes(file, file.string(), maxBytes);
   const nlohmann::json json = recorder::parseStrictJson(bytes, file.string());
-  const JsonObject root = JsonPlace(json, file.string()).object(rootRule);
+  const recorder::JsonPlace root(json, file.string());
   GoldenList list;
-  root.read("simulation_version", list.simulationVersion);
-  root.read("reason", list.reason, 1000);
-  root.read("values_reason", list.valuesReason, 1000);
+  recorder::readRecord(root, list);
   std::set<std::string> names;
-  for (const JsonPlace& place : root.at("recordings").list(1, 1000)) {
-    list.recordings.push_back(readEntry(place));
-    if (!names.insert(list.recordings.back().file).second) place.fail("names a file that stands above already");
+  for (std::size_t i = 0; i < list.recordings.size(); ++i) {
+    const recorder::JsonPlace place = root.at("recordings").at(i);
+    const std::string& base = list.recordings[i].file;
+    if (base.front() == '.' || std::filesystem::path(base).filename() != base)
+      place.at("file").fail("is no file's name: a name without folders is wanted");
+    if (!names.insert(base).second) place.fail("names a file that stands above already");
   }
   return list;
 }
@@ -310,9 +310,10 @@ void refuseUpdate(const std::filesystem::path& folder, const GoldenList& list, c
 }
 
 struct GoldenOptions {
-  std::string folder, reason, only, junit;
+  std::string folder, reason, only;
+  JunitOptions junit;
   unsigned threads = 1;
-  bool json = false, force = false, skipUndecided = false;
+  bool json = false;
 };
 
 std::filesystem::path folderOf(const GoldenOptions& o) {
@@ -336,7 +337,7 @@ void printChanges(const std::string& file, std::size_t checkpoints, const std::v
 ExitCode checkGolden(const GoldenOptions& o) {
   const std::filesystem::path folder = folderOf(o);
   const GoldenList list = readGoldenList(folder / listName);
-  if (!o.junit.empty()) recorder::refuseOutput(o.junit, o.force);
+  if (!o.junit.file.empty()) recorder::refuseOutput(o.junit.file, o.junit.force);
   std::vector<recorder::ReplayReport> reports;
   nlohmann::json rows = nlohmann::json::array();
   Progress progress("replaying, recordings", o.json);
@@ -356,7 +357,7 @@ ExitCode checkGolden(const GoldenOptions& o) {
   }
   if (reports.empty()) throw Error(ErrorKind::invalid, fmt::format("golden: --only {}: not in the list", o.only));
   Progress::erase();
-  if (!o.junit.empty()) recorder::writeJunit(o.junit, reports, {"calot golden check", o.skipUndecided, o.force});
+  writeJunit(o.junit, "calot golden check", reports);
   if (o.json) printResult("golden-check", {{"recordings", rows}});
   return worstOf(reports);
 }
@@ -421,7 +422,7 @@ void addGolden(CLI::App& app, Run& run) {
   CLI::App* values = add("values", "Replays them; the list takes over what the checkpoints give.", takeValues);
   checking->add_option("--only", o->only, "one file of the list");
   for (CLI::App* one : {checking, values}) addThreads(*one, o->threads, "of the simulation; 0: all");
-  addJunitOptions(*checking, o->junit, o->skipUndecided, o->force);
+  addJunitOptions(*checking, o->junit);
   checking->add_flag("--json", o->json, "print the result as JSON");
   for (CLI::App* one : {updating, values})
     one->add_option("--reason", o->reason, "why they change; kept in the list")->required();

@@ -119,7 +119,7 @@ void grade(const GradeOptions& o) {
   writeReport(analytics::gradeDocument(result, name, howToDraw), o.html, o.pdf, o.force,
               o.withReplay ? &inPage : nullptr);
   if (o.json) {
-    printResult("grade", Json::parse(analytics::gradeJson(result)));
+    printResult("grade", analytics::gradeTree(result));
   } else {
     analytics::printGrade(result, std::cout);
   }

@@ -10,7 +10,6 @@
 #include "analytics/external/metric_script.h"
 #include "analytics/import_motion.h"
 #include "apps/calot/command.h"
-#include "recorder/sources/column_map.h"
 #include "recorder/sources/tracked_motion.h"
 
 namespace calot::apps {

@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "apps/calot/command.h"
-#include "recorder/recording/attribute_output.h"
 #include "recorder/recording/layout.h"
 #include "recorder/recording/probe.h"
 #include "recorder/recording/reader.h"
@@ -93,8 +92,7 @@ Json describe(recorder::Recording& recording, const recorder::ChainVerdict& chai
   out["bytes"] = whole;
   out["bytes_by_group"] = bytes;
   Json attributes;
-  recorder::AttributesTo visit{attributes};
-  recorder::visitAttributes(header, visit);
+  recorder::forEachAttribute(header, [&](const char* name, const auto& value) { attributes[name] = value; });
   out["attempt"] = attributes;
   out["organs"] = header.organs;
   out["vessels"] = header.vessels;

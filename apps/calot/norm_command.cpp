@@ -6,11 +6,13 @@
 #include "analytics/assessment/grade.h"
 #include "analytics/assessment/norm.h"
 #include "analytics/assessment/norm_rule.h"
-#include "analytics/checkpoints/registry.h"
+#include "analytics/checkpoints/checkpoint.h"
 #include "analytics/cohort/assessment_database.h"
 #include "analytics/report/report_document.h"
-#include "analytics/report/study_tables.h"
+#include "analytics/report/study_output.h"
 #include "apps/calot/command.h"
+#include "apps/calot/environment.h"
+#include "recorder/base/errors.h"
 #include "recorder/base/file_bytes.h"
 #include "recorder/base/text_words.h"
 
@@ -25,8 +27,8 @@ struct AngoffOptions {
 void judgeByAngoff(const AngoffOptions& o) {
   const analytics::AngoffJudgement a = analytics::readAngoff(readCsvTable(o.table));
   const double judges = static_cast<double>(a.judges.size());
-  analytics::ReportTable table{
-      "Probability that a borderline trainee passes", columnsOf({"item", ">mean", ">least", ">most"}), {}};
+  analytics::ReportTable table =
+      analytics::tableOf("Probability that a borderline trainee passes", {"=item", "mean", "least", "most"});
   Json items = Json::array();
   for (std::size_t item = 0; item < a.items.size(); ++item) {
     double sum = 0.0, least = 1.0, most = 0.0;
@@ -130,8 +132,8 @@ void printNorm(const analytics::Norm& norm) {
   if (norm.synthetic) std::cout << analytics::watermarkText << '\n';
   for (const std::string& line : analytics::normSummary(norm)) analytics::printWrapped(line, std::cout);
   std::cout << '\n';
-  analytics::ReportTable table{
-      "Pass marks", columnsOf({"checkpoint", "unit", "better", ">cut", ">95 %", "rule", ""}), {}};
+  analytics::ReportTable table =
+      analytics::tableOf("Pass marks", {"=checkpoint", "=unit", "=better", "cut", "95 %", "=rule", "="});
   for (const analytics::NormCheckpoint& c : norm.checkpoints) {
     const analytics::CheckpointDefinition* d =
         c.metric ? &c.metric->definition : analytics::findCheckpoint(c.checkpoint);

@@ -163,7 +163,8 @@ void listParticipants(const ParticipantFilter& o) {
   const analytics::CohortDatabase database(o.cohort, Access::read);
   std::map<std::string, std::uint64_t> attempts;
   for (const analytics::AttemptRow& a : database.listAttempts()) ++attempts[a.participant];
-  analytics::TextTable table = tableOf({"participant", "group", "arm", "site", ">attempts", "experience", "consent"});
+  analytics::ReportTable table =
+      analytics::tableOf("", {"=participant", "=group", "=arm", "=site", "attempts", "=experience", "=consent"});
   const auto joined = [](const std::map<std::string, std::string>& pairs, char mark) {
     std::string text;
     for (const auto& [name, value] : pairs)
@@ -173,15 +174,10 @@ void listParticipants(const ParticipantFilter& o) {
   Json list = Json::array();
   for (const analytics::Participant& p : database.participants()) {
     if (!o.group.empty() && p.group != o.group) continue;
-    list.push_back({{"participant", p.pseudonym},
-                    {"group", p.group},
-                    {"arm", p.arm},
-                    {"site", p.site},
-                    {"attempts", attempts[p.pseudonym]},
-                    {"experience", p.experience},
-                    {"consent", p.consent}});
-    table.add({p.pseudonym, p.group, p.arm, p.site, std::to_string(attempts[p.pseudonym]), joined(p.experience, '='),
-               joined(p.consent, ':')});
+    list.push_back(jsonOf(fieldsOf(p)));
+    list.back()["attempts"] = attempts[p.pseudonym];
+    table.rows.push_back({p.pseudonym, p.group, p.arm, p.site, std::to_string(attempts[p.pseudonym]),
+                          joined(p.experience, '='), joined(p.consent, ':')});
   }
   if (o.json) {
     printResult("participant-list", {{"participants", list}});

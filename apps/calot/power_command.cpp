@@ -5,8 +5,8 @@
 #include <map>
 
 #include "analytics/assessment/protocol.h"
+#include "analytics/report/study_output.h"
 #include "analytics/report/study_protocol.h"
-#include "analytics/report/study_tables.h"
 #include "analytics/statistics/power.h"
 #include "analytics/statistics/two_groups.h"
 #include "apps/calot/command.h"
@@ -225,13 +225,13 @@ void printPower(const PowerOptions& o, const PlannedStudy& planned, const std::v
                            planned.origin);
   std::cout << fmt::format("{} simulations each, seed {}; in brackets Wilson's 95 % interval of the simulation\n\n",
                            planned.plan.simulations, o.seed);
-  analytics::TextTable table =
-      tableOf({">n (" + planned.groups[0] + ")", ">n (" + planned.groups[1] + ")", "checkpoint", ">power"});
+  analytics::ReportTable table = analytics::tableOf(
+      "", {"n (" + planned.groups[0] + ")", "n (" + planned.groups[1] + ")", "=checkpoint", "power"});
   std::size_t untestable = 0;
   for (const Sized& r : results) {
     std::string nx = fmt::format("{}", r.nx), ny = fmt::format("{}", r.ny);
     const auto row = [&](const std::string& name, const analytics::SimulatedShare& share) {
-      table.add({nx, ny, name, shareText(share)});
+      table.rows.push_back({nx, ny, name, shareText(share)});
       nx.clear();
       ny.clear();
     };

@@ -4,8 +4,8 @@
 #include <algorithm>
 
 #include "analytics/assessment/protocol.h"
-#include "analytics/cohort/analysis_locks.h"
 #include "analytics/cohort/assessment_database.h"
+#include "analytics/cohort/blinding.h"
 #include "analytics/report/masked_study.h"
 #include "analytics/statistics/two_groups.h"
 #include "apps/calot/command.h"

@@ -10,8 +10,8 @@
 #include "analytics/assessment/pack_answers.h"
 #include "analytics/assessment/rating_form.h"
 #include "analytics/cohort/assessment_database.h"
+#include "analytics/cohort/blinding.h"
 #include "analytics/cohort/cohort_database.h"
-#include "analytics/cohort/rating_packs.h"
 #include "analytics/cohort/withdraw.h"
 #include "analytics/intake/manifest_table.h"
 #include "analytics/intake/rating_manifest.h"
@@ -21,6 +21,7 @@
 #include "apps/calot/command.h"
 #include "apps/calot/import_command.h"
 #include "gui/film/film.h"
+#include "gui/film/film_writer.h"
 #include "recorder/base/file_bytes.h"
 #include "recorder/base/json_reader.h"
 #include "recorder/base/text_words.h"
@@ -132,7 +133,7 @@ void showRatings(const RateOptions& o) {
   const std::vector<analytics::FormReport> reports =
       analytics::reportForms(database, groupOf, {groups.begin(), groups.end()}, attemptOf);
   if (o.json) {
-    printResult("ratings", {{"forms", analytics::ratingsJson(reports)}});
+    printResult("ratings", {{"forms", analytics::ratingsTree(reports)}});
     return;
   }
   if (reports.empty()) std::cout << "no ratings\n";

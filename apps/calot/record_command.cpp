@@ -17,7 +17,6 @@
 #include "recorder/recording/writer.h"
 #include "recorder/replay.h"
 #include "recorder/sources/scope/scope_source.h"
-#include "recorder/words.h"
 
 namespace calot::apps {
 namespace {

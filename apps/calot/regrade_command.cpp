@@ -3,7 +3,7 @@
 
 #include <map>
 
-#include "analytics/checkpoints/registry.h"
+#include "analytics/checkpoints/checkpoint.h"
 #include "analytics/regrade.h"
 #include "apps/calot/command.h"
 #include "apps/calot/replay_report.h"
@@ -105,16 +105,16 @@ void printRegrade(const analytics::Regrade& regrade) {
   std::map<Regraded, std::uint64_t> counts;
   std::vector<std::string> order;
   std::map<std::string, std::uint64_t> attemptsOf;
-  analytics::TextTable table = tableOf({"attempt", "checkpoint", ">before", ">now", ""});
+  analytics::ReportTable table = analytics::tableOf("", {"=attempt", "=checkpoint", "before", "now", "="});
   for (const analytics::RegradedAttempt& a : regrade.attempts) {
     ++counts[a.how];
     for (const analytics::ValueChange& c : a.changes) {
       const std::string title = titleOf(c.any());
       if (attemptsOf[title]++ == 0) order.push_back(title);
-      table.add({a.uuid.substr(0, 8), title, shownValue(c.before), shownValue(c.now), otherwise(c)});
+      table.rows.push_back({a.uuid.substr(0, 8), title, shownValue(c.before), shownValue(c.now), otherwise(c)});
     }
   }
-  if (table.rows() > 0) {
+  if (!table.rows.empty()) {
     table.print(std::cout);
     std::cout << '\n';
     for (const std::string& title : order)

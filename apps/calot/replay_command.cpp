@@ -17,16 +17,17 @@ namespace {
 
 struct ReplayOptions {
   std::vector<std::string> files;
-  std::string junit, engine, broadPhase = "grid";
+  std::string engine, broadPhase = "grid";
+  JunitOptions junit;
   std::vector<std::size_t> segments;  ///< first and last; empty: all
   unsigned threads = 1, jobs = 1;
-  bool anyway = false, apart = false, json = false, force = false, skipUndecided = false;
+  bool anyway = false, apart = false, json = false;
 };
 
 ExitCode replay(const ReplayOptions& o) {
   if (!o.segments.empty() && o.files.size() > 1)
     throw Error(ErrorKind::invalid, "--segments are those of one recording: name one");
-  if (!o.junit.empty()) recorder::refuseOutput(o.junit, o.force);
+  if (!o.junit.file.empty()) recorder::refuseOutput(o.junit.file, o.junit.force);
   const MakeBroadPhase makeBroadPhase = broadPhaseOf(o.broadPhase);
   std::vector<recorder::ReplayReport> reports(o.files.size());
   const bool single = o.files.size() == 1;
@@ -63,7 +64,7 @@ ExitCode replay(const ReplayOptions& o) {
   for (std::size_t j = 1; j < jobs; ++j) threads.emplace_back(work);
   work();
   for (std::thread& t : threads) t.join();
-  if (!o.junit.empty()) recorder::writeJunit(o.junit, reports, {"calot replay", o.skipUndecided, o.force});
+  writeJunit(o.junit, "calot replay", reports);
   if (failure) std::rethrow_exception(failure);
   if (o.json) {
     nlohmann::json list = nlohmann::json::array();
@@ -89,7 +90,7 @@ void addReplay(CLI::App& app, Run& run) {
              "segments between keyframes that are verified at a time, of each recording; 0: one a processor");
   addThreads(*command, o->jobs, "recordings at a time; 0: one a processor", "--jobs");
   command->add_option("--segments", o->segments, "verify these alone, FIRST LAST, numbered from 0")->expected(2);
-  addJunitOptions(*command, o->junit, o->skipUndecided, o->force);
+  addJunitOptions(*command, o->junit);
   command->add_flag("--anyway", o->anyway, "re-simulate recordings of another simulation version too (still exit 5)");
   CLI::Option* const apart = command->add_flag(
       "--apart", o->apart, "re-simulate in confined programs, as recordings of other simulation versions are");

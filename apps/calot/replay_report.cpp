@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <iterator>
 
+#include <array>
 #include "analytics/checkpoints/motion.h"
 #include "analytics/cohort/registers.h"
-#include "recorder/replay_words.h"
+#include "apps/calot/environment.h"
+#include "recorder/base/text_output.h"
 
 namespace calot::apps {
 
@@ -31,13 +33,44 @@ Json missesJson(const recorder::StepMisses& m) {
   return {{"steps", m.any}, {"solver", m.solver}, {"contact", m.contact}, {"held_back", m.heldBack}};
 }
 
-void addJunitOptions(CLI::App& command, std::string& file, bool& skipUndecided, bool& force) {
-  CLI::Option* junit = command.add_option("--junit", file, "write the result as JUnit XML");
+void addJunitOptions(CLI::App& command, JunitOptions& options) {
+  CLI::Option* junit = command.add_option("--junit", options.file, "write the result as JUnit XML");
   command
-      .add_flag("--skip-other-versions", skipUndecided,
+      .add_flag("--skip-other-versions", options.skipUndecided,
                 "in the JUnit XML, recordings of another simulation version are skipped, not errors (still exit 5)")
       ->needs(junit);
-  command.add_flag("--force", force, "replace the JUnit XML if it is there")->needs(junit);
+  command.add_flag("--force", options.force, "replace the JUnit XML if it is there")->needs(junit);
+}
+
+void writeJunit(const JunitOptions& options, const std::string& suite,
+                const std::vector<recorder::ReplayReport>& reports) {
+  using recorder::ReplayVerdict;
+  if (options.file.empty()) return;
+  std::array<std::size_t, 5> count{};
+  double time = 0.0;
+  std::string cases;
+  for (const recorder::ReplayReport& r : reports) {
+    ++count[static_cast<std::size_t>(r.verdict)];
+    time += r.wallSeconds;
+    cases += fmt::format("  <testcase classname=\"replay\" name=\"{}\" time=\"{:.3f}\">",
+                         analytics::escaped(r.path.filename().string()), r.wallSeconds);
+    const std::string body = analytics::escaped(r.message);
+    if (r.verdict == ReplayVerdict::diverged) cases += fmt::format("<failure message=\"diverged\">{}</failure>", body);
+    if (r.verdict == ReplayVerdict::damaged) cases += fmt::format("<error message=\"damaged\">{}</error>", body);
+    if (r.verdict == ReplayVerdict::undecided) {
+      cases += options.skipUndecided ? fmt::format("<skipped message=\"{}\"/>", body)
+                                     : fmt::format("<error message=\"of another simulation version\">{}</error>", body);
+    }
+    cases += "</testcase>\n";
+  }
+  const auto of = [&](ReplayVerdict verdict) { return count[static_cast<std::size_t>(verdict)]; };
+  const std::size_t skipped = options.skipUndecided ? of(ReplayVerdict::undecided) : 0;
+  const std::size_t errors = of(ReplayVerdict::damaged) + of(ReplayVerdict::undecided) - skipped;
+  const std::string head =
+      fmt::format("<testsuite name=\"{}\" tests=\"{}\" failures=\"{}\" errors=\"{}\" skipped=\"{}\" time=\"{:.3f}\">\n",
+                  analytics::escaped(suite), reports.size(), of(ReplayVerdict::diverged), errors, skipped, time);
+  recorder::writeText(options.file, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n" + head + cases + "</testsuite>\n",
+                      options.force);
 }
 
 nlohmann::json reportJson(const recorder::ReplayReport& r) {

@@ -17,8 +17,20 @@ namespace calot::apps {
 /// not exact goes to stderr.
 void printReport(const recorder::ReplayReport& report);
 
+struct JunitOptions {
+  std::string file;            ///< empty: none
+  bool skipUndecided = false;  ///< recordings of another simulation version are skipped tests, which CI shows as green
+  bool force = false;          ///< replace a file that is there
+};
+
 /// Adds `--junit`, `--skip-other-versions` and `--force`.
-void addJunitOptions(CLI::App& command, std::string& file, bool& skipUndecided, bool& force);
+void addJunitOptions(CLI::App& command, JunitOptions& options);
+
+/// Writes JUnit XML where a file is named: one case a recording; diverged is a failure, damaged an error, undecided an
+/// error too unless it is to be skipped, the divergence in the body.
+/// @throws Error (invalid) where the file exists and is not to be replaced; (failure) where it cannot be written.
+void writeJunit(const JunitOptions& options, const std::string& suite,
+                const std::vector<recorder::ReplayReport>& reports);
 
 nlohmann::json reportJson(const recorder::ReplayReport& report);
 

@@ -5,7 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analytics/report/report_document.h"
 #include "apps/calot/command.h"
+#include "apps/calot/environment.h"
+#include "recorder/base/errors.h"
 #include "recorder/base/file_bytes.h"
 #include "recorder/base/text_output.h"
 #include "recorder/formats/mesh_file.h"
@@ -24,13 +27,13 @@ std::string versionOf(const SceneDescription& scene) {
 }
 
 void printScenes(const std::vector<recorder::LoadedScene>& scenes) {
-  analytics::TextTable table = tableOf({"scene", ">version", "organs (tetrahedra)", "summary"});
+  analytics::ReportTable table = analytics::tableOf("", {"=scene", "version", "=organs (tetrahedra)", "=summary"});
   for (const recorder::LoadedScene& scene : scenes) {
     std::string organs;
     for (const OrganDescription& organ : scene.description.organs) {
       organs += fmt::format("{}{} ({})", organs.empty() ? "" : ", ", organ.name, organ.tetrahedra);
     }
-    table.add({scene.description.name, versionOf(scene.description), organs, scene.summary});
+    table.rows.push_back({scene.description.name, versionOf(scene.description), organs, scene.summary});
   }
   table.print(std::cout, terminalColumns());
 }
@@ -127,12 +130,13 @@ Json checkJson(const std::string& file, const recorder::SceneCheck& check) {
 }
 
 void printCosts(const recorder::SceneCheck& check) {
-  analytics::TextTable table = tableOf({"organ", ">triangles", ">edge (mm)", ">tetrahedra", ">cell (mm)", "surface"});
+  analytics::ReportTable table =
+      analytics::tableOf("", {"=organ", "triangles", "edge (mm)", "tetrahedra", "cell (mm)", "=surface"});
   bool fine = false;
   for (const recorder::ContactCost& c : check.costs) {
-    table.add({c.organ, std::to_string(c.triangles), fmt::format("{:.2f}", 1000.0 * c.meanEdge),
-               std::to_string(c.tetrahedra), fmt::format("{:.2f}", 1000.0 * c.cellSize),
-               c.isFine() ? fmt::format("fine: {} triangles show as much", c.sensibleTriangles) : "right"});
+    table.rows.push_back({c.organ, std::to_string(c.triangles), fmt::format("{:.2f}", 1000.0 * c.meanEdge),
+                          std::to_string(c.tetrahedra), fmt::format("{:.2f}", 1000.0 * c.cellSize),
+                          c.isFine() ? fmt::format("fine: {} triangles show as much", c.sensibleTriangles) : "right"});
     fine = fine || c.isFine();
   }
   table.print(std::cout, terminalColumns());

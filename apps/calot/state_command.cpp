@@ -48,11 +48,8 @@ void state(const StateOptions& o) {
   if (!restoreState(scene->model(), keyframe.state, state))
     throw Error(ErrorKind::damaged, fmt::format("{}: the State of step {} is none", o.recording, o.step));
   if (!o.flat) {
-    std::vector<recorder::NamedNumbers> fields;
-    for (recorder::StateField& f : recorder::stateFields(scene->model(), state)) {
-      fields.emplace_back(std::move(f.name), std::move(f.values));
-    }
-    recorder::writeStateFile(o.output, o.step, simulationVersion, fields, o.force);
+    recorder::writeStateFile(o.output, o.step, simulationVersion, recorder::stateFields(scene->model(), state),
+                             o.force);
     return;
   }
   FlatState flat;
@@ -75,12 +72,7 @@ struct DiffOptions {
 ExitCode diff(const DiffOptions& o) {
   const recorder::StateFile a = recorder::readStateFile(o.first);
   const recorder::StateFile b = recorder::readStateFile(o.second);
-  const auto fields = [](const recorder::StateFile& file) {
-    std::vector<recorder::StateField> out;
-    for (const recorder::NamedNumbers& f : file.fields) out.push_back({f.first, f.second});
-    return out;
-  };
-  const auto difference = recorder::firstDifference(fields(a), fields(b));
+  const auto difference = recorder::firstDifference(a.fields, b.fields);
   if (o.json) {
     nlohmann::json json{{"equal", !difference}};
     if (difference) {

@@ -11,9 +11,10 @@
 #include "analytics/cohort/withdraw.h"
 #include "analytics/design/design_report.h"
 #include "analytics/report/study_output.h"
-#include "analytics/report/study_tables.h"
 #include "apps/calot/command.h"
+#include "apps/calot/environment.h"
 #include "recorder/attempt.h"
+#include "recorder/base/errors.h"
 #include "recorder/base/text_output.h"
 #ifdef CALOT_PDF
 #include "gui/report/pdf_report.h"
@@ -312,7 +313,7 @@ void runTwoGroups(StudyCommandOptions& options) {
   writeReport(analytics::studyDocument(study), options.html, options.pdf, options.force);
   if (isExported(options)) noteExports(options, attemptsIn(study, options.source.database));
   if (options.json) {
-    printResult("study", Json::parse(analytics::studyJson(study)));
+    printResult("study", analytics::studyTree(study));
   } else {
     printStudy(study, options.all);
   }
@@ -326,7 +327,7 @@ void runDesign(StudyCommandOptions& options) {
   writeReport(analytics::designDocument(report), options.html, options.pdf, options.force);
   if (isExported(options)) noteExports(options, report.attempts);
   if (options.json) {
-    printResult("design", Json::parse(analytics::designJson(report)));
+    printResult("design", report.json);
   } else {
     analytics::printDesign(report, std::cout);
   }

@@ -6,7 +6,6 @@
 #include <string>
 
 #include "analytics/report/masked_study.h"
-#include "analytics/report/page_html.h"
 #include "analytics/report/report_document.h"
 #include "analytics/report/study.h"
 #include "analytics/report/table_study.h"

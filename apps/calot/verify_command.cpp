@@ -3,7 +3,6 @@
 
 #include <chrono>
 
-#include "analytics/intake/folder_watch.h"
 #include "analytics/intake/intake.h"
 #include "apps/calot/command.h"
 #include "apps/calot/replay_report.h"

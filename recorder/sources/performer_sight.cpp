@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Fat as a performer sees it: on the vessels, and in the triangle between them.
 
-#include "recorder/sources/performer_sight.h"
+#include "recorder/sources/operation_mind.h"
 
 #include <algorithm>
 #include <cmath>

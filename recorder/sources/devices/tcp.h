@@ -2,9 +2,10 @@
 // Stream sockets that never block longer than asked and never raise a signal. Internal to this folder.
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <cstddef>
-#include <optional>
+#include <functional>
 #include <span>
 #include <string>
 
@@ -45,8 +46,10 @@ class TcpListener {
   TcpListener& operator=(const TcpListener&) = delete;
 
   [[nodiscard]] int port() const { return port_; }
-  /// @returns nothing after `wait`.
-  std::optional<TcpStream> accept(std::chrono::milliseconds wait);
+  /// Serves one client after the other until `stop`, or with `once` until the first has gone.
+  /// @param tell takes a line for each client that comes or goes
+  void serve(const std::atomic<bool>& stop, bool once, const std::function<void(const std::string&)>& tell,
+             const std::function<void(TcpStream)>& serveOne);
 
  private:
   int descriptor_ = -1;

@@ -5,10 +5,19 @@
 #include <cstdint>
 
 #include "recorder/sources/scope/endoscope.h"
-#include "recorder/sources/scope/scope_skill.h"
 #include "recorder/sources/unsteadiness.h"
+#include "sim/math/record.h"
 
 namespace calot::recorder {
+
+/// How well an assistant holds the endoscope. Part of a performer's profile.
+struct ScopeSkill {
+  double reaction = 0.35;      ///< from one look at the picture to the next (s)
+  double deadZone = 0.4;       ///< how far the work may leave the picture's centre (halves of the picture's height)
+  double horizonError = 0.03;  ///< root mean square of the camera head's rotation from level (rad)
+
+  static std::vector<Field> fields();
+};
 
 /// An assistant who follows the instruments: it looks at the picture every `reaction` seconds, and where the work has
 /// left the dead zone it brings the work back to the centre, at the working distance. The light cable stays up, the

@@ -12,7 +12,6 @@
 #include "recorder/sources/devices/calibration.h"
 #include "recorder/sources/devices/camera/camera_device.h"
 #include "recorder/sources/devices/camera/lens_calibration.h"
-#include "recorder/sources/devices/camera/open_camera.h"
 #include "recorder/sources/devices/device.h"
 #include "recorder/sources/devices/device_script.h"
 

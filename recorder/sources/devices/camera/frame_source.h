@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace calot::recorder {
@@ -59,7 +60,6 @@ enum class FrameStatus : std::uint8_t {
 /// One camera. Nothing here throws; a source is opened by its constructor.
 class FrameSource {
  public:
-  FrameSource() = default;
   FrameSource(const FrameSource&) = delete;
   FrameSource& operator=(const FrameSource&) = delete;
   virtual ~FrameSource() = default;
@@ -67,12 +67,20 @@ class FrameSource {
   /// @param wait blocks at most so long; files never wait
   virtual FrameStatus next(std::chrono::nanoseconds wait, Frame& out) = 0;
 
-  [[nodiscard]] virtual int width() const = 0;
-  [[nodiscard]] virtual int height() const = 0;
-  [[nodiscard]] virtual double rate() const = 0;  ///< nominal (1/s)
-  [[nodiscard]] virtual std::string name() const = 0;
-  /// Reason of the loss, or how the file ended; one line.
-  [[nodiscard]] virtual std::string reason() const { return {}; }
+  [[nodiscard]] int width() const { return width_; }
+  [[nodiscard]] int height() const { return height_; }
+  [[nodiscard]] double rate() const { return rate_; }  ///< nominal (1/s)
+  [[nodiscard]] const std::string& name() const { return name_; }
+  /// Reason of the loss, or how the file ended; one line, empty where it ended as a whole one does.
+  [[nodiscard]] virtual std::string reason() const { return reason_; }
+
+ protected:
+  FrameSource(std::string name, int width, int height, double rate)
+      : name_(std::move(name)), width_(width), height_(height), rate_(rate) {}
+
+  std::string name_, reason_;
+  int width_, height_;
+  double rate_;
 };
 
 }  // namespace calot::recorder

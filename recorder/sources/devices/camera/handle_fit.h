@@ -27,6 +27,12 @@ struct Twist {
   Vec3 angular = Vec3::Zero();   ///< rad/s
 };
 
+/// Where a corner is in the frame of its camera, when it was seen (m).
+Vec3 inCamera(const CameraRig& rig, const CornerSight& corner, const Pose& body, const Twist& twist);
+
+/// How far it is seen from there, without the lens' distortion (pixels). @pre it lies in front of the camera
+Eigen::Vector2d sightError(const CameraRig& rig, const CornerSight& corner, const Vec3& inCamera);
+
 struct PoseFit {
   Pose pose;                 ///< of the body in D
   double residual = 0.0;     ///< root mean square distance of the corners (pixels)

@@ -20,11 +20,6 @@ class LiveCamera final : public FrameSource {
   ~LiveCamera() override;
 
   FrameStatus next(std::chrono::nanoseconds wait, Frame& out) override;
-  [[nodiscard]] int width() const override { return width_; }
-  [[nodiscard]] int height() const override { return height_; }
-  [[nodiscard]] double rate() const override { return rate_; }
-  [[nodiscard]] std::string name() const override { return file_; }
-  [[nodiscard]] std::string reason() const override { return reason_; }
   /// The driver's name for it, and its connection.
   [[nodiscard]] const std::string& card() const { return card_; }
 
@@ -40,9 +35,8 @@ class LiveCamera final : public FrameSource {
     void* address = nullptr;
     std::size_t length = 0;
   };
-  std::string file_, card_, reason_;
-  int width_, height_, handle_ = -1;
-  double rate_ = 30.0;
+  std::string card_;
+  int handle_ = -1;
   bool compressed_ = false;
   std::size_t stride_ = 0;
   std::vector<Mapped> buffer_;

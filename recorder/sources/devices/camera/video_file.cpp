@@ -33,19 +33,19 @@ std::string reasonOfAv(int error) {
 }  // namespace
 
 struct VideoFile::Impl {
-  std::string name, reason;
+  VideoFile& film;
   std::unique_ptr<AVFormatContext, CloseInput> format;
   GreyDecoder decoder;
   HeldAv<AVFrame> frame;
   HeldAv<AVPacket> packet;
-  AVStream* stream = nullptr;  // of the format
-  int width = 0, height = 0;
-  double rate = 0.0;
+  AVStream* stream = nullptr;           // of the format
   std::int64_t first = AV_NOPTS_VALUE;  // in the stream's units
   std::int64_t last = -1;               // ns
   bool drained = false, ended = false;
 
-  [[noreturn]] void fail(const std::string& why) const { throw Error(ErrorKind::damaged, Where{name}, why); }
+  explicit Impl(VideoFile& of) : film(of) {}
+
+  [[noreturn]] void fail(const std::string& why) const { throw Error(ErrorKind::damaged, Where{film.name_}, why); }
 
   void open(const std::filesystem::path& file) {
     std::error_code ignored;
@@ -61,13 +61,13 @@ struct VideoFile::Impl {
     const int which = av_find_best_stream(format.get(), AVMEDIA_TYPE_VIDEO, -1, -1, nullptr, 0);
     if (which < 0) fail("holds no pictures");
     stream = format->streams[which];
-    width = stream->codecpar->width;
-    height = stream->codecpar->height;
-    if (width < 16 || height < 16 || width > mostWidth || height > mostWidth)
-      fail(fmt::format("its pictures have {} x {} pixels", width, height));
+    film.width_ = stream->codecpar->width;
+    film.height_ = stream->codecpar->height;
+    if (film.width_ < 16 || film.height_ < 16 || film.width_ > mostWidth || film.height_ > mostWidth)
+      fail(fmt::format("its pictures have {} x {} pixels", film.width_, film.height_));
     const AVRational guess = stream->r_frame_rate.num > 0 ? stream->r_frame_rate : stream->avg_frame_rate;
-    rate = guess.den > 0 ? av_q2d(guess) : 0.0;
-    if (!(rate >= 1.0 && rate <= 1000.0)) fail("does not say how many frames a second it has");
+    film.rate_ = guess.den > 0 ? av_q2d(guess) : 0.0;
+    if (!(film.rate_ >= 1.0 && film.rate_ <= 1000.0)) fail("does not say how many frames a second it has");
     if (!decoder.open(*stream->codecpar)) fail("its pictures are of a kind that this libav cannot decode");
     frame.reset(av_frame_alloc());
     packet.reset(av_packet_alloc());
@@ -83,7 +83,7 @@ struct VideoFile::Impl {
       for (;;) {
         const int read = av_read_frame(format.get(), packet.get());
         if (read < 0) {
-          if (read != AVERROR_EOF) reason = fmt::format("{}: breaks off: {}", name, reasonOfAv(read));
+          if (read != AVERROR_EOF) film.reason_ = fmt::format("{}: breaks off: {}", film.name_, reasonOfAv(read));
           drained = true;
           avcodec_send_packet(decoder.context(), nullptr);
           break;
@@ -91,16 +91,16 @@ struct VideoFile::Impl {
         const bool ours = packet->stream_index == stream->index;
         const int sent = ours ? avcodec_send_packet(decoder.context(), packet.get()) : 0;
         av_packet_unref(packet.get());
-        if (sent < 0) reason = fmt::format("{}: a damaged frame was left out: {}", name, reasonOfAv(sent));
+        if (sent < 0) film.reason_ = fmt::format("{}: a damaged frame was left out: {}", film.name_, reasonOfAv(sent));
         if (ours && sent >= 0) break;
       }
     }
   }
 };
 
-VideoFile::VideoFile(const std::filesystem::path& file) : impl_(std::make_unique<Impl>()) {
+VideoFile::VideoFile(const std::filesystem::path& file)
+    : FrameSource(file.filename().string(), 0, 0, 0.0), impl_(std::make_unique<Impl>(*this)) {
   av_log_set_level(AV_LOG_QUIET);  // errors are reported by return values
-  impl_->name = file.filename().string();
   impl_->open(file);
 }
 
@@ -112,16 +112,16 @@ FrameStatus VideoFile::next(std::chrono::nanoseconds, Frame& out) {
     if (!i.decode()) break;
     const std::int64_t stamp = i.frame->best_effort_timestamp;
     if (stamp == AV_NOPTS_VALUE) {
-      i.reason = i.name + ": a frame without a time was left out";
+      reason_ = name_ + ": a frame without a time was left out";
       continue;
     }
     if (i.first == AV_NOPTS_VALUE) i.first = stamp;
     const std::int64_t time = av_rescale_q(stamp - i.first, i.stream->time_base, AVRational{1, 1'000'000'000});
-    if (time <= i.last || !i.decoder.convert(*i.frame, i.width, i.height, out.image)) {
-      i.reason = i.name + ": a frame out of order or of another size was left out";
+    if (time <= i.last || !i.decoder.convert(*i.frame, width_, height_, out.image)) {
+      reason_ = name_ + ": a frame out of order or of another size was left out";
       continue;
     }
-    const double periods = i.last < 0 ? 1.0 : 1e-9 * static_cast<double>(time - i.last) * i.rate;
+    const double periods = i.last < 0 ? 1.0 : 1e-9 * static_cast<double>(time - i.last) * rate_;
     out.missed = periods > lateBy ? static_cast<std::uint64_t>(std::floor(periods - 0.5)) : 0;
     out.time = i.last = time;
     return FrameStatus::frame;
@@ -129,12 +129,6 @@ FrameStatus VideoFile::next(std::chrono::nanoseconds, Frame& out) {
   i.ended = true;
   return FrameStatus::ended;
 }
-
-int VideoFile::width() const { return impl_->width; }
-int VideoFile::height() const { return impl_->height; }
-double VideoFile::rate() const { return impl_->rate; }
-std::string VideoFile::name() const { return impl_->name; }
-std::string VideoFile::reason() const { return impl_->reason; }
 
 }  // namespace calot::recorder
 

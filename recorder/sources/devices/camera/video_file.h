@@ -18,12 +18,6 @@ class VideoFile final : public FrameSource {
   ~VideoFile() override;
 
   FrameStatus next(std::chrono::nanoseconds wait, Frame& out) override;
-  [[nodiscard]] int width() const override;
-  [[nodiscard]] int height() const override;
-  [[nodiscard]] double rate() const override;
-  [[nodiscard]] std::string name() const override;
-  /// Empty where the film ended as a whole one does.
-  [[nodiscard]] std::string reason() const override;
 
  private:
   struct Impl;

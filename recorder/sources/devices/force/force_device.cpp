@@ -3,52 +3,20 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <charconv>
-#include <thread>
 #include <utility>
-
-#include "recorder/base/errors.h"
 
 namespace calot::recorder {
 namespace {
 
-constexpr std::int64_t reconnectPeriod = 500'000'000;  // ns from one attempt to connect to the next
 constexpr std::chrono::milliseconds connectPatience{300};
 constexpr std::int64_t greetingPatience = 1'000'000'000;  // ns
-constexpr std::int64_t longestFall = 200'000'000;         // ns
-
-ForceDeviceSettings settingsOf(const DeviceRequest& request) {
-  ForceDeviceSettings out;
-  out.hands = request.hand ? static_cast<std::uint8_t>(1U << static_cast<unsigned>(*request.hand)) : std::uint8_t{3};
-  if (request.argument.empty()) return out;
-  std::string port;
-  out.host = request.argument;
-  if (const std::size_t colon = out.host.rfind(':'); colon != std::string::npos) {
-    port = out.host.substr(colon + 1);
-    out.host = out.host.substr(0, colon);
-    if (port.empty()) request.refuse("a port is missing behind the colon");
-  }
-  if (out.host.empty() || out.host.size() > 253) request.refuse("a host is missing: force:HOST:PORT");
-  for (const char c : out.host) {
-    if (c <= 0x20 || c >= 0x7f || c == '/' || c == ':') request.refuse("the host is no name or address");
-  }
-  if (port.empty()) return out;
-  const auto [end, fault] = std::from_chars(port.data(), port.data() + port.size(), out.port);
-  if (fault != std::errc() || end != port.data() + port.size() || out.port < 1 || out.port > 65535)
-    request.refuse("the port is no number from 1 to 65535");
-  return out;
-}
 
 }  // namespace
 
 ForceDevice::ForceDevice(ForceDeviceSettings settings, DeviceClock clock)
-    : settings_(std::move(settings)), clock_(std::move(clock)) {
-  const std::string fault = connect();
-  if (!fault.empty()) {
-    throw Error(ErrorKind::failure, fmt::format("force device {}:{}: {}", settings_.host, settings_.port, fault),
-                {Remedy::listDevices});
-  }
+    : ForceFeedbackDevice(std::move(clock)), settings_(std::move(settings)) {
+  connectFirst(fmt::format("force device {}:{}", settings_.host, settings_.port));
+  gone_ = "the device is gone";
   const forcewire::Hello& hello = *hello_;
   info_.name = forceKind.name;
   info_.identity = fmt::format("force:{}/{}", hello.name, hello.serial);
@@ -69,15 +37,13 @@ ForceDevice::ForceDevice(ForceDeviceSettings settings, DeviceClock clock)
   c.rate = hello.rate;
 }
 
-ForceDevice::~ForceDevice() { close(); }
-
 std::string ForceDevice::connect() {
   std::string fault;
-  nextAttempt_ = clock_() + reconnectPeriod;
   stream_ = TcpStream::connect(settings_.host, settings_.port, connectPatience, fault);
   if (!stream_.open()) return fault;
   decoder_.reset();
   frames_.clear();
+  toldInvalid_ = false;
   std::array<std::byte, 4096> buffer;
   const std::int64_t until = clock_() + greetingPatience;
   while (frames_.empty() && stream_.open() && clock_() < until) {
@@ -107,25 +73,6 @@ std::string ForceDevice::connect() {
   return {};
 }
 
-void ForceDevice::reconnect(DeviceInput& out) {
-  const std::string fault = connect();
-  if (fault == refusal_) return;
-  refusal_ = fault;
-  if (!fault.empty())
-    out.events.push_back({DeviceEvent::Kind::disconnected, clock_(), fmt::format("{}: {}", info_.identity, fault)});
-}
-
-void ForceDevice::lose(const std::string& why, DeviceInput& out) {
-  stream_.close();
-  nextAttempt_ = clock_() + reconnectPeriod;
-  greeted_ = false;
-  refusal_.clear();
-  for (auto& output : output_) {
-    if (output) output->lost();
-  }
-  out.events.push_back({DeviceEvent::Kind::disconnected, clock_(), fmt::format("{}: {}", info_.identity, why)});
-}
-
 void ForceDevice::take(const forcewire::Pose& pose, DeviceInput& out) {
   const auto h = static_cast<std::size_t>(pose.hand);
   if (!output_[h]) return;
@@ -142,8 +89,7 @@ void ForceDevice::take(const forcewire::Pose& pose, DeviceInput& out) {
     sample.gripper = pose.gripper;
     sample.buttons = pose.buttons;
   } else if (pose.valid && !std::exchange(toldInvalid_, true)) {
-    out.events.push_back({DeviceEvent::Kind::malformed, now,
-                          fmt::format("{}: a pose that is not finite, too far, or no rotation", info_.identity)});
+    tell(DeviceEvent::Kind::malformed, info_.identity + ": a pose that is not finite, too far, or no rotation", out);
   }
   out.samples.push_back(sample);
 
@@ -155,12 +101,12 @@ void ForceDevice::take(const forcewire::Pose& pose, DeviceInput& out) {
   m.valid = sample.valid;
   if (sample.valid) m.shown = pose.shown;
   m.clutched = (sample.buttons & clutchButton) != 0;
-  const Wrench wrench = output_[h]->measured(m, now);
+  const Wrench wrench = measured(h, m, now);
   stream_.send(forcewire::encode(forcewire::WrenchFrame{pose.hand, output_[h]->number(), pose.deviceTime, wrench}));
-  reports_.note(h, output_[h]->statistics());
 }
 
-void ForceDevice::receive(DeviceInput& out) {
+void ForceDevice::read(std::chrono::nanoseconds wait, DeviceInput& out) {
+  if (wait.count() > 0 && frames_.empty() && !stream_.readable(wait)) return;
   std::array<std::byte, 16384> buffer;
   // Bounded, so that a sender that never stops cannot hold the thread.
   for (int i = 0; i < 16 && stream_.open(); ++i) {
@@ -175,70 +121,26 @@ void ForceDevice::receive(DeviceInput& out) {
     if (const auto* pose = std::get_if<forcewire::Pose>(&frame)) {
       take(*pose, out);
     } else if (const auto* told = std::get_if<forcewire::Fault>(&frame)) {
-      out.events.push_back(
-          {DeviceEvent::Kind::status, clock_(), fmt::format("{} says: {}", info_.identity, told->text)});
+      tell(DeviceEvent::Kind::status, fmt::format("{} says: {}", info_.identity, told->text), out);
     } else if (std::holds_alternative<forcewire::End>(frame)) {
       stream_.close();
       break;
     }
   }
-  if (!stream_.open()) lose("the device is gone", out);
-}
-
-void ForceDevice::poll(std::chrono::nanoseconds wait, DeviceInput& out) {
-  if (!open_) return;
-  if (!stream_.open()) {
-    if (clock_() < nextAttempt_) {
-      std::this_thread::sleep_for(std::min<std::chrono::nanoseconds>(wait, std::chrono::milliseconds(20)));
-      return;
-    }
-    reconnect(out);
-    if (!stream_.open()) return;
-  }
-  if (!greeted_) {
-    greeted_ = true;
-    toldInvalid_ = false;
-    out.events.push_back({DeviceEvent::Kind::connected, clock_(), info_.identity + ": there"});
-  }
-  if (wait.count() > 0 && frames_.empty() && !stream_.readable(wait)) return;
-  receive(out);
-}
-
-void ForceDevice::setWrench(Hand hand, const Wrench& wrench) {
-  auto& output = output_[static_cast<std::size_t>(hand)];
-  if (output) output->command(wrench, clock_());
-}
-
-void ForceDevice::close() {
-  if (!open_) return;
-  for (auto& output : output_) {
-    if (output) output->release();
-  }
-  const std::int64_t until = clock_() + longestFall;
-  DeviceInput unread;
-  const auto idle = [this] {
-    return std::all_of(output_.begin(), output_.end(), [](const auto& o) { return !o || o->idle(); });
-  };
-  while (stream_.open() && !idle() && clock_() < until) poll(std::chrono::milliseconds(2), unread);
-  open_ = false;
-  if (stream_.open()) stream_.send(forcewire::encode(forcewire::End{}));
-  stream_.close();
 }
 
 constinit const DeviceKind forceKind{
     .name = "force",
     .usage = "force[:HOST[:PORT]]",
     .help = "a force device by Calot's own protocol; calot devices simulate plays one",
-    .list =
-        [] {
-          return std::vector<ListedDevice>{
-              {"force:HOST:PORT",
-               fmt::format("a force device by Calot's own protocol; default localhost:{}", forcewire::defaultPort),
-               true, "2", "6, jaw, buttons; shows force", "1000"}};
-        },
+    .row = {"force:HOST:PORT", "a force device by Calot's own protocol; default localhost:18950", "2",
+            "6, jaw, buttons; shows force", "1000"},
     .open =
         [](const DeviceRequest& request) {
-          return OpenedDevice{std::make_unique<ForceDevice>(settingsOf(request)), nullptr};
+          ForceDeviceSettings settings;
+          if (request.hand) settings.hands = static_cast<std::uint8_t>(1U << static_cast<unsigned>(*request.hand));
+          request.readAddress(settings.host, settings.port);
+          return OpenedDevice{std::make_unique<ForceDevice>(std::move(settings)), nullptr};
         },
 };
 

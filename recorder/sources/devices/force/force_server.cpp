@@ -224,14 +224,7 @@ void ForceServer::serve(TcpStream client, const std::atomic<bool>& stop,
 }
 
 void ForceServer::run(const std::atomic<bool>& stop, const std::function<void(const std::string&)>& tell) {
-  while (!stop) {
-    std::optional<TcpStream> client = listener_.accept(patience);
-    if (!client) continue;
-    tell("a client is there");
-    serve(std::move(*client), stop, tell);
-    tell("the client is gone");
-    if (settings_.once) return;
-  }
+  listener_.serve(stop, settings_.once, tell, [&](TcpStream client) { serve(std::move(client), stop, tell); });
 }
 
 }  // namespace calot::recorder

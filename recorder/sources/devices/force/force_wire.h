@@ -65,7 +65,7 @@ struct End {};
 
 using Frame = std::variant<Hello, Welcome, Pose, WrenchFrame, Fault, End>;
 
-std::vector<std::byte> encode(const Frame& frame);
+std::vector<std::byte> encode(Frame frame);
 
 /// Takes a stream apart. A stream that is none is refused as a whole; numbers that make no sense are the receiver's.
 class Decoder {
