@@ -335,7 +335,7 @@ void RatingPage::showEarlier() {
   }
   replaces_ = earlier.has_value();
   draft_.emplace(shown);
-  // What was begun and not stored is newer than what was stored.
+  // Answers that were begun and not stored are newer than the stored ones.
   DraftAnswers answers = keptDraft(draftSubject());
   if (answers.empty() && earlier) {
     for (const analytics::FormItem& item : shown.items()) {

@@ -36,13 +36,13 @@ class ObjParser {
       for (int k = 0; k < 3; ++k) {
         if (mesh_.triangle[t][k] < mesh_.vertices()) continue;
         line_ = triangleLine_[t];
-        fail(fmt::format("vertex {} is wanted, but the file has {}", mesh_.triangle[t][k] + 1, mesh_.vertices()));
+        fail(fmt::format("vertex {} is expected, but the file has {}", mesh_.triangle[t][k] + 1, mesh_.vertices()));
       }
     }
     if (mesh_.vertex.empty())
       throw Error(ErrorKind::damaged, Where{name_}, "no vertex; not an OBJ file, or an empty one");
     if (mesh_.triangle.empty())
-      throw Error(ErrorKind::damaged, Where{name_}, "vertices but no face; a surface is wanted");
+      throw Error(ErrorKind::damaged, Where{name_}, "vertices but no face; a surface is expected");
     return std::move(mesh_);
   }
 
@@ -64,7 +64,7 @@ class ObjParser {
     } else if (keyword == "f") {
       readFace(words);
     } else if (std::find(passedOver.begin(), passedOver.end(), keyword) == passedOver.end()) {
-      fail(fmt::format("\"{}\" is no keyword of a polygonal OBJ file", shown(keyword)));
+      fail(fmt::format("\"{}\" is not a keyword of a polygonal OBJ file", shown(keyword)));
     }
   }
 

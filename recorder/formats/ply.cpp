@@ -46,7 +46,7 @@ class PlyBody {
         if (mesh_.triangle[t][k] < mesh_.vertices()) continue;
         throw Error(
             ErrorKind::damaged, Where{name_, fmt::format("face {}", face_[t])},
-            fmt::format("vertex {} is wanted, but the file has {} (from 0)", mesh_.triangle[t][k], mesh_.vertices()));
+            fmt::format("vertex {} is expected, but the file has {} (from 0)", mesh_.triangle[t][k], mesh_.vertices()));
       }
     }
     return std::move(mesh_);
@@ -109,13 +109,13 @@ class PlyBody {
   std::uint32_t nextCount(PlyType type, const char* what) {
     const double value = next(type);
     if (!(value >= 0.0 && value <= 4294967295.0) || value != std::floor(value)) {
-      fail(fmt::format("{} is no {}", value, what));
+      fail(fmt::format("{} is not {}", value, what));
     }
     return static_cast<std::uint32_t>(value);
   }
 
   void pass(const PlyProperty& property) {
-    const std::uint32_t count = property.list ? nextCount(property.countType, "length of a list") : 1;
+    const std::uint32_t count = property.list ? nextCount(property.countType, "a length of a list") : 1;
     for (std::uint32_t i = 0; i < count; ++i) {
       // Unused values may be anything, including NaN.
       header_.format == PlyFormat::ascii ? static_cast<void>(nextWord()) : static_cast<void>(next(property.type));
@@ -149,7 +149,7 @@ class PlyBody {
         pass(property);
         continue;
       }
-      const std::uint32_t count = nextCount(property.countType, "length of a list");
+      const std::uint32_t count = nextCount(property.countType, "a length of a list");
       if (count < 3) fail(fmt::format("a face with {} corners", count));
       const int first = nextIndex(property.type);
       int before = nextIndex(property.type);
@@ -164,7 +164,7 @@ class PlyBody {
   }
 
   int nextIndex(PlyType type) {
-    const std::uint32_t index = nextCount(type, "index");
+    const std::uint32_t index = nextCount(type, "an index");
     if (index >= limits_.vertices) fail(fmt::format("vertex {}, but a file has at most {}", index, limits_.vertices));
     return static_cast<int>(index);
   }
@@ -238,7 +238,7 @@ class HeaderReader {
       } else if (keyword == "property") {
         readProperty(words);
       } else {
-        fail(fmt::format("\"{}\" is no keyword of a PLY header", shown(keyword)));
+        fail(fmt::format("\"{}\" is not a keyword of a PLY header", shown(keyword)));
       }
     }
     check();
@@ -299,7 +299,7 @@ class HeaderReader {
   PlyType readType(std::string_view word) const {
     const auto* const found =
         std::find_if(typeWords.begin(), typeWords.end(), [&](const auto& entry) { return entry.first == word; });
-    if (found == typeWords.end()) fail(fmt::format("\"{}\" is no type of PLY", shown(word)));
+    if (found == typeWords.end()) fail(fmt::format("\"{}\" is not a type of PLY", shown(word)));
     return found->second;
   }
 
@@ -342,12 +342,12 @@ class HeaderReader {
         const int at = plyCorners(element);
         if (at < 0) fail("faces have no property \"vertex_indices\"");
         const PlyProperty& corners = element.properties[static_cast<std::size_t>(at)];
-        if (!corners.list) fail("\"vertex_indices\" is no list");
+        if (!corners.list) fail("\"vertex_indices\" is not a list");
         if (corners.type == PlyType::float32 || corners.type == PlyType::float64) fail("indices are whole numbers");
       }
     }
     if (!hasVertices) fail("no vertex");
-    if (!hasFaces) fail("no face; a surface is wanted");
+    if (!hasFaces) fail("no face; a surface is expected");
   }
 
   std::string_view& text_;

@@ -30,7 +30,7 @@ LengthUnit parseLengthUnit(const std::string& word) {
   if (word == "m") return LengthUnit::metre;
   if (word == "cm") return LengthUnit::centimetre;
   if (word == "mm") return LengthUnit::millimetre;
-  throw Error(ErrorKind::invalid, fmt::format("unit \"{}\": m, cm or mm is wanted", shown(word)));
+  throw Error(ErrorKind::invalid, fmt::format("unit \"{}\": m, cm or mm is expected", shown(word)));
 }
 
 namespace {
