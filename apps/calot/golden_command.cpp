@@ -15,6 +15,7 @@
 #include "apps/calot/source_options.h"
 #include "recorder/base/file_bytes.h"
 #include "recorder/base/record_reader.h"
+#include "recorder/base/record_writer.h"
 #include "recorder/base/text_output.h"
 #include "recorder/formats/scene_file.h"
 #include "recorder/live/worker_pool.h"
@@ -117,24 +118,13 @@ GoldenList readGoldenList(const std::filesystem::path& file) {
 
 /// The list as JSON; every number reads back as the same bits.
 std::string toJson(const GoldenList& list) {
-  Json json{{"simulation_version", list.simulationVersion}, {"reason", list.reason}};
-  if (!list.valuesReason.empty()) json["values_reason"] = list.valuesReason;
-  json["recordings"] = Json::array();
-  for (const GoldenEntry& e : list.recordings) {
-    Json values = Json::array();
-    for (const GoldenValue& v : e.values) {
-      Json value{{"name", v.name}};
-      if (!v.subject.empty()) value["subject"] = v.subject;
-      value["version"] = v.version;
-      value["value"] = v.value;
-      values.push_back(value);
-    }
-    json["recordings"].push_back({{"file", e.file},
-                                  {"scene", e.scene},
-                                  {"performer", e.performer},
-                                  {"seed", e.seed},
-                                  {"seconds", e.seconds},
-                                  {"checkpoints", values}});
+  Json json = recorder::writeRecord(list);
+  const auto omitEmpty = [](Json& row, const char* name) {
+    if (row[name] == "") row.erase(name);
+  };
+  omitEmpty(json, "values_reason");
+  for (Json& recording : json["recordings"]) {
+    for (Json& value : recording["checkpoints"]) omitEmpty(value, "subject");
   }
   return json.dump(1) + "\n";
 }
