@@ -70,7 +70,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What may stand beside a pseudonym that is a value of its own: a cell, a string, a word of a sentence.
+/// Characters that delimit a pseudonym as a separate value: of a cell, a string, a word of a sentence.
 bool separates(char c) {
   return static_cast<unsigned char>(c) <= ' ' || std::string_view(",;|\"'`<>()[]{}=").find(c) != std::string_view::npos;
 }
@@ -111,7 +111,7 @@ bool fileHolds(const fs::path& file, const Wanted& wanted) {
     const std::string& name = wanted.pseudonym;
     for (std::size_t at = text && !name.empty() ? window.find(name) : std::string::npos; at != std::string::npos;
          at = window.find(name, at + 1)) {
-      // What stands beside it at an edge is known in the next piece, or was in the one before.
+      // At an edge, the neighbouring character is in the next piece or was in the previous one.
       const bool whole = (at > 0 || first) && (at + name.size() + 1 < window.size() || !in);
       if (whole && standsAlone(window, at, name.size())) return true;
     }

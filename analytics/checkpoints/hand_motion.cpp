@@ -47,7 +47,7 @@ Measured measureHand(double minCoverage, const Motion& motion, MotionMeasure mea
 struct HandMotion {
   MotionMeasure measure;
 
-  /// Of a hand, or of a hand in a phase.
+  /// The figure of a hand, or of a hand in a phase.
   [[nodiscard]] Measured figure(const AttemptEnd& end, std::size_t subject,
                                 const CheckpointDefinition& declared) const {
     const std::size_t hand = subject % handCount;

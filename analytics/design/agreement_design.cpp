@@ -36,7 +36,7 @@ FigurePairs pairsOf(const DesignFigure& first, const DesignFigure& second) {
 }
 
 /// The figure that others are held against, by its name or its checkpoint's.
-/// @throws Error (invalid) where it is none or several.
+/// @throws Error (invalid) unless it is exactly one.
 const DesignFigure& againstOf(const DesignData& data, const std::string& asked) {
   // Behind a column's name may stand what is better.
   const std::size_t colon = asked.rfind(':');

@@ -170,7 +170,8 @@ void IntakeJournal::load() {
     return;
   }
   // A file that does not begin so may be anything: it is not emptied.
-  if (line != head) throw Error(ErrorKind::damaged, Where{path_.string()}, "is no journal of Calot; name another file");
+  if (line != head)
+    throw Error(ErrorKind::damaged, Where{path_.string()}, "is not a journal of Calot; name another file");
   std::uint64_t good = head.size();
   while (std::getline(in, line) && !in.eof()) {  // one without its end was cut off
     try {

@@ -98,7 +98,7 @@ struct Member {
   bool completed = false;
 };
 
-/// Who is in the study, by attempt; fills the study's counts and the rest of its flow.
+/// Selects the study's attempts; fills the study's counts and the rest of its flow.
 std::map<std::string, Member> members(Study& study, const std::vector<AttemptRow>& attempts,
                                       const StudyOptions& options, const std::string& name) {
   std::map<std::string, Member> member;

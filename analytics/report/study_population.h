@@ -49,7 +49,7 @@ bool groupBefore(const std::string& a, const std::string& b);
 std::array<std::string, 2> chooseGroups(const std::map<std::string, std::uint64_t>& present,
                                         const StudyChoices& choices, const std::string& path, const std::string& left);
 
-/// The group that is expected to do better, or empty. @throws Error (invalid) where `choices.better` is none of the
+/// The group that is expected to do better, or empty. @throws Error (invalid) where `choices.better` is not one of the
 /// two.
 std::string betterOf(const std::array<std::string, 2>& groups, const StudyChoices& choices);
 

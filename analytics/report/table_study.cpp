@@ -22,7 +22,7 @@ using recorder::shown;
 
 using Rows = std::map<std::string, std::vector<const Record*>>;  ///< by participant
 
-/// Of several rows of a participant the rule makes one value; without a rule they are refused.
+/// The rule reduces several rows of a participant to one value; without a rule they are refused.
 /// @param[out] several set where there were any @return how many rows went out because the first counts
 std::uint64_t applyRule(std::array<Rows, 2>& rows, const CsvTable& table, const TableStudyOptions& options,
                         bool& several) {

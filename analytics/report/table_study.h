@@ -50,7 +50,7 @@ struct Record {
   std::vector<std::optional<double>> values;  ///< by outcome
 };
 
-/// @throws Error (invalid) for a column that is not there or is named twice, or a word behind the colon that is none.
+/// @throws Error (invalid) for a column that is missing or named twice, or an unknown word behind the colon.
 std::vector<Outcome> outcomesOf(const CsvTable& table, const TableStudyOptions& options);
 
 /// @throws Error (invalid) for a column that is not there; Error (damaged), naming line and column, for a row without

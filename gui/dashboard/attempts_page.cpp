@@ -231,7 +231,7 @@ void AttemptsPage::filter() {
   if (tag_->currentIndex() > 0) wanted.tag = tag_->currentText().toStdString();
   filter_.set(wanted);
   showCount();
-  // What was current may be hidden now: then it is the first of what is left.
+  // If the current attempt is hidden now, the first of the remaining ones becomes current.
   if (table_->currentIndex().isValid()) return;
   if (filter_.rowCount() > 0)
     table_->selectRow(0);

@@ -296,7 +296,7 @@ void DashboardWindow::importRecordings(const QStringList& paths) {
   }
   if (!imports_.busy())
     imports_.configure(settings::calotProgram(), QString::fromStdString(document_->path()), settings::importThreads());
-  // Where recordings come from is where their replays are looked for.
+  // Replays are looked for in the folders of the imported recordings.
   for (const QString& file : files) settings::rememberRecordingFolder(QFileInfo(file).absolutePath());
   importDock_->show();
   imports_.add(files);

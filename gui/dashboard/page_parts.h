@@ -86,7 +86,7 @@ class CohortPage : public QWidget {
   void showEvent(QShowEvent* event) override;
   /// Shows what the document holds. @pre document_ is not null
   virtual void read() = 0;
-  /// What is shown is out of date: read() follows, at once or when the page is seen next.
+  /// The page is out of date: read() follows, at once or when the page is seen next.
   void outdate();
   /// Calls, and reports a fault as a problem. @return false if there was one
   bool tryTo(const std::function<void()>& call);
@@ -98,7 +98,7 @@ class CohortPage : public QWidget {
   bool outdated_ = false;
 };
 
-/// Who and what an attempt is, its verification badge, and whether a performer made it. Stands over everything that is
+/// Identity of an attempt, its verification badge, and whether a performer made it. Stands over everything that is
 /// shown of one attempt.
 class AttemptBanner : public QWidget {
   Q_OBJECT

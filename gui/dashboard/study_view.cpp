@@ -52,7 +52,7 @@ std::string tableText(const analytics::ReportTable& table) {
 
 std::string paragraph(const std::string& text) { return "<p>" + analytics::escaped(text) + "</p>"; }
 
-/// What of the database went out. @return a warning, or empty
+/// Registers the attempts that were exported. @return a warning, or empty
 std::string noteExport(const analytics::Study& study, const std::string& database, const std::string& kind,
                        const std::string& target) {
   try {

@@ -157,7 +157,7 @@ const TrackEvent* TimelineBar::eventAt(const QPoint& at) const {
   double nearest = reach + 1.0;
   for (const TrackEvent& event : track_.events) {
     const double away = std::abs(s.x(event.time) - at.x());
-    // Of those that stand together the error is meant.
+    // Among marks that stand together, the error is chosen.
     const bool better =
         away < nearest - 1.0 || (away < nearest + 1.0 && event.error && best != nullptr && !best->error);
     if (away <= reach && (best == nullptr || better)) {

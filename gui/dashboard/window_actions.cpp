@@ -69,7 +69,7 @@ class DecisionCommand : public QUndoCommand {
   std::shared_ptr<std::atomic<bool>> failed_ = std::make_shared<std::atomic<bool>>(false);  ///< by the writer's thread
 };
 
-/// Who decides, and about which attempts of which database.
+/// The person who decides, the attempts and their database.
 struct Decision {
   std::string database, by;
   std::vector<analytics::AttemptRow> attempts;
@@ -247,7 +247,7 @@ constexpr int settleTime = 1500;       // ms for pictures and animations to be o
 void waitFor(const std::function<bool()>& condition) {
   QElapsedTimer clock;
   clock.start();
-  // What was wished for a moment ago may not have begun: the condition must hold for a while.
+  // Recently requested work may not have begun: the condition must hold for a while.
   qint64 since = -1;
   while (clock.elapsed() < maxWaiting && (since < 0 || clock.elapsed() < since + settleTime)) {
     QCoreApplication::processEvents(QEventLoop::AllEvents, 50);

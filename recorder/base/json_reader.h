@@ -44,7 +44,7 @@ class JsonPlace {
   [[nodiscard]] JsonPlace at(const std::string& key) const;
   /// An item of a list. @pre it is a list of more than i items
   [[nodiscard]] JsonPlace at(std::size_t i) const { return list(i + 1, static_cast<std::size_t>(-1))[i]; }
-  /// Keys of an object. @throws Error (damaged) where it is none
+  /// Keys of an object. @throws Error (damaged) if it is not an object
   [[nodiscard]] std::vector<std::string> keys() const;
   /// Place of a key, which may be absent, for messages.
   [[nodiscard]] JsonPlace named(const std::string& key) const;

@@ -60,8 +60,8 @@ LoadedScene parseScene(const Asset& file, const FetchAsset& fetch);
 /// @throws Error (damaged) as parseScene, and where a named asset is missing, double, or named by nobody.
 LoadedScene sceneFromAssets(std::vector<Asset> assets);
 
-/// Where gravity pulls, by a scene file that another version's engine reads: its key "gravity" alone is looked at.
-/// @return unit; SceneView's default where the file tells of none
+/// Direction of gravity in a scene file that another version's engine reads: its key "gravity" alone is read.
+/// @return unit; SceneView's default where the file has none
 [[nodiscard]] Vec3 downOf(const Asset& sceneFile);
 
 }  // namespace calot::recorder

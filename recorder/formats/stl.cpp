@@ -112,7 +112,7 @@ class StlText {
 
   std::vector<Vec3> read() {
     for (std::string word = nextWord(); !word.empty(); word = nextWord()) {
-      if (word != "solid") fail(fmt::format("\"solid\" is wanted, not \"{}\"", shown(word)));
+      if (word != "solid") fail(fmt::format("\"solid\" is expected, not \"{}\"", shown(word)));
       words_ = Words("");  // its name
       readSolid();
       words_ = Words("");
@@ -141,8 +141,8 @@ class StlText {
   void expect(std::string_view wanted) {
     const std::string word = nextWord();
     if (word == wanted) return;
-    if (word.empty()) fail(fmt::format("the file ends where \"{}\" is wanted", wanted));
-    fail(fmt::format("\"{}\" is wanted, not \"{}\"", wanted, shown(word)));
+    if (word.empty()) fail(fmt::format("the file ends where \"{}\" is expected", wanted));
+    fail(fmt::format("\"{}\" is expected, not \"{}\"", wanted, shown(word)));
   }
 
   void readSolid() {
@@ -150,7 +150,7 @@ class StlText {
       const std::string word = nextWord();
       if (word == "endsolid") return;
       if (word.empty()) fail("the file ends before \"endsolid\"");
-      if (word != "facet") fail(fmt::format("\"facet\" or \"endsolid\" is wanted, not \"{}\"", shown(word)));
+      if (word != "facet") fail(fmt::format("\"facet\" or \"endsolid\" is expected, not \"{}\"", shown(word)));
       if (corner_.size() / 3 >= limits_.triangles) fail(fmt::format("more than {} triangles", limits_.triangles));
       expect("normal");
       for (int k = 0; k < 3; ++k) {
@@ -210,7 +210,7 @@ TriangleMesh parseStl(std::span<const std::byte> bytes, const std::string& name,
                 fmt::format("{} triangles in a binary STL file take {} bytes, but it has {}",
                             littleEndian(bytes.data() + 80), binaryLength(bytes), bytes.size()));
   }
-  if (corner.empty()) throw Error(ErrorKind::damaged, Where{name}, "no triangle; a surface is wanted");
+  if (corner.empty()) throw Error(ErrorKind::damaged, Where{name}, "no triangle; a surface is expected");
   return joined(corner, name, limits);
 }
 

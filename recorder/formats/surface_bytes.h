@@ -42,7 +42,7 @@ bool isSurfaceName(const std::string& name);
 
 /// A surface from a file's bytes, in metres. Indices are in range and coordinates finite; nothing else is promised.
 /// @param name what messages call it; its end says the format
-/// @throws Error (damaged), naming the place, or where the name is none of a surface file
+/// @throws Error (damaged), naming the place, or if the name is not that of a surface file
 TriangleMesh parseSurface(std::span<const std::byte> bytes, const std::string& name, LengthUnit unit,
                           const SurfaceLimits& limits = {});
 

@@ -37,7 +37,7 @@ std::string take(std::span<const std::byte> bytes, Row& out) {
   return fields.fault;
 }
 
-/// Where a row of a block's columns lies.
+/// Position of a row of a block's columns.
 struct BlockRow {
   const Layout& layout;
   const Block& block;

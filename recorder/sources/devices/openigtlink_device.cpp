@@ -18,7 +18,7 @@ namespace {
 using openigtlink::Item;
 
 constexpr std::chrono::milliseconds patience{300};
-constexpr std::size_t maxFaults = 16;  // kinds of fault told a connection
+constexpr std::size_t maxFaults = 16;  // kinds of fault reported per connection
 constexpr double maxGripper = 3.2;     // rad
 constexpr int statusOk = 1;
 
@@ -77,7 +77,7 @@ void OpenIgtLinkDevice::take(const Item& item, DeviceInput& out) {
       if (std::isfinite(item.value) && std::abs(item.value) <= maxGripper)
         gripper_[h] = std::max(0.0, item.value);
       else
-        tellOnce(DeviceEvent::Kind::malformed, fmt::format("{}: an opening that is no angle", item.name), out);
+        tellOnce(DeviceEvent::Kind::malformed, fmt::format("{}: an opening that is not an angle", item.name), out);
       return;
     }
     if (item.name != tool) continue;
@@ -107,7 +107,7 @@ void OpenIgtLinkDevice::read(std::chrono::nanoseconds wait, DeviceInput& out) {
     const std::size_t n = stream_.receive(buffer);
     if (n == 0) break;
     if (!decoder_.take(std::span(buffer.data(), n), [&](const Item& item) { take(item, out); })) {
-      lose("disconnected: what the server sends is no OpenIGTLink", out);
+      lose("disconnected: what the server sends is not OpenIGTLink", out);
       return;
     }
   }

@@ -13,7 +13,7 @@
 namespace calot::recorder {
 namespace {
 
-constexpr double maxStep = 0.05;   // s; after a longer gap the pointer does not leap
+constexpr double maxStep = 0.05;  // s; after a longer gap the pointer does not leap
 constexpr std::size_t maxName = 64;
 
 }  // namespace
@@ -69,7 +69,7 @@ PointerDevice::PointerDevice(DeviceClock clock, const char* name, double reach) 
 std::string PointerDevice::connect() {
   const std::string fault = find();
   if (fault.empty()) last_ = clock_();
-  // Why a lost device is not found again says no more than its loss.
+  // The reason why a lost device is not found again adds nothing to its loss.
   return fault.empty() || loss_.empty() ? fault : loss_;
 }
 

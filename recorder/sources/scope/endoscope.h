@@ -70,7 +70,7 @@ class Endoscope {
   ScopeJoints start_;
 };
 
-/// Who holds the endoscope: keys, a device, or an assistant who follows the instruments.
+/// Driver of the endoscope: keys, a device, or an assistant who follows the instruments.
 class ScopeDriver {
  public:
   ScopeDriver() = default;
@@ -81,7 +81,7 @@ class ScopeDriver {
   /// The endoscope stands so: before the first tick.
   virtual void setOut(const ScopeJoints& joints) = 0;
 
-  /// Where the endoscope is to go; it follows within its limits and speeds. Called once for each tick, in order.
+  /// Target of the endoscope; it follows within its limits and speeds. Called once for each tick, in order.
   /// @param time of the attempt (s) @param present joints now @param hands both instruments in this tick
   [[nodiscard]] virtual ScopeJoints wish(double time, const ScopeJoints& present, const TickSamples& hands) = 0;
 

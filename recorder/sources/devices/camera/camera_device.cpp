@@ -170,7 +170,7 @@ void CameraDevice::measure(std::int64_t time, DeviceInput& out) {
   std::uint64_t missed = 0;
   for (std::size_t i = 0; i < camera_.size(); ++i) {
     Camera& c = *camera_[i];
-    // Of the same moment: nearer than half a period.
+    // Simultaneous: nearer than half a period.
     if (!c.waiting || c.pending.time > time + period_ / 2) continue;
     c.waiting = false;
     missed = frames.empty() ? c.pending.missed : std::min(missed, c.pending.missed);
@@ -352,7 +352,7 @@ std::unique_ptr<CameraDevice> openFilms(const std::vector<std::string>& files, c
     info.sourceFile += sources[i]->name();
     hashes += sha256OfFile(files[i]);
   }
-  // Of one film its hash; of two, that of both hashes' text.
+  // One film: its hash; two: the hash of both hashes' text.
   info.sourceSha256 = files.size() == 1 ? hashes : sha256Hex(std::as_bytes(std::span(hashes)));
   info.detail = "plays " + info.sourceFile;
   info.operatorKind = OperatorKind::kinematics;

@@ -61,9 +61,9 @@ std::string ForceDevice::connect() {
   if (frames_.empty()) return refuse("it does not say what it is");
   if (const auto* told = std::get_if<forcewire::Fault>(&frames_.front())) return refuse("it says: " + told->text);
   const auto* hello = std::get_if<forcewire::Hello>(&frames_.front());
-  if (hello == nullptr) return refuse("its first frame is no greeting");
+  if (hello == nullptr) return refuse("its first frame is not a greeting");
   if (std::string wrong = forcewire::faultOf(*hello); !wrong.empty()) return refuse(std::move(wrong));
-  if ((hello->hands & settings_.hands) == 0) return refuse("it has not the hand that is wanted");
+  if ((hello->hands & settings_.hands) == 0) return refuse("it does not have the requested hand");
   if (hello_ && (hello_->name != hello->name || hello_->serial != hello->serial || hello_->hands != hello->hands ||
                  hello_->handle.force.maxEffort != hello->handle.force.maxEffort))
     return refuse(fmt::format("another device answers there: {} ({})", hello->name, hello->serial));

@@ -81,7 +81,7 @@ struct Intention {
   std::uint8_t buttons = 0;
 };
 
-/// Where a hand of a script wants to be, in between its samples on the straight line. At its end it stays.
+/// Target of a scripted hand, between its samples on the straight line. At its end it stays.
 class IntendedPath {
  public:
   IntendedPath(const DeviceScript& script, Hand hand);

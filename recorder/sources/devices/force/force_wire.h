@@ -67,7 +67,7 @@ using Frame = std::variant<Hello, Welcome, Pose, WrenchFrame, Fault, End>;
 
 std::vector<std::byte> encode(Frame frame);
 
-/// Takes a stream apart. A stream that is none is refused as a whole; numbers that make no sense are the receiver's.
+/// Parses a stream. A malformed stream is refused as a whole; the receiver checks the numbers.
 class Decoder {
  public:
   /// Appends the frames that are complete. @returns false, with `fault()`, where the stream is not this protocol.

@@ -174,7 +174,7 @@ void HaplyDevice::take(const std::string& message, DeviceInput& out) {
   const Json state = Json::parse(message, nullptr, false);
   if (state.is_discarded()) {
     if (!std::exchange(toldMalformed_, true))
-      tell(DeviceEvent::Kind::malformed, info_.identity + ": a message that is no JSON", out);
+      tell(DeviceEvent::Kind::malformed, info_.identity + ": a message that is not JSON", out);
     due_ = true;
     return;
   }

@@ -81,7 +81,7 @@ WebSocketStream WebSocketStream::connect(const std::string& host, int port, std:
   error_code wrong;
   tcp::resolver resolver(inside->io);
   const auto found = resolver.resolve(host, std::to_string(port), wrong);
-  // What is under way refers to `inside`; where it is given up, its socket is closed and its handlers run out first.
+  // Pending operations refer to `inside`; to abandon them, the socket is closed and its handlers run out first.
   const auto giveUp = [&](const error_code& why) {
     fault = why.message();
     error_code ignored;
