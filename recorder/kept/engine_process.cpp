@@ -152,7 +152,8 @@ bool EngineProcess::restore(const Keyframe& keyframe, const std::optional<NamedS
 
 void EngineProcess::announce(const StepInput& input) {
   stepRequest_.lateness = input.lateness;
-  wire::toWire(input.samples, input.logged, stepRequest_.ticks);
+  stepRequest_.ticks.resize(input.samples.size());
+  for (std::size_t i = 0; i < input.samples.size(); ++i) stepRequest_.ticks[i] = {input.samples[i], input.logged[i]};
   send(stepRequest_);
   ++announced_;
 }

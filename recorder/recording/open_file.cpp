@@ -21,23 +21,21 @@ namespace calot::recorder {
 using hdf5::Id;
 
 Superblock readSuperblock(const std::filesystem::path& path) {
+  const auto refuse = [&](const char* why) { throw Error(ErrorKind::damaged, Where{path.string()}, why); };
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
-  if (!std::filesystem::exists(status)) throw Error(ErrorKind::damaged, Where{path.string()}, "no such file");
-  if (std::filesystem::is_directory(status))
-    throw Error(ErrorKind::damaged, Where{path.string()}, "is a folder, not a recording");
-  if (!std::filesystem::is_regular_file(status))
-    throw Error(ErrorKind::damaged, Where{path.string()}, "is not a regular file");
+  if (!std::filesystem::exists(status)) refuse("no such file");
+  if (std::filesystem::is_directory(status)) refuse("is a folder, not a recording");
+  if (!std::filesystem::is_regular_file(status)) refuse("is not a regular file");
   std::ifstream in(path, std::ios::binary);
-  if (!in) throw Error(ErrorKind::damaged, Where{path.string()}, "cannot be opened; check its permissions");
+  if (!in) refuse("cannot be opened; check its permissions");
   std::array<char, 36> head{};
   in.read(head.data(), head.size());
-  if (in.gcount() == 0) throw Error(ErrorKind::damaged, Where{path.string()}, "is empty");
-  constexpr std::array<char, 8> signature{'\x89', 'H', 'D', 'F', '\r', '\n', '\x1a', '\n'};
+  if (in.gcount() == 0) refuse("is empty");
+  constexpr std::string_view signature = "\x89HDF\r\n\x1a\n";
   if (in.gcount() < static_cast<std::streamsize>(head.size()) ||
-      !std::equal(signature.begin(), signature.end(), head.begin())) {
-    throw Error(ErrorKind::damaged, Where{path.string()}, "is not an HDF5 file, so not a recording");
-  }
+      !std::string_view(head.data(), 8).starts_with(signature))
+    refuse("is not an HDF5 file, so not a recording");
   // HDF5 File Format Specification 3.0, II.A: byte 8 version, 9 size of offsets, 11 consistency flags, 28 end of file.
   Superblock s;
   s.version = static_cast<unsigned char>(head[8]);
