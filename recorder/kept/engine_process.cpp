@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -18,6 +19,9 @@
 namespace calot::recorder {
 
 namespace {
+
+/// How long an engine may take over one answer. A step takes milliseconds, the largest scene seconds.
+constexpr std::chrono::seconds enginePatience{120};
 
 /// Golden recordings hold no results; engines send them all the same.
 AttemptHeader withResults(AttemptHeader header) {

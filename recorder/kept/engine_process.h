@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <chrono>
 #include <optional>
 #include <span>
 #include <string>
@@ -92,9 +91,6 @@ class EngineProcess final : public Engine {
   StateDigest digest_;
   RecordedProcedure procedure_;
 };
-
-/// How long an engine may take over one answer. A step takes milliseconds, the largest scene seconds.
-inline constexpr std::chrono::seconds enginePatience{120};
 
 /// Takes an engine's next message. @returns why there is none: "ended: exit code 7"; empty where there is one
 std::string receiveMessage(ChildProcess& child, MessageHead& head, wire::Bytes& payload);

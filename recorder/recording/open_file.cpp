@@ -83,8 +83,12 @@ hdf5::Id openForReading(const std::filesystem::path& path, Access access) {
 namespace {
 
 using hdf5::damaged;
-using hdf5::Id;
 
+/// Names that one group may hold, and attributes of one object. The format has 130 and at most 999 assets, and 29.
+constexpr std::uint64_t maxLinks = 4096;
+constexpr std::uint64_t maxAttributes = 256;
+/// Stored together, and so unfolded together (bytes). Those of the format have 64 KiB, names more.
+constexpr std::uint64_t maxChunkBytes = std::uint64_t{4} << 20U;
 constexpr int maxDepth = 8;
 constexpr std::size_t maxLinkName = 255;
 /// Deflate cannot shrink more than 1032 to 1.
