@@ -50,11 +50,12 @@ std::string ResultReader::fault(const std::vector<wire::Column>& declared) const
                                        : fmt::format("{} is no result of the engine", differing.first->path);
 }
 
-std::string ResultReader::read(std::span<const std::byte> row, StepResult& result, RecordedProcedure& procedure) const {
+std::string ResultReader::read(std::uint64_t step, std::span<const std::byte> row, StepResult& result,
+                               RecordedProcedure& procedure) const {
   if (row.size() != offset_.back())
     return fmt::format("results have {} bytes instead of {}", row.size(), offset_.back());
   const auto place = [&](std::size_t column) { return row.data() + offset_[column - layout_.results]; };
-  RowVisitor<decltype(place)> visit{layout_, place, layout_.results, false, {}};
+  RowVisitor<decltype(place)> visit{layout_, place, step, layout_.results, false, {}};
   visitResult(result, visit);
   if (layout_.procedure) visitProcedure(procedure, visit);
   return visit.fault;
@@ -178,7 +179,8 @@ EngineStep EngineProcess::step(const StepInput& input) {
   }
   digest_.component = answer.components;
   digest_.field = answer.digested;
-  if (const std::string fault = results_->read(answer.results, result_, procedure_); !fault.empty()) fail(fault);
+  if (const std::string fault = results_->read(answer.step, answer.results, result_, procedure_); !fault.empty())
+    fail(fault);
   result_.step = answer.step;
   result_.events.clear();
   for (const wire::Event& event : answer.events) result_.events.push_back(wire::fromWire(event));

@@ -26,7 +26,7 @@ class ResultReader {
   [[nodiscard]] std::string fault(const std::vector<wire::Column>& declared) const;
   /// Reads a row. @param procedure of version 3 alone
   /// @return what of it no engine makes, or nothing @pre fault() had nothing to say
-  [[nodiscard]] std::string read(std::span<const std::byte> row, StepResult& result,
+  [[nodiscard]] std::string read(std::uint64_t step, std::span<const std::byte> row, StepResult& result,
                                  RecordedProcedure& procedure) const;
   /// The scene has a procedure that this version of StepResult judged.
   [[nodiscard]] bool hasProcedure() const { return layout_.procedure; }
