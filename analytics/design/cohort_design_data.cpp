@@ -73,12 +73,6 @@ PlacedAttempts place(DesignData& data, const std::map<std::string, std::vector<c
 constexpr const char* timeFigure = "elapsed-time";
 constexpr const char* durationFigure = "attempt-duration";
 
-void sortValues(DesignFigure& figure) {
-  std::stable_sort(figure.values.begin(), figure.values.end(), [](const DesignValue& a, const DesignValue& b) {
-    return a.person != b.person ? a.person < b.person : a.order < b.order;
-  });
-}
-
 /// Mean of all items of a completed form, or none.
 std::optional<double> scoreOf(const Rating& rating, const std::vector<FormItem>& items) {
   double sum = 0.0;

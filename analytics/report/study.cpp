@@ -11,7 +11,6 @@
 #include <set>
 
 #include "analytics/checkpoints/registry.h"
-#include "analytics/report/study_coverage.h"
 #include "analytics/report/study_population.h"
 #include "analytics/report/study_protocol.h"
 #include "analytics/report/study_rows.h"

@@ -12,7 +12,6 @@
 #include "analytics/checkpoints/motion.h"
 #include "analytics/cohort_files.h"
 #include "analytics/regrade.h"
-#include "analytics/share.h"
 #include "analytics/uncertainty/uncertainty.h"
 #include "apps/calot/commands.h"
 #include "apps/calot/environment.h"
