@@ -42,7 +42,7 @@ std::optional<nlohmann::ordered_json> rowIn(const std::string& line) {
 
 std::string journalHead() { return checkedLine({{"format", "calot-intake"}, {"format_version", 1}}); }
 
-/// Paths are bytes, JSON is UTF-8: a path that is none stands in hexadecimal.
+/// Paths are bytes, JSON is UTF-8: a path that is not UTF-8 stands in hexadecimal.
 std::string inHex(const std::string& text) {
   std::string hex;
   for (const char c : text) hex += fmt::format("{:02x}", static_cast<unsigned char>(c));

@@ -34,7 +34,7 @@ QSize windowSize(const LookOptions& look) {
   const std::optional<gui::PictureSize> size = gui::readSize(look.size);
   if (!size || std::min(size->width, size->height) < least || std::max(size->width, size->height) > most)
     throw Error(ErrorKind::invalid,
-                "--size " + recorder::shown(look.size) + ": WIDTHxHEIGHT is wanted, of 640 to 8192 pixels");
+                "--size " + recorder::shown(look.size) + ": WIDTHxHEIGHT is expected, of 640 to 8192 pixels");
   return {size->width, size->height};
 }
 

@@ -315,7 +315,7 @@ void RatingPage::showEarlier() {
   std::optional<analytics::Rating> earlier;
   if (document_) tryTo([&] { earlier = earlierRating(document_->assessment().ratings(), *shown, subject()); });
   replaces_ = earlier.has_value();
-  // What was begun and not stored is newer than what was stored.
+  // Answers that were begun and not stored are newer than the stored ones.
   Answers answers = keptDraft(groupOf(subject()));
   if (answers.empty() && earlier) {
     for (const analytics::FormItem& item : shown->items()) {

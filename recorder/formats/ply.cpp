@@ -197,7 +197,7 @@ class HeaderReader {
       }
     }
     if (!hasVertices) fail("no vertex");
-    if (!hasFaces) fail("no face; a surface is wanted");
+    if (!hasFaces) fail("no face; a surface is expected");
   }
 
   std::string_view& text_;
@@ -235,7 +235,7 @@ class PlyBody {
         if (mesh_.triangle[t][k] < mesh_.vertices()) continue;
         throw Error(
             ErrorKind::damaged, Where{name_, fmt::format("face {}", face_[t])},
-            fmt::format("vertex {} is wanted, but the file has {} (from 0)", mesh_.triangle[t][k], mesh_.vertices()));
+            fmt::format("vertex {} is expected, but the file has {} (from 0)", mesh_.triangle[t][k], mesh_.vertices()));
       }
     }
     return std::move(mesh_);

@@ -23,7 +23,7 @@ namespace calot::recorder {
 std::vector<Field> MeshFile::fields() {
   using S = MeshFile;
   static const TextRule assetName{200, R"(^(?!\.{1,2}(/|$))[^/\\:]+(/(?!\.{1,2}(/|$))[^/\\:]+)*$)",
-                                  "a path relative to the assets folder is wanted, with / and without . or .."};
+                                  "a path relative to the assets folder is expected, with / and without . or .."};
   return {
       object("mesh", "Surface file: OBJ, STL (ASCII or binary) or PLY (ASCII or binary), by the end of its name"),
       {"file", at<S, &S::file>, assetName,
@@ -113,9 +113,9 @@ SurfaceDescription readFatSurface(const JsonPlace& mesh, const FetchAsset& fetch
                                           file, crossing.where[0], crossing.where[1], crossing.where[2]);
     if (turned > 0) {
       throw Error(ErrorKind::damaged,
-                  where + ", and its triangles do not agree on what is outside: its inside cannot be told");
+                  where + ", and its triangles do not agree on what is outside: its inside cannot be determined");
     }
-    warnings.push_back(where + "; what it winds around is taken as its inside");
+    warnings.push_back(where + "; the region that it winds around is taken as its inside");
   }
   return closed;
 }

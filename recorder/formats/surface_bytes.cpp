@@ -32,7 +32,7 @@ LengthUnit parseLengthUnit(const std::string& word) {
   for (const auto& [known, number] : lengthUnits()) {
     if (known == word) return static_cast<LengthUnit>(number);
   }
-  throw Error(ErrorKind::invalid, fmt::format("unit \"{}\": m, cm or mm is wanted", shown(word)));
+  throw Error(ErrorKind::invalid, fmt::format("unit \"{}\": m, cm or mm is expected", shown(word)));
 }
 
 namespace {
@@ -87,13 +87,13 @@ class ObjParser {
       for (int k = 0; k < 3; ++k) {
         if (mesh_.triangle[t][k] < mesh_.vertices()) continue;
         line_ = triangleLine_[t];
-        fail(fmt::format("vertex {} is wanted, but the file has {}", mesh_.triangle[t][k] + 1, mesh_.vertices()));
+        fail(fmt::format("vertex {} is expected, but the file has {}", mesh_.triangle[t][k] + 1, mesh_.vertices()));
       }
     }
     if (mesh_.vertex.empty())
       throw Error(ErrorKind::damaged, Where{name_}, "no vertex; not an OBJ file, or an empty one");
     if (mesh_.triangle.empty())
-      throw Error(ErrorKind::damaged, Where{name_}, "vertices but no face; a surface is wanted");
+      throw Error(ErrorKind::damaged, Where{name_}, "vertices but no face; a surface is expected");
     return std::move(mesh_);
   }
 

@@ -47,7 +47,7 @@ class LineReader {
       ++count;
       at = end;
     }
-    if (count != columns) fail(fmt::format("{} columns; {} are wanted", count, columns));
+    if (count != columns) fail(fmt::format("{} columns; {} are expected", count, columns));
   }
 
   [[nodiscard]] KinematicsPose pose(const std::array<double, columns>& v, std::size_t first) const {
@@ -153,7 +153,7 @@ constexpr double maxMotion = 1e6;  // s
 constexpr double unitLength = 1e-2;
 constexpr double root = 0.70710678118654752440;  // of 1/2
 
-constexpr TextRule columnName{200}, word{60, "^[!-~]+$", "a word without blanks is wanted"};
+constexpr TextRule columnName{200}, word{60, "^[!-~]+$", "a word without blanks is expected"};
 
 const FieldWords lengths{{"m", 0}, {"cm", 1}, {"mm", 2}}, times{{"s", 0}, {"ms", 1}, {"us", 2}, {"ns", 3}},
     axes{{"z", 0}, {"-z", 1}, {"x", 2}, {"-x", 3}, {"y", 4}, {"-y", 5}};
@@ -204,7 +204,7 @@ std::vector<Field> ColumnMap::fields() {
                "Rate of rows, where there is no column of times. Either this or time"),
       optional("time", keyGroup<S, timeFields>, "Column of times"),
       optional("left", at<S, &S::hand, 0>, "Left hand"),
-      optional("right", at<S, &S::hand, 1>, "Right hand; at least one hand is wanted"),
+      optional("right", at<S, &S::hand, 1>, "Right hand; at least one hand is expected"),
   };
 }
 
@@ -215,7 +215,7 @@ double toPicosecond(double seconds) { return std::round(seconds * 1e12) / 1e12; 
 
 void checkHand(const JsonPlace& place, ColumnMap::HandColumns& hand) {
   if (place.has("quaternion") && place.has("matrix"))
-    place.fail("has a quaternion and a matrix; one of them is wanted");
+    place.fail("has a quaternion and a matrix; one of them is expected");
   if (!place.has("axis")) return;
   if (hand.orientation.empty()) place.at("axis").fail("an axis without an orientation");
   const Quat rotations[] = {Quat::Identity(),
@@ -258,7 +258,7 @@ class RowReader {
       const Quat q(at(first, row), at(first + 1, row), at(first + 2, row), at(first + 3, row));
       const double length = std::sqrt(q.w() * q.w() + q.x() * q.x() + q.y() * q.y() + q.z() * q.z());
       if (!(std::abs(length - 1.0) <= unitLength))
-        fail(row, fmt::format("a quaternion of length {:.3g}; 1 is wanted", length));
+        fail(row, fmt::format("a quaternion of length {:.3g}; 1 is expected", length));
       return {q.w() / length, q.x() / length, q.y() / length, q.z() / length};
     }
     Mat3 rotation;
@@ -289,12 +289,12 @@ ColumnMap parseColumnMap(std::span<const std::byte> bytes, const std::string& fi
   readRecord(place, map);
   map.metres = metres[place.at("length").word(lengths)];
   if (place.has("rate") == place.has("time"))
-    place.fail("either \"rate\" (rows a second) or \"time\" (a column) is wanted");
+    place.fail("either \"rate\" (rows a second) or \"time\" (a column) is expected");
   if (place.has("time")) map.seconds = seconds[place.at("time").at("unit").word(times)];
   for (std::size_t h = 0; h < map.hand.size(); ++h) {
     if (map.hand[h]) checkHand(place.at(handNames[h]), *map.hand[h]);
   }
-  if (!map.hand[0] && !map.hand[1]) place.fail("neither \"left\" nor \"right\": a hand is wanted");
+  if (!map.hand[0] && !map.hand[1]) place.fail("neither \"left\" nor \"right\": a hand is expected");
   return map;
 }
 
