@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "recorder/sources/scope/picture_geometry.h"
+#include "recorder/sources/scope/endoscope.h"
 #include "sim/scene/description.h"
 
 namespace calot::analytics {

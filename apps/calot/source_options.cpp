@@ -14,7 +14,6 @@
 #include "recorder/sources/kinematics_source.h"
 #include "recorder/sources/performer.h"
 #include "recorder/sources/performer_profile.h"
-#include "recorder/sources/scope/scope_assistant.h"
 #include "recorder/sources/scope/scope_source.h"
 
 namespace calot::apps {

@@ -11,8 +11,8 @@
 #include <optional>
 
 #include "recorder/base/errors.h"
+#include "recorder/sources/devices/camera/frame_source.h"
 #include "recorder/sources/devices/camera/lens_calibration.h"
-#include "recorder/sources/devices/camera/live_camera.h"
 #include "recorder/sources/devices/camera/marker_sheets.h"
 
 namespace calot::recorder {

@@ -16,8 +16,7 @@
 #include "recorder/base/errors.h"
 #include "recorder/base/file_bytes.h"
 #include "recorder/sources/devices/calibration.h"
-#include "recorder/sources/devices/camera/live_camera.h"
-#include "recorder/sources/devices/camera/video_file.h"
+#include "recorder/sources/devices/camera/frame_source.h"
 #include "recorder/sources/devices/evdev.h"
 #include "recorder/sources/devices/pointer_device.h"
 

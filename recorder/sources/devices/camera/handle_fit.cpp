@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-#include "recorder/sources/devices/camera/handle_fit.h"
+#include "recorder/sources/devices/camera/handle_tracker.h"
 
 #include <algorithm>
 #include <cmath>

@@ -14,7 +14,7 @@
 #include <set>
 
 #include "recorder/base/errors.h"
-#include "recorder/sources/devices/camera/handle_fit.h"
+#include "recorder/sources/devices/camera/handle_tracker.h"
 #include "recorder/sources/devices/camera/marker_sheets.h"
 #include "recorder/sources/pointing.h"
 

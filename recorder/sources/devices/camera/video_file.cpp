@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-#include "recorder/sources/devices/camera/video_file.h"
+#include "recorder/sources/devices/camera/frame_source.h"
 
 #include <fmt/format.h>
 #include <cmath>

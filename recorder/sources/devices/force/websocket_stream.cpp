@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "recorder/sources/devices/force/websocket_stream.h"
+#include "recorder/sources/devices/force/haply_device.h"
 
 #include <boost/asio/connect.hpp>
 #include <boost/asio/io_context.hpp>
