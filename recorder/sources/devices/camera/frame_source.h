@@ -14,7 +14,25 @@
 #include <utility>
 #include <vector>
 
+// libav's and AprilTag's
+struct AVCodecContext;
+struct AVCodecParameters;
+struct AVFormatContext;
+struct AVFrame;
+struct AVPacket;
+struct AVStream;
+struct SwsContext;
+struct apriltag_detector;
+struct apriltag_family;
+
 namespace calot::recorder {
+
+struct FreeTags {
+  void operator()(apriltag_family* p) const;
+  void operator()(apriltag_detector* p) const;
+};
+template <class T>
+using HeldTags = std::unique_ptr<T, FreeTags>;
 
 /// A picture of a camera in grey, rows from the top without gaps.
 struct GreyImage {
@@ -34,17 +52,14 @@ struct SeenTag {
 class TagDetector {
  public:
   TagDetector();
-  ~TagDetector();
-  TagDetector(const TagDetector&) = delete;
-  TagDetector& operator=(const TagDetector&) = delete;
 
   /// Tags with at most one corrected bit and clear contrast, in the order of their numbers. A number that is seen twice
   /// is left out: one of the two is false, and which cannot be said.
   std::vector<SeenTag> detect(const GreyImage& image);
 
  private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
+  HeldTags<apriltag_family> family_;
+  HeldTags<apriltag_detector> detector_;
 };
 
 struct Frame {
@@ -86,33 +101,9 @@ class FrameSource {
   double rate_;
 };
 
-/// A film as a camera's pictures: anything that libav reads, decoded on one thread, so that it is the same every time.
-/// Frames that are missing are found by the times that the file gives.
-class VideoFile final : public FrameSource {
- public:
-  /// @throws Error (damaged) naming the file, where there is no film in it, or its frames have no times
-  explicit VideoFile(const std::filesystem::path& file);
-  ~VideoFile() override;
-
-  FrameStatus next(std::chrono::nanoseconds wait, Frame& out) override;
-
- private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
-};
-
-}  // namespace calot::recorder
-
-struct AVCodecContext;
-struct AVCodecParameters;
-struct AVFrame;
-struct AVPacket;
-struct SwsContext;
-
-namespace calot::recorder {
-
 struct FreeAv {
   void operator()(AVCodecContext* p) const;
+  void operator()(AVFormatContext* p) const;
   void operator()(AVFrame* p) const;
   void operator()(AVPacket* p) const;
   void operator()(SwsContext* p) const;
@@ -136,6 +127,30 @@ class GreyDecoder {
   HeldAv<AVCodecContext> context_;
   HeldAv<SwsContext> scaler_;
   int format_ = -1;
+};
+
+/// A film as a camera's pictures: anything that libav reads, decoded on one thread, so that it is the same every time.
+/// Frames that are missing are found by the times that the file gives.
+class VideoFile final : public FrameSource {
+ public:
+  /// @throws Error (damaged) naming the file, where there is no film in it, or its frames have no times
+  explicit VideoFile(const std::filesystem::path& file);
+
+  FrameStatus next(std::chrono::nanoseconds wait, Frame& out) override;
+
+ private:
+  [[noreturn]] void fail(const std::string& why) const;
+  /// @returns false at the end
+  bool decode();
+
+  HeldAv<AVFormatContext> format_;
+  GreyDecoder decoder_;
+  HeldAv<AVFrame> frame_;
+  HeldAv<AVPacket> packet_;
+  AVStream* stream_ = nullptr;      ///< of the format
+  std::int64_t first_ = INT64_MIN;  ///< time of the first frame, in the stream's units: none yet
+  std::int64_t last_ = -1;          ///< ns
+  bool drained_ = false, ended_ = false;
 };
 
 /// A camera of Video4Linux. The driver stamps frames on the host's monotonic clock and numbers them, so that latency

@@ -18,11 +18,6 @@ namespace calot::recorder {
 /// throws: a broken connection is closed, which callers can query.
 class WebSocketStream {
  public:
-  WebSocketStream();
-  ~WebSocketStream();
-  WebSocketStream(WebSocketStream&&) noexcept;
-  WebSocketStream& operator=(WebSocketStream&&) noexcept;
-
   /// @returns a stream that is not open where nobody answered within `wait`; `fault` then says why.
   static WebSocketStream connect(const std::string& host, int port, std::chrono::milliseconds wait, std::string& fault);
 
@@ -32,11 +27,11 @@ class WebSocketStream {
   /// Sends a message; one that waits for the one before it is replaced by a newer one.
   void send(std::string text);
   /// Says good-bye and closes.
-  void close();
+  void close() { inside_.reset(); }
 
  private:
   struct Inside;
-  std::unique_ptr<Inside> inside_;
+  std::shared_ptr<Inside> inside_;
 };
 
 struct HaplySettings {
