@@ -101,16 +101,10 @@ void OpenIgtLinkDevice::take(const Item& item, DeviceInput& out) {
 
 void OpenIgtLinkDevice::read(std::chrono::nanoseconds wait, DeviceInput& out) {
   if (wait.count() > 0 && !stream_.readable(wait)) return;
-  std::array<std::byte, 65536> buffer;
-  // Bounded, so that a sender that never stops cannot hold the thread.
-  for (int i = 0; i < 16; ++i) {
-    const std::size_t n = stream_.receive(buffer);
-    if (n == 0) break;
-    if (!decoder_.take(std::span(buffer.data(), n), [&](const Item& item) { take(item, out); })) {
-      lose("disconnected: what the server sends is no OpenIGTLink", out);
-      return;
-    }
-  }
+  const auto decode = [&](std::span<const std::byte> bytes) {
+    return decoder_.take(bytes, [&](const Item& item) { take(item, out); });
+  };
+  if (!stream_.receiveAll(decode)) lose("disconnected: what the server sends is no OpenIGTLink", out);
 }
 
 constinit const DeviceKind openIgtLinkKind{

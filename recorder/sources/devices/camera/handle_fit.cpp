@@ -98,6 +98,12 @@ Quat rotationBy(const Vec3& vector) {
   return {std::cos(0.5 * angle), s * vector.x(), s * vector.y(), s * vector.z()};
 }
 
+Vec3 rotationVector(const Quat& q) {
+  const Vec3 v = q.w() < 0.0 ? Vec3(-q.vec()) : Vec3(q.vec());
+  const double sine = v.norm();
+  return sine < 1e-12 ? Vec3(2.0 * v) : Vec3(2.0 * std::atan2(sine, std::abs(q.w())) / sine * v);
+}
+
 std::optional<PoseFit> fitPose(const CameraRig& rig, std::span<const CornerSight> corners, const Pose& start,
                                const Twist& twist, const ShaftConstraint* shaft) {
   Pose pose = start;

@@ -62,8 +62,9 @@ std::optional<PoseFit> fitPose(const CameraRig& rig, std::span<const CornerSight
 /// @param corners the four of one tag, in order. @returns poses of the body in D
 std::vector<Pose> posesOfSquare(const CameraRig& rig, std::span<const CornerSight> corners);
 
-/// exp of a rotation vector.
+/// exp of a rotation vector, and its inverse: of the shorter way.
 Quat rotationBy(const Vec3& vector);
+Vec3 rotationVector(const Quat& rotation);
 
 /// Rotation of a plane from the images of its two axes: its first columns are the orthonormal pair closest to both
 /// (least squares), M (M^T M)^(-1/2) of M = [across up], the third is their cross product. Not finite where they are

@@ -196,10 +196,8 @@ BlockSolution solveBlocks(BlockProblem& problem) {
 }
 
 Block6 vectorOf(const Pose& pose) {
-  const Quat q = pose.orientation.w() < 0.0 ? Quat(-pose.orientation.coeffs()) : pose.orientation;
-  const double sine = q.vec().norm();
   Block6 out;
-  out << (sine < 1e-12 ? Vec3(2.0 * q.vec()) : Vec3(2.0 * std::atan2(sine, q.w()) / sine * q.vec())), pose.position;
+  out << rotationVector(pose.orientation), pose.position;
   return out;
 }
 

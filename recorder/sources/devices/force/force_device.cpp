@@ -107,15 +107,9 @@ void ForceDevice::take(const forcewire::Pose& pose, DeviceInput& out) {
 
 void ForceDevice::read(std::chrono::nanoseconds wait, DeviceInput& out) {
   if (wait.count() > 0 && frames_.empty() && !stream_.readable(wait)) return;
-  std::array<std::byte, 16384> buffer;
-  // Bounded, so that a sender that never stops cannot hold the thread.
-  for (int i = 0; i < 16 && stream_.open(); ++i) {
-    const std::size_t n = stream_.receive(buffer);
-    if (n == 0) break;
-    if (!decoder_.take(std::span(buffer.data(), n), frames_)) {
-      lose("disconnected: " + decoder_.fault(), out);
-      return;
-    }
+  if (!stream_.receiveAll([this](std::span<const std::byte> bytes) { return decoder_.take(bytes, frames_); })) {
+    lose("disconnected: " + decoder_.fault(), out);
+    return;
   }
   for (const forcewire::Frame& frame : std::exchange(frames_, {})) {
     if (const auto* pose = std::get_if<forcewire::Pose>(&frame)) {
