@@ -33,7 +33,7 @@ struct JudgedRecording {
 struct AssessSettings {
   unsigned threads = 1;          ///< segments that are verified at a time
   double cutoff = motionCutoff;  ///< of the motion filter (Hz); values that are stored are of the default
-  recorder::EngineWish engine = {};
+  recorder::EngineRequest engine = {};
   const std::vector<MetricScript>* metrics = nullptr;  ///< users' own, computed as well; null: none
   /// May throw, which ends it: what is thrown leaves assessRecording().
   std::function<void(std::uint64_t step, std::uint64_t of)> progress = {};

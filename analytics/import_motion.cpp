@@ -98,18 +98,6 @@ std::string choose(T& out, const std::string& word, std::initializer_list<std::p
   return known + " is wanted";
 }
 
-std::string chooseText(std::string& out, const std::string& word, std::initializer_list<const char*> words) {
-  std::string known;
-  for (const char* name : words) {
-    if (word == name) {
-      out = word;
-      return {};
-    }
-    known += (known.empty() ? "" : ", ") + std::string(name);
-  }
-  return known + " is wanted";
-}
-
 std::string setTask(std::string& task, const std::string& word) {
   if (word.size() > 60) return "1 to 60 characters are wanted";
   for (const char c : word) {
@@ -127,8 +115,10 @@ std::string declareMotion(MotionDeclaration& d, std::string_view field, const st
   if (field == "task") return setTask(d.task, word);
   if (field == "mode")
     return choose<Mode>(d.mode, word, {{"practice", Mode::practice}, {"assessment", Mode::assessment}});
-  if (field == "purpose") return chooseText(d.purpose, word, {"training", "study", "demo"});
-  if (field == "handedness") return chooseText(d.handedness, word, {"right", "left", "unknown"});
+  if (field == "purpose")
+    return choose<std::string>(d.purpose, word, {{"training", "training"}, {"study", "study"}, {"demo", "demo"}});
+  if (field == "handedness")
+    return choose<std::string>(d.handedness, word, {{"right", "right"}, {"left", "left"}, {"unknown", "unknown"}});
   if (field == "outcome") {
     return choose<Outcome>(
         d.outcome, word,

@@ -13,8 +13,6 @@
 
 namespace calot::recorder {
 
-namespace {}  // namespace
-
 std::string newUuid() {
   if (sodium_init() < 0) throw std::runtime_error("libsodium cannot be initialised");
   std::array<unsigned char, 16> b{};
@@ -44,19 +42,14 @@ std::string buildName() {
 AttemptHeader makeHeader(const Model& model, std::vector<Asset> assets, const Provenance& provenance,
                          const AttemptSettings& settings) {
   AttemptHeader header;
+  static_cast<AttemptSettings&>(header) = settings;
   header.attempt = newUuid();
   header.startUtc = presentDate();
   header.software = softwareName();
   header.build = buildName();
   header.simulationVersion = simulationVersion;
   header.stepResultVersion = stepResultVersion;
-  header.participant = settings.participant;
   header.provenance = provenance;
-  header.station = settings.station;
-  header.mode = settings.mode;
-  header.purpose = settings.purpose;
-  header.handedness = settings.handedness;
-  header.seed = settings.seed;
   header.ticksPerStep = model.scene().ticksPerStep;
   header.sceneName = model.scene().name;
   header.sceneMajor = model.scene().majorVersion;

@@ -11,16 +11,6 @@
 
 namespace calot::recorder {
 
-/// Facts about an attempt supplied by the caller, beyond source and scene.
-struct AttemptSettings {
-  std::string participant;
-  std::string station;
-  std::string purpose = "training";
-  std::string handedness = "unknown";
-  Mode mode = Mode::practice;
-  std::uint64_t seed = 0;
-};
-
 /// Random uuid (RFC 4122, version 4), lower case with hyphens.
 std::string newUuid();
 

@@ -46,13 +46,8 @@ std::uint64_t forkStepAt(const Recording& parent, double time) {
 AttemptHeader branchHeader(const Recording& parent, const Model& model, std::uint64_t forkStep,
                            const Provenance& provenance) {
   const AttemptHeader& from = parent.header();
-  AttemptSettings settings;
-  settings.participant = from.participant;
-  settings.station = from.station;
-  settings.purpose = from.purpose;
-  settings.handedness = from.handedness;
+  AttemptSettings settings = from;
   settings.mode = Mode::practice;
-  settings.seed = from.seed;
   AttemptHeader header = makeHeader(model, from.assets, provenance, settings);
   header.parent = from.attempt;
   header.forkStep = static_cast<std::int64_t>(forkStep);

@@ -7,7 +7,9 @@
 #include <bit>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 
+#include "recorder/recording/block.h"
 #include "recorder/recording/layout.h"
 
 namespace calot::recorder {
@@ -17,25 +19,44 @@ namespace {
 bool same(double a, double b) { return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b); }
 bool same(const Vec3& a, const Vec3& b) { return same(a[0], b[0]) && same(a[1], b[1]) && same(a[2], b[2]); }
 
-/// Compares named numbers one after the other and remembers the first that differ.
-class Comparison {
- public:
-  Comparison(std::uint64_t step, std::string component) : step_(step), component_(std::move(component)) {}
+/// Numbers with their names, as texts that read back to the same bits.
+struct SpelledNumbers {
+  std::vector<std::pair<std::string, std::string>> numbers;
 
-  void number(const std::string& field, double recorded, double here) {
-    if (first_ || same(recorded, here)) return;
-    first_ = Divergence{step_, {}, component_, field, fmt::format("recorded {}, here {}", recorded, here)};
+  template <class T>
+  void operator()(const char* name, const T& value) {
+    if constexpr (std::is_same_v<T, Vec3>) {
+      for (int i = 0; i < 3; ++i) numbers.emplace_back(fmt::format("{}[{}]", name, i), fmt::format("{}", value[i]));
+    } else if constexpr (std::is_same_v<T, double>) {
+      numbers.emplace_back(name, fmt::format("{}", value));
+    } else {
+      numbers.emplace_back(name, fmt::format("{}", static_cast<std::uint64_t>(value)));
+    }
   }
-  void vector(const std::string& field, const Vec3& recorded, const Vec3& here) {
-    for (int i = 0; i < 3; ++i) number(fmt::format("{}[{}]", field, i), recorded[i], here[i]);
+  template <class T>
+  void operator()(const char* /*folder*/, const char* name, const char* /*unit*/, const T& value) {
+    (*this)(name, value);
   }
-  [[nodiscard]] const std::optional<Divergence>& first() const { return first_; }
-
- private:
-  std::uint64_t step_;
-  std::string component_;
-  std::optional<Divergence> first_;
 };
+
+template <class T>
+Divergence differs(std::uint64_t step, std::string component, std::string field, const T& recorded, const T& here) {
+  return {step, {}, std::move(component), std::move(field), fmt::format("recorded {}, here {}", recorded, here)};
+}
+
+/// The first number in which two things differ. @param list(thing, visit) visits their numbers @pre they differ
+template <class Thing, class List>
+Divergence difference(std::uint64_t step, std::string component, const std::string& prefix, const Thing& recorded,
+                      const Thing& here, const List& list) {
+  SpelledNumbers a, b;
+  list(recorded, a);
+  list(here, b);
+  const auto differing = std::mismatch(a.numbers.begin(), a.numbers.end(), b.numbers.begin());
+  // NaNs may differ in bits that no text shows.
+  const auto at = differing.first == a.numbers.end() ? 0 : differing.first - a.numbers.begin();
+  const auto& [name, value] = a.numbers[static_cast<std::size_t>(at)];
+  return differs(step, std::move(component), prefix + name, value, b.numbers[static_cast<std::size_t>(at)].second);
+}
 
 }  // namespace
 
@@ -44,10 +65,11 @@ std::optional<Divergence> compareTick(std::uint64_t step, std::uint64_t tick, co
   for (std::size_t h = 0; h < handCount; ++h) {
     if (same(recorded.hand[h].force, here.hand[h].force) && same(recorded.hand[h].torque, here.hand[h].torque))
       continue;
-    Comparison c(step, std::string("force.") + handNames[h]);
-    c.vector("force", recorded.hand[h].force, here.hand[h].force);
-    c.vector("torque", recorded.hand[h].torque, here.hand[h].torque);
-    Divergence d = *c.first();
+    const auto list = [](const HandTick& hand, SpelledNumbers& visit) {
+      visit("force", hand.force);
+      visit("torque", hand.torque);
+    };
+    Divergence d = difference(step, std::string("force.") + handNames[h], "", recorded.hand[h], here.hand[h], list);
     d.tick = tick;
     return d;
   }
@@ -91,160 +113,50 @@ std::optional<Divergence> compareDigest(std::uint64_t step, const DigestLayout& 
 std::optional<Divergence> compareProcedure(std::uint64_t step, const RecordedProcedure& recorded,
                                            const RecordedProcedure& here) {
   if (recorded == here) return std::nullopt;
-  Comparison c(step, "observables");
-  const auto number = [&](const char* field, auto a, auto b) {
-    c.number(std::string("procedure/") + field, static_cast<double>(a), static_cast<double>(b));
-  };
-  number("phase", recorded.phase, here.phase);
-  number("triangle_cleared", recorded.triangleCleared, here.triangleCleared);
-  number("lower_third_freed", recorded.lowerThirdFreed, here.lowerThirdFreed);
-  number("two_structures", recorded.twoStructures, here.twoStructures);
-  number("critical_view_frozen", recorded.criticalViewFrozen, here.criticalViewFrozen);
-  number("lower_third_attached", recorded.lowerThirdAttached, here.lowerThirdAttached);
-  number("errors", recorded.errors, here.errors);
-  number("critical_errors", recorded.criticalErrors, here.criticalErrors);
-  return c.first();
+  const auto list = [](const RecordedProcedure& p, SpelledNumbers& visit) { visitProcedure(p, visit); };
+  return difference(step, "observables", "procedure/", recorded, here, list);
 }
-
-namespace {
-
-/// Instead of a place in a row:
-constexpr std::ptrdiff_t noIndex = -1;
-constexpr std::ptrdiff_t ofSize = -2;  ///< the number is how many there are
-
-/// Hands every number of a result or of an event to a sink, in the order of the recording's columns; of a list also how
-/// long it is, so that what differs in shape differs in a number. A sink is called with (folder, name, index, number).
-template <class Sink>
-struct Numbers {
-  const Layout& layout;
-  Sink& sink;
-
-  template <class T>
-  void operator()(const char* folder, const char* name, const char*, const T& value) {
-    number(folder, name, noIndex, value);
-  }
-  void operator()(const char* folder, const char* name, const char*, const Vec3& v) {
-    for (int i = 0; i < 3; ++i) number(folder, name, i, v[i]);
-  }
-  void operator()(const char* folder, const char* name, const char*, const Quat& q) {
-    std::ptrdiff_t i = 0;
-    for (const double v : {q.w(), q.x(), q.y(), q.z()}) number(folder, name, i++, v);
-  }
-  template <class T>
-  void list(const char* folder, const char* name, const char*, const std::vector<T>& values, std::size_t width) {
-    // An earlier version of StepResult holds fewer structures: the first ones.
-    const std::size_t count = std::min(values.size(), width);
-    number(folder, name, ofSize, count);
-    for (std::size_t i = 0; i < count; ++i) number(folder, name, static_cast<std::ptrdiff_t>(i), values[i]);
-  }
-  template <class Part, class T>
-  void each(const char* folder, const char* name, const char*, const std::vector<Part>& parts, T Part::*member) {
-    number(folder, name, ofSize, parts.size());
-    for (std::size_t i = 0; i < parts.size(); ++i)
-      number(folder, name, static_cast<std::ptrdiff_t>(i), parts[i].*member);
-  }
-  /// Fields of an event.
-  template <class T>
-  void operator()(const char* name, const T& value) {
-    (*this)("", name, "", value);
-  }
-
- private:
-  template <class T>
-  void number(const char* folder, const char* name, std::ptrdiff_t index, T value) {
-    if constexpr (std::is_floating_point_v<T>) {
-      sink(folder, name, index, static_cast<double>(value));
-    } else {
-      sink(folder, name, index, static_cast<std::uint64_t>(value));
-    }
-  }
-};
-
-/// Keeps the bits alone: -0 and 0 differ, a NaN is itself.
-struct KeepBits {
-  std::vector<std::uint64_t>& bits;
-  void operator()(const char*, const char*, std::ptrdiff_t, double value) {
-    bits.push_back(std::bit_cast<std::uint64_t>(value));
-  }
-  void operator()(const char*, const char*, std::ptrdiff_t, std::uint64_t value) { bits.push_back(value); }
-};
-
-/// Says what the number at one place is.
-struct Describe {
-  std::size_t place = 0;
-  std::string name, value;
-  template <class T>
-  void operator()(const char* folder, const char* column, std::ptrdiff_t index, T number) {
-    if (place-- != 0) return;
-    constexpr std::string_view root = "/observables";
-    std::string_view group = folder;
-    if (group.starts_with(root)) group.remove_prefix(root.size());
-    if (group.starts_with('/')) group.remove_prefix(1);
-    name = fmt::format("{}{}{}", group, group.empty() ? "" : "/", column);
-    if (index >= 0) name += fmt::format("[{}]", index);
-    if (index == ofSize) name += ".size";
-    value = fmt::format("{}", number);
-  }
-};
-
-template <class Sink>
-void visitNumbers(const Layout& layout, const StepResult& result, Sink& sink) {
-  Numbers<Sink> numbers{layout, sink};
-  visitResult(result, numbers);
-}
-
-template <class Sink>
-void visitNumbers(const Layout& layout, const Event& event, Sink& sink) {
-  Numbers<Sink> numbers{layout, sink};
-  Event::fields(event, numbers);
-}
-
-}  // namespace
-
-struct ResultComparison::Buffers {
-  Layout layout;
-  std::vector<std::uint64_t> recorded, here;
-
-  template <class What>
-  std::optional<Divergence> compare(std::uint64_t step, const char* component, const What& a, const What& b) {
-    recorded.clear();
-    here.clear();
-    KeepBits keepRecorded{recorded};
-    KeepBits keepHere{here};
-    visitNumbers(layout, a, keepRecorded);
-    visitNumbers(layout, b, keepHere);
-    if (recorded == here) return std::nullopt;
-    // Where the lists are of different length, a size before it differs: the place is in both.
-    const auto differing = std::mismatch(recorded.begin(), recorded.end(), here.begin(), here.end());
-    const auto place = static_cast<std::size_t>(differing.first - recorded.begin());
-    Describe first{place, {}, {}};
-    Describe second{place, {}, {}};
-    visitNumbers(layout, a, first);
-    visitNumbers(layout, b, second);
-    return Divergence{step, {}, component, first.name, fmt::format("recorded {}, here {}", first.value, second.value)};
-  }
-};
 
 ResultComparison::ResultComparison(const AttemptHeader& header)
-    : buffers_(std::make_unique<Buffers>(Buffers{Layout(header), {}, {}})) {}
-ResultComparison::~ResultComparison() = default;
+    : layout_(header), recorded_(layout_.columns.size()), here_(recorded_) {}
+
+void ResultComparison::keep(const StepResult& result, Rows& rows) const {
+  for (std::vector<std::byte>& row : rows) row.clear();
+  AppendVisitor visit{layout_, rows, layout_.results};
+  visitResult(result, visit);
+  for (const Event& event : result.events) appendRow(event, rows[layout_.events]);
+}
 
 std::optional<Divergence> ResultComparison::operator()(const StepResult& recorded, const StepResult& here) {
-  if (auto d = buffers_->compare(here.step, "observables", recorded, here)) return d;
-  if (recorded.events.size() != here.events.size()) {
-    return Divergence{here.step,
-                      {},
-                      "events",
-                      "count",
-                      fmt::format("recorded {}, here {}", recorded.events.size(), here.events.size())};
+  keep(recorded, recorded_);
+  keep(here, here_);
+  const auto firstDifference = [&](std::size_t column) {
+    const auto differing = std::mismatch(recorded_[column].begin(), recorded_[column].end(), here_[column].begin());
+    const std::size_t bytes = elementBytes(layout_.columns[column].element);
+    return static_cast<std::size_t>(differing.first - recorded_[column].begin()) / bytes;
+  };
+  for (std::size_t c = layout_.results; c < layout_.events; ++c) {
+    if (recorded_[c] == here_[c]) continue;
+    const Column& column = layout_.columns[c];
+    const std::size_t bytes = elementBytes(column.element);
+    const std::string field = column.path.substr(std::string_view("/observables/").size());
+    if (recorded_[c].size() != here_[c].size())
+      return differs(here.step, "observables", field + ".size", recorded_[c].size() / bytes, here_[c].size() / bytes);
+    const std::size_t index = firstDifference(c);
+    const auto valueOf = [&](const std::vector<std::byte>& row) {
+      std::string text;
+      withNumber(column.element, row.data() + index * bytes, [&](auto number) { text = fmt::format("{}", number); });
+      return text;
+    };
+    return differs(here.step, "observables", column.vector ? fmt::format("{}[{}]", field, index) : field,
+                   valueOf(recorded_[c]), valueOf(here_[c]));
   }
-  for (std::size_t i = 0; i < here.events.size(); ++i) {
-    if (auto d = buffers_->compare(here.step, "events", recorded.events[i], here.events[i])) {
-      d->field = fmt::format("[{}]/{}", i, d->field);
-      return d;
-    }
-  }
-  return std::nullopt;
+  if (recorded.events.size() != here.events.size())
+    return differs(here.step, "events", "count", recorded.events.size(), here.events.size());
+  if (recorded_[layout_.events] == here_[layout_.events]) return std::nullopt;
+  const std::size_t i = firstDifference(layout_.events);
+  const auto list = [](const Event& event, SpelledNumbers& visit) { Event::fields(event, visit); };
+  return difference(here.step, "events", fmt::format("[{}]/", i), recorded.events[i], here.events[i], list);
 }
 
 StepComparison::StepComparison(Recording& recording, Engine& engine)

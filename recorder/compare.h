@@ -2,11 +2,11 @@
 // Comparison of re-simulated steps with recorded ones, bit for bit.
 #pragma once
 
-#include <memory>
 #include <optional>
-#include <span>
+#include <vector>
 
 #include "recorder/engine/engine.h"
+#include "recorder/recording/layout.h"
 #include "recorder/recording/reader.h"
 #include "recorder/replay.h"
 
@@ -30,16 +30,16 @@ std::optional<Divergence> compareDigest(std::uint64_t step, const DigestLayout& 
 class ResultComparison {
  public:
   explicit ResultComparison(const AttemptHeader& header);
-  ~ResultComparison();
-  ResultComparison(const ResultComparison&) = delete;
-  ResultComparison& operator=(const ResultComparison&) = delete;
 
   /// The first difference, bit for bit. Makes no strings and, after the first steps, no memory, where there is none.
   std::optional<Divergence> operator()(const StepResult& recorded, const StepResult& here);
 
  private:
-  struct Buffers;
-  std::unique_ptr<Buffers> buffers_;
+  using Rows = std::vector<std::vector<std::byte>>;
+  void keep(const StepResult& result, Rows& rows) const;
+
+  Layout layout_;
+  Rows recorded_, here_;  ///< one row of the layout's columns
 };
 
 /// The first difference of the judgement that version 3 of StepResult held.

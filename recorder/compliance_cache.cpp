@@ -8,24 +8,16 @@
 #include <bit>
 #include <cstdlib>
 #include <cstring>
-#include <fstream>
 #include <nlohmann/json.hpp>
+#include <span>
 
 #include "recorder/base/errors.h"
 #include "recorder/base/file_bytes.h"
+#include "recorder/base/secret_file.h"
 #include "sim/math/fields.h"
 #include "sim/scene/version.h"
 
 namespace calot::recorder {
-
-namespace {
-
-/// Bit for bit: 0 and -0 differ.
-bool isSame(const std::vector<float>& a, const std::vector<float>& b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(float)) == 0;
-}
-
-}  // namespace
 
 const float* SharedCompliances::find(std::size_t solid, std::size_t node) {
   const std::lock_guard lock(mutex_);
@@ -44,7 +36,8 @@ const float* SharedCompliances::keep(std::size_t solid, std::size_t node, std::v
   const Place place{solid, node};
   if (const auto at = held_.find(place); at != held_.end()) return at->second->data();  // of another thread
   if (const auto offered = offered_.find(place); offered != offered_.end()) {
-    proven_[solid] = isSame(offered->second, column);
+    // Bit for bit: 0 and -0 differ.
+    proven_[solid] = std::ranges::equal(std::as_bytes(std::span(offered->second)), std::as_bytes(std::span(column)));
     refuted_ = refuted_ || !proven_[solid];
     if (refuted_) {
       offered_.clear();
@@ -118,22 +111,29 @@ std::string digestOf(std::string_view payload) {
 }
 
 struct Entry {
-  nlohmann::json header;
-  std::string_view payload;
+  std::string key, payload;
+  CacheEntry facts;
 };
 
-/// Header and payload of a file's bytes, if the payload is the one that was written.
-std::optional<Entry> entryOf(std::string_view bytes) {
-  const std::size_t end = bytes.substr(0, maxHeader).find('\n');
-  if (end == std::string_view::npos) return std::nullopt;
-  Entry entry{nlohmann::json::parse(bytes.substr(0, end), nullptr, false), bytes.substr(end + 1)};
-  const nlohmann::json& h = entry.header;
-  const auto isText = [&](const char* name) { return h.contains(name) && h[name].is_string(); };
-  const auto isNumber = [&](const char* name) { return h.contains(name) && h[name].is_number_unsigned(); };
-  const bool whole = h.is_object() && isText("format") && h["format"] == cacheFormat && isText("key") &&
-                     isText("scene") && isNumber("simulation_version") && isNumber("columns") && isText("digest") &&
-                     h["digest"] == digestOf(entry.payload);
-  return whole ? std::optional(std::move(entry)) : std::nullopt;
+/// Contents of a file, if its payload is the one that was written.
+std::optional<Entry> readEntry(const fs::path& file) {
+  try {
+    const std::vector<std::byte> bytes = readFileBytes(file, file.filename().string(), maxEntry);
+    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    const std::size_t end = text.substr(0, maxHeader).find('\n');
+    if (end == std::string_view::npos) return std::nullopt;
+    const nlohmann::json header = nlohmann::json::parse(text.substr(0, end));
+    Entry entry{header.at("key"), std::string(text.substr(end + 1)), {}};
+    entry.facts.scene = header.at("scene");
+    entry.facts.simulationVersion = header.at("simulation_version");
+    entry.facts.columns = header.at("columns");
+    const bool whole = header.at("format") == cacheFormat && header.at("digest") == digestOf(entry.payload);
+    return whole ? std::optional(std::move(entry)) : std::nullopt;
+  } catch (const Error&) {
+    return std::nullopt;
+  } catch (const nlohmann::json::exception&) {
+    return std::nullopt;
+  }
 }
 
 /// @returns false where the payload does not end with a column.
@@ -151,34 +151,20 @@ bool readColumns(std::string_view payload, std::vector<ComplianceColumn>& column
   return true;
 }
 
-std::string textOf(const fs::path& file) {
-  const std::vector<std::byte> bytes = readFileBytes(file, file.filename().string(), maxEntry);
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-}
-
 CacheEntry look(const fs::path& file) {
   CacheEntry entry;
-  entry.file = file;
-  std::error_code ignored;
-  entry.bytes = fs::file_size(file, ignored);
   if (file.extension() != extension) {
     entry.state = CacheEntry::State::leftover;
   } else if (!isOwn(file)) {
     entry.state = CacheEntry::State::foreign;
-  } else {
-    try {
-      const std::string bytes = textOf(file);
-      if (const std::optional<Entry> found = entryOf(bytes)) {
-        entry.scene = found->header["scene"].get<std::string>();
-        entry.simulationVersion = found->header["simulation_version"].get<std::uint32_t>();
-        entry.columns = found->header["columns"].get<std::uint64_t>();
-        entry.state =
-            entry.simulationVersion == simulationVersion ? CacheEntry::State::usable : CacheEntry::State::otherVersion;
-      }
-    } catch (const Error&) {
-      entry.state = CacheEntry::State::damaged;
-    }
+  } else if (std::optional<Entry> found = readEntry(file)) {
+    entry = std::move(found->facts);
+    entry.state =
+        entry.simulationVersion == simulationVersion ? CacheEntry::State::usable : CacheEntry::State::otherVersion;
   }
+  entry.file = file;
+  std::error_code ignored;
+  entry.bytes = fs::file_size(file, ignored);
   return entry;
 }
 
@@ -221,15 +207,10 @@ fs::path ComplianceCache::fileOf(const std::string& key) const { return folder_ 
 std::vector<ComplianceColumn> ComplianceCache::load(const std::string& key) const {
   const fs::path file = fileOf(key);
   if (!isOwn(file)) return {};
-  try {
-    const std::string bytes = textOf(file);
-    const std::optional<Entry> entry = entryOf(bytes);
-    std::vector<ComplianceColumn> columns;
-    if (!entry || entry->header["key"] != key || !readColumns(entry->payload, columns)) return {};
-    return columns;
-  } catch (const Error&) {
-    return {};
-  }
+  const std::optional<Entry> entry = readEntry(file);
+  std::vector<ComplianceColumn> columns;
+  if (!entry || entry->key != key || !readColumns(entry->payload, columns)) return {};
+  return columns;
 }
 
 bool ComplianceCache::save(const std::string& key, const std::string& scene,
@@ -246,18 +227,12 @@ bool ComplianceCache::save(const std::string& key, const std::string& scene,
                                  {"digest", digestOf(payload)}};
   const std::string line = header.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace) + '\n';
   if (line.size() > maxHeader || line.size() + payload.size() > maxEntry) return false;
-  const fs::path file = fileOf(key);
-  const fs::path temporary = file.string() + fmt::format(".{}.part", getpid());
-  std::ofstream out(temporary, std::ios::binary | std::ios::trunc);
-  out << line << payload;
-  out.close();
-  const bool written = !out.fail() && chmod(temporary.c_str(), S_IRUSR | S_IWUSR) == 0;
-  if (written) fs::rename(temporary, file, fault);
-  if (!written || fault) {
-    fs::remove(temporary, fault);
+  try {
+    writeSecret(fileOf(key), line + payload, true);
+  } catch (const Error&) {
     return false;
   }
-  makeRoom(file);
+  makeRoom(fileOf(key));
   return true;
 }
 
@@ -273,12 +248,10 @@ void ComplianceCache::makeRoom(const fs::path& newest) const {
   std::uint64_t all = 0;
   for (const fs::path& path : filesIn(folder_, fault)) {
     std::error_code gone;
-    files.push_back({fs::last_write_time(path, gone), path, fs::file_size(path, gone)});
-    if (gone) {
-      files.pop_back();
-    } else {
-      all += files.back().bytes;
-    }
+    const File file{fs::last_write_time(path, gone), path, fs::file_size(path, gone)};
+    if (gone) continue;
+    files.push_back(file);
+    all += file.bytes;
   }
   std::sort(files.begin(), files.end(), [](const File& a, const File& b) { return a.written < b.written; });
   for (const File& file : files) {

@@ -9,7 +9,6 @@
 
 #include "recorder/base/errors.h"
 #include "recorder/live/haptic_thread.h"
-#include "recorder/live/paced_clock.h"
 #include "recorder/live/wrapped_sources.h"
 #include "recorder/recording/reader.h"
 
@@ -75,10 +74,7 @@ void runInline(Session& session, SampleSource& source, const RunSettings& settin
     }
     // A step is due when the next one's first tick is.
     session.step(samples, ticks, settings.paced ? lateness(clock.due(tick)) : 0.0F);
-    report.ticks = tick;
-    report.missedDeadlines = clock.missed();
-    report.maxLateness = seconds(clock.maxLateness());
-    report.stretched = seconds(clock.stretched());
+    report.take(tick, clock);
     if (settings.progress) settings.progress(session.steps());
     if (watch.ranAway()) {
       report.outcome = Outcome::technicalFailure;
@@ -135,10 +131,7 @@ void runLive(Session& session, SampleSource& source, const RunSettings& settings
   }
   const HapticReport& seen = haptics.finish();
   report.outcome = ranAway.load() ? Outcome::technicalFailure : seen.outcome;
-  report.ticks = seen.ticks;
-  report.missedDeadlines = seen.missedDeadlines;
-  report.maxLateness = seen.maxLateness;
-  report.stretched = seen.stretched;
+  static_cast<TickReport&>(report) = seen;
   report.pauses = seen.pauses.count;
   report.paused = seen.pauses.seconds;
   report.realTime = seen.realTime;

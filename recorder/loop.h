@@ -14,6 +14,7 @@
 
 #include "recorder/attempt.h"
 #include "recorder/engine/session.h"
+#include "recorder/live/paced_clock.h"
 #include "recorder/prepared_scene.h"
 #include "recorder/recording/writer.h"
 #include "recorder/sources/controller.h"
@@ -34,14 +35,10 @@ struct RunSettings {
   std::function<void(const TickOutcome&)> feedback;
 };
 
-struct RunReport {
+/// What follows from ticks counts those of this run's steps, as the recording does.
+struct RunReport : TickReport {
   Outcome outcome = Outcome::completed;
-  std::uint64_t steps = 0;  ///< of the session
-  std::uint64_t ticks = 0;  ///< of this run's steps; what follows counts these, as the recording does
-  std::uint64_t missedDeadlines =
-      0;                     ///< paced: ticks whose force was ready later than tickDeadline after they were due
-  double maxLateness = 0.0;  ///< of a tick (s)
-  double stretched = 0.0;    ///< by how much the tick clock was stretched: lag beyond maxLag (s)
+  std::uint64_t steps = 0;   ///< of the session
   std::uint64_t pauses = 0;  ///< of the source
   double paused = 0.0;       ///< s
   double wallSeconds = 0.0;

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Shared by all runs of a scene: its Model, and compliances as they are needed.
+// What runs of a scene share: its Model, and compliances as they are needed; and the choice of the engine that decides
+// a recording of it.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -11,7 +13,9 @@
 #include "recorder/base/errors.h"
 #include "recorder/base/identity.h"
 #include "recorder/compliance_cache.h"
+#include "recorder/engine/engine.h"
 #include "recorder/recording/reader.h"
+#include "sim/math/executor.h"
 #include "sim/scene/model.h"
 #include "sim/step/stepper.h"
 
@@ -51,5 +55,44 @@ std::shared_ptr<PreparedScene> sceneOf(const Recording& recording);
 
 /// Where scenes that are prepared from now on find compliances and save them; none, as at first: nowhere.
 void useComplianceCache(const std::optional<std::filesystem::path>& folder);
+
+/// Request for an engine. Default: the one of the recording's version, in this program where it is its own.
+struct EngineRequest {
+  bool apart = false;               ///< as a program of its own, confined: for recordings that are not trusted
+  bool anyway = false;              ///< this program's own, whatever the recording's version
+  std::filesystem::path file = {};  ///< this program or module, which must be of the recording's version
+  /// Broad phase of this program's own simulation; null, as in every other program: SortedGrid.
+  MakeBroadPhase makeBroadPhase = nullptr;
+};
+
+/// The engine of a recording's simulation version: this program's own, or a kept one. Makes any number of it.
+class EngineChoice {
+ public:
+  /// @throws Error (undecided) where no engine of that version is here; (damaged) where the scene cannot be built;
+  /// (failure) where this version is to be decided apart and there is no calot-engine
+  EngineChoice(const Recording& recording, const EngineRequest& request);
+
+  /// A new engine with the recording's scene. @param executor outlives it @throws as EngineProcess
+  [[nodiscard]] std::unique_ptr<Engine> make(Executor& executor) const;
+  /// Is it this program's own simulation, in this program?
+  [[nodiscard]] bool isInside() const { return scene_ != nullptr; }
+  /// Has the engine the digests of that layout? Another program is asked when it is made, which throws.
+  [[nodiscard]] bool fits(const DigestLayout& layout) const;
+  /// nameFault() of the recording; empty for another version, and of another program, which is asked when it is made.
+  [[nodiscard]] std::string nameFault() const;
+  /// The recording's scene. @throws Error (damaged) where it cannot be read by this program
+  [[nodiscard]] const SceneDescription& scene() const;
+  /// To be called after a run: keeps what the scene's runs share (PreparedScene::save()).
+  void save() const;
+
+ private:
+  const AttemptHeader& header_;
+  Where where_;
+  std::shared_ptr<PreparedScene> scene_;                 ///< null: another program
+  mutable std::optional<SceneDescription> description_;  ///< then, once asked for
+  MakeBroadPhase makeBroadPhase_;
+  std::uint32_t version_ = 0;         ///< of that program
+  std::vector<std::string> command_;  ///< that starts it
+};
 
 }  // namespace calot::recorder

@@ -117,9 +117,9 @@ void judge(Recording& recording, const ChainVerdict& chain, const ReplaySettings
   // What is damaged anyway may be compared with any engine: it cannot be proven by one.
   const bool foreign =
       otherVersion && (settings.engine.anyway || (!chain.intact && commandOfEngine(header.simulationVersion).empty()));
-  EngineWish wish = settings.engine;
-  wish.anyway = foreign;
-  const EngineChoice choice(recording, wish);
+  EngineRequest request = settings.engine;
+  request.anyway = foreign;
+  const EngineChoice choice(recording, request);
   // Another version may have other components; digests of different layouts say nothing field by field.
   if (!choice.fits(header.layout)) {
     report.verdict = foreign && chain.intact ? ReplayVerdict::undecided : ReplayVerdict::diverged;

@@ -2,6 +2,7 @@
 // Re-simulates a recording and compares every digest, force, observable, event and keyframe.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -13,7 +14,7 @@
 
 #include "recorder/base/errors.h"
 #include "recorder/engine/engine.h"
-#include "recorder/engine_choice.h"
+#include "recorder/prepared_scene.h"
 #include "recorder/recording/reader.h"
 #include "recorder/step_watch.h"
 
@@ -36,6 +37,11 @@ enum class ReplayVerdict : std::uint8_t {
   undecided,
   consistent,  ///< a part was asked for, and it follows from the keyframe before it; the rest was not looked at
 };
+
+inline constexpr const char* wordFor(ReplayVerdict verdict) {
+  constexpr std::array<const char*, 5> words{"bit-exact", "diverged", "damaged", "undecided", "consistent"};
+  return words[static_cast<std::size_t>(verdict)];
+}
 
 struct ReplayReport {
   std::filesystem::path path;
@@ -67,7 +73,7 @@ struct ReplaySettings {
   unsigned threads = 1;
   /// Numbers of the first and last segment to be verified; none: all.
   std::optional<std::pair<std::size_t, std::size_t>> part;
-  EngineWish engine;
+  EngineRequest engine;
   /// Makes observers of the re-simulation once the header is known and an engine is there; not asked where the engine's
   /// results are of an earlier version of StepResult (what is recorded tells them as well, once it is proven). On one
   /// thread they see every step as it is computed. On several they see, in order, the recorded steps after all were
@@ -127,17 +133,5 @@ class Seeker {
   BriefDigest brief_;
   std::optional<std::uint64_t> differs_;
 };
-
-struct JunitOptions {
-  std::string suite = "calot replay";
-  bool skipUndecided = false;  ///< recordings of another simulation version are skipped tests, which CI shows as green
-  bool force = false;          ///< replace a file that is there
-};
-
-/// JUnit XML: one case a recording; diverged is a failure, damaged an error, undecided an error too unless it is to be
-/// skipped, the divergence in the body.
-/// @throws Error (invalid) where the file exists and is not to be replaced; (failure) where it cannot be written.
-void writeJunit(const std::filesystem::path& file, const std::vector<ReplayReport>& reports,
-                const JunitOptions& options = {});
 
 }  // namespace calot::recorder

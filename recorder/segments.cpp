@@ -5,7 +5,6 @@
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
-#include <ctime>
 #include <exception>
 #include <memory>
 #include <mutex>
@@ -20,13 +19,6 @@ namespace {
 
 constexpr std::chrono::milliseconds progressInterval{50};
 
-/// Processor time of this thread.
-double threadSeconds() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
 /// A segment before has differed: what this one gives is of no interest any more.
 struct NotNeeded {};
 
@@ -34,7 +26,6 @@ struct Result {
   std::optional<Divergence> divergence;
   std::exception_ptr error;
   StepMisses misses;
-  double seconds = 0.0;
   [[nodiscard]] bool isGood() const { return !divergence && !error; }
 };
 
@@ -124,7 +115,6 @@ class Verification {
 
   SegmentsVerdict verdict() {
     SegmentsVerdict verdict;
-    for (const Result& result : results_) verdict.seconds.push_back(result.seconds);
     const std::size_t bad = firstBad_;
     for (std::size_t i = 0; i < std::min(bad + 1, results_.size()); ++i) verdict.misses.add(results_[i].misses);
     if (bad == results_.size()) return verdict;
@@ -139,7 +129,6 @@ class Verification {
   void work() {
     std::unique_ptr<Verifier> verifier;
     for (std::size_t i = next_++; i < segments_.size() && i < firstBad_; i = next_++) {
-      const double begin = threadSeconds();
       try {
         if (!verifier) verifier = std::make_unique<Verifier>(path_, choice_, forces_);
         results_[i] = verifier->run(segments_[i], [&] {
@@ -151,7 +140,6 @@ class Verification {
       } catch (...) {
         results_[i].error = std::current_exception();
       }
-      results_[i].seconds = threadSeconds() - begin;
       if (results_[i].isGood()) continue;
       std::size_t before = firstBad_;
       while (i < before && !firstBad_.compare_exchange_weak(before, i)) {

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "recorder/engine/observer.h"
-#include "recorder/engine_choice.h"
+#include "recorder/prepared_scene.h"
 #include "recorder/recorded_results.h"
 #include "recorder/recording/reader.h"
 #include "recorder/replay.h"
@@ -36,7 +36,6 @@ struct SegmentsVerdict {
   std::optional<Divergence> divergence;  ///< the first, as a run from the start would find it
   std::optional<bool> reproducible;      ///< its segment, run once more, differed in the same way
   StepMisses misses;                     ///< of the steps up to there
-  std::vector<double> seconds;           ///< per segment: processor time that it took; 0: not needed
 };
 
 /// Verifies each of the segments, up to `threads` at a time, each on one thread with a reader and an engine of its own.

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "analytics/checkpoints/checkpoint.h"
 #include "analytics/checkpoints/collector.h"
-#include "analytics/checkpoints/registry.h"
 #include "recorder/base/errors.h"
 #include "recorder/formats/scene_file.h"
 

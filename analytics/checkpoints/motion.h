@@ -2,6 +2,7 @@
 // The motion of one instrument: samples, gaps and bridges, resampling to a fixed rate, filtered segments.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -11,6 +12,9 @@
 #include "sim/math/linear.h"
 
 namespace calot::analytics {
+
+/// Length of a vector, in source-fixed order.
+inline double lengthOf(const Vec3& v) { return std::sqrt(v.x() * v.x() + v.y() * v.y() + v.z() * v.z()); }
 
 /// Rate of the motion on which motion checkpoints work (Hz).
 inline constexpr double motionRate = 100.0;
@@ -140,6 +144,9 @@ struct MotionSegment {
   std::vector<double> speed;      ///< |(p(k+1) - p(k-1)) rate / 2| of the filtered points (m/s); one-sided at both ends
   bool continues = false;         ///< a gap that was too long to be bridged lies before it
 };
+
+/// Speeds of all points, in order.
+std::vector<double> speedsOf(const std::vector<MotionSegment>& segments);
 
 /// One hand's motion over an attempt, or over a part of it.
 struct Motion {

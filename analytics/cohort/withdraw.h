@@ -56,10 +56,12 @@ std::vector<std::string> placesLeft(const std::string& path, const Withdrawal& w
 /// Backups that migrations left beside a database, which withdraw() removes.
 std::vector<std::string> backupsOf(const std::string& path);
 
-/// Was the attempt withdrawn from this database?
+/// True if the attempt was withdrawn from this database.
 bool wasWithdrawn(const std::string& path, const std::string& uuid);
 
-/// Does the text hold the word, not as part of a longer one? Words are of letters, digits, '_' and '-'.
+/// A letter, beyond ASCII too, a digit, '_' or '-': words consist of these.
+bool isInWord(char c);
+/// True if the text holds the word, not as part of a longer one.
 bool namesWord(const std::string& text, const std::string& word);
 
 }  // namespace calot::analytics

@@ -10,7 +10,7 @@
 #include <map>
 #include <set>
 
-#include "analytics/checkpoints/registry.h"
+#include "analytics/checkpoints/checkpoint.h"
 #include "analytics/design/design_data.h"
 #include "analytics/report/study_population.h"
 #include "recorder/base/errors.h"
@@ -252,8 +252,8 @@ void addFigures(DesignData& data, const std::vector<AttemptValue>& values, const
     const auto at = placed.find(item.attempt);
     const CheckpointDefinition* d = findCheckpoint(item.value.name);
     if (at == placed.end() || d == nullptr || aside.count(item.value.name) > 0) continue;
-    const std::string figureName = item.value.subject.empty() ? d->name : d->name + " " + item.value.subject;
-    const auto named = [&](const std::string& n) { return n == d->name || n == figureName; };
+    const std::string full = figureName(d->name, item.value.subject);
+    const auto named = [&](const std::string& n) { return n == d->name || n == full; };
     if (!d->notOutcome.empty() && !named(choices.against) &&
         std::none_of(choices.family.begin(), choices.family.end(), named))
       continue;
@@ -261,11 +261,11 @@ void addFigures(DesignData& data, const std::vector<AttemptValue>& values, const
         static_cast<std::size_t>(std::find_if(registry.begin(), registry.end(),
                                               [&](const CheckpointEntry& e) { return e.definition.name == d->name; }) -
                                  registry.begin());
-    DesignFigure& figure = figures[{place, figureName}];
-    figure.name = figureName;
+    DesignFigure& figure = figures[{place, full}];
+    figure.name = full;
     figure.unit = d->displayUnit == "1" ? "" : d->displayUnit;
     figure.direction = d->direction;
-    versions[figureName].insert(item.value.version);
+    versions[full].insert(item.value.version);
     const double shown = item.value.value.value_or(HUGE_VAL) * d->displayFactor;
     if (std::isfinite(shown))
       figure.values.push_back({at->second.person, at->second.occasion, at->second.order, at->second.completed, shown});

@@ -45,9 +45,8 @@ bool finishedIn(const CsvTable& table, const CsvRow& row, const NamedColumn& nam
   for (const char* no : {"0", "no", "false", "FALSE"}) {
     if (cell == no) return false;
   }
-  throw Error(ErrorKind::damaged, Where{table.path, fmt::format("line {}", row.line)},
-              fmt::format("column \"{}\": \"{}\" is neither 1, yes nor true, nor 0, no or false",
-                          shown(table.columns[column]), shown(cell)));
+  failAt(table, row.line, table.columns[column],
+         fmt::format("\"{}\" is neither 1, yes nor true, nor 0, no or false", shown(cell)));
 }
 
 void checkDesignOptions(const TableStudyOptions& options, const DesignChoices& choices) {

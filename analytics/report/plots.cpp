@@ -10,7 +10,7 @@
 #include <string>
 #include <utility>
 
-#include "analytics/report/report_text.h"
+#include "analytics/report/report_document.h"
 #include "analytics/statistics/descriptive.h"
 
 namespace calot::analytics {

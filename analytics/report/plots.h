@@ -13,7 +13,7 @@
 
 #include "analytics/report/drawing.h"
 #include "analytics/report/ratings.h"
-#include "analytics/statistics/learning_curve.h"
+#include "analytics/statistics/regression.h"
 
 namespace calot::analytics {
 

@@ -10,7 +10,7 @@
 #include <map>
 #include <set>
 
-#include "analytics/checkpoints/registry.h"
+#include "analytics/checkpoints/checkpoint.h"
 #include "analytics/report/study_coverage.h"
 #include "analytics/report/study_population.h"
 #include "analytics/report/study_protocol.h"

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "analytics/report/study_tables.h"
+#include "analytics/report/study_output.h"
 #include "analytics/statistics/descriptive.h"
 
 namespace calot::analytics {
@@ -71,16 +71,7 @@ const CoverageRow* coverageOf(const Study& study, const StudyRow& row) {
 bool coverageDiffers(const CoverageRow& row, double level) { return row.test && row.test->p <= level; }
 
 ReportTable coverageTable(const Study& study) {
-  using Align = TextTable::Align;
-  ReportTable table{"Coverage",
-                    {{"samples of", Align::left},
-                     {"group", Align::left},
-                     {"n", Align::right},
-                     {"median %", Align::right},
-                     {"lowest %", Align::right},
-                     {"too little", Align::right},
-                     {"p", Align::right}},
-                    {}};
+  ReportTable table = tableOf("Coverage", {"=samples of", "=group", "n", "median %", "lowest %", "too little", "p"});
   for (const CoverageRow& row : study.coverage) {
     if (isWhole(row) || !isShown(study, row)) continue;
     for (std::size_t g = 0; g < 2; ++g) {

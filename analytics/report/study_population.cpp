@@ -3,11 +3,12 @@
 #include "analytics/report/study_population.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "analytics/checkpoints/registry.h"
+#include "analytics/checkpoints/checkpoint.h"
 #include "analytics/cohort/embedded.h"
 #include "analytics/cohort/registers.h"
 #include "analytics/report/study_protocol.h"
@@ -83,10 +84,9 @@ void askForOneKey(const std::vector<std::string>& keys, const StudyOptions& opti
                   std::vector<std::string>& remarks) {
   if (keys.size() < 2) return;
   if (!options.mixKeys) {
-    std::string list;
-    for (const auto& key : keys) list += (list.empty() ? "" : "; ") + key;
     throw Error(ErrorKind::refused, Where{name},
-                fmt::format("the attempts don't compare, they have {} comparability keys ({})", keys.size(), list),
+                fmt::format("the attempts don't compare, they have {} comparability keys ({})", keys.size(),
+                            fmt::join(keys, "; ")),
                 {Remedy::chooseKey, Remedy::mixKeys});
   }
   remarks.push_back(
@@ -131,12 +131,6 @@ std::size_t levelOf(const std::string& group) {
   return group == "novice" || group == "unskilled" ? 2 : notALevel;
 }
 
-std::string listed(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text;
-}
-
 }  // namespace
 
 bool groupBefore(const std::string& a, const std::string& b) {
@@ -161,14 +155,14 @@ std::array<std::string, 2> chooseGroups(const std::map<std::string, std::uint64_
       if (present.count(name) == 0) {
         throw Error(ErrorKind::refused, Where{path},
                     fmt::format("nothing for the study in group \"{}\" (there are: {}){}", name,
-                                names.empty() ? "none" : listed(names), left));
+                                names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", ")), left));
       }
     }
     return {choices.groups[0], choices.groups[1]};
   }
   if (names.size() == 2) return {names[0], names[1]};
   if (names.size() > 2) {
-    throw Error(ErrorKind::refused, Where{path}, fmt::format("{} groups ({})", names.size(), listed(names)),
+    throw Error(ErrorKind::refused, Where{path}, fmt::format("{} groups ({})", names.size(), fmt::join(names, ", ")),
                 {Remedy::nameGroups});
   }
   throw Error(ErrorKind::refused, Where{path},

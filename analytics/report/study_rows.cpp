@@ -2,24 +2,19 @@
 #include "analytics/report/study_rows.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "analytics/report/report_text.h"
+#include "analytics/report/report_document.h"
 #include "analytics/report/study_protocol.h"
 #include "analytics/statistics/descriptive.h"
-#include "analytics/statistics/multiplicity.h"
+#include "analytics/statistics/rank_tests.h"
 #include "recorder/base/errors.h"
 
 namespace calot::analytics {
 namespace {
-
-std::string joined(const std::vector<std::string>& parts) {
-  std::string text;
-  for (const std::string& part : parts) text += (text.empty() ? "" : ", ") + part;
-  return text;
-}
 
 /// Values that agree to eleven digits are treated as tied: ranks must not depend on rounding errors. Each becomes the
 /// least one that it agrees with.
@@ -70,7 +65,7 @@ void countMissing(GroupSummary& s, const std::vector<std::string>& present,
 }
 
 Expected<Spearman> correlation(StudyRow& row, const std::array<std::map<std::string, double>, 2>& duration) {
-  if (row.checkpoint == "attempt-duration") return Expected<Spearman>::none("it is the duration");
+  if (row.checkpoint == "attempt-duration") return NoResult{"it is the duration"};
   std::vector<double> values, seconds;
   for (std::size_t g = 0; g < 2; ++g) {
     for (std::size_t i = 0; i < row.values[g].size(); ++i) {
@@ -80,7 +75,7 @@ Expected<Spearman> correlation(StudyRow& row, const std::array<std::map<std::str
       seconds.push_back(at->second);
     }
   }
-  if (seconds.empty()) return Expected<Spearman>::none("no durations");
+  if (seconds.empty()) return NoResult{"no durations"};
   row.withDurationPairs = values.size();
   return spearman(values, seconds);
 }
@@ -152,8 +147,9 @@ void adjustFamily(Study& study, const StudyChoices& choices) {
         return r.adjusted && r.adjusted->analysis ? std::optional(r.adjusted->analysis->p) : std::nullopt;
       },
       [](StudyRow& r, double p) { r.adjusted->holm = p; });
-  study.family = fmt::format("Holm: adjusted over the {} rank test{} of {}", tests, tests == 1 ? "" : "s",
-                             choices.family.empty() ? "this study" : joined(choices.family));
+  study.family =
+      fmt::format("Holm: adjusted over the {} rank test{} of {}", tests, tests == 1 ? "" : "s",
+                  choices.family.empty() ? "this study" : fmt::format("{}", fmt::join(choices.family, ", ")));
   if (analyses > 0) study.family += fmt::format("; the {} with the baseline are a family of their own", analyses);
   study.family += ".";
 }
@@ -221,7 +217,7 @@ void addSimulationRange(StudyRow& row, const StudySample& sample) {
 
 void compareGroups(StudyRow& row, const Study& study, const std::array<std::map<std::string, double>, 2>& duration) {
   if (!row.notOutcome.empty()) {
-    row.test = Expected<MannWhitney>::none(row.notOutcome);
+    row.test = NoResult{row.notOutcome};
     return;
   }
   const std::vector<double>&x = row.values[0], &y = row.values[1];

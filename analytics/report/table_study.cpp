@@ -243,8 +243,6 @@ Study makeTableStudy(const CsvTable& table, const TableStudyOptions& asked) {
 
 namespace {
 
-using recorder::shown;
-
 /// Squares of what is larger, and their sums, might not be finite.
 constexpr double largest = 1e100;
 
@@ -258,11 +256,6 @@ std::string withPoint(const std::string& cell, char separator) {
   return number;
 }
 
-[[noreturn]] void failAt(const CsvTable& table, std::size_t line, const std::string& column, const std::string& what) {
-  throw Error(ErrorKind::damaged, Where{table.path, fmt::format("line {}", line)},
-              fmt::format("column \"{}\": {}", shown(column), what));
-}
-
 /// Names are printed: a line break or another control character could forge output.
 void askForPlainName(const CsvTable& table, std::size_t line, const std::string& column, const std::string& name) {
   const auto control = [](char c) { return (c >= 0 && c < ' ') || c == '\x7F'; };
@@ -270,13 +263,12 @@ void askForPlainName(const CsvTable& table, std::size_t line, const std::string&
     failAt(table, line, column, fmt::format("\"{}\" holds a line break or a control character", shown(name)));
 }
 
-std::set<std::string> occasionsOf(const std::vector<Record>& records) {
-  std::set<std::string> occasions;
-  for (const Record& r : records) occasions.insert(r.occasion);
-  return occasions;
-}
-
 }  // namespace
+
+void failAt(const CsvTable& table, std::size_t line, const std::string& column, const std::string& what) {
+  throw Error(ErrorKind::damaged, Where{table.path, fmt::format("line {}", line)},
+              fmt::format("column \"{}\": {}", shown(column), what));
+}
 
 std::vector<Outcome> outcomesOf(const CsvTable& table, const TableStudyOptions& options) {
   std::vector<Outcome> outcomes;
@@ -343,7 +335,8 @@ std::vector<Record> recordsOf(const CsvTable& table, const TableStudyOptions& op
 }
 
 void askForOccasion(const CsvTable& table, const std::vector<Record>& records, const std::string& occasion) {
-  const std::set<std::string> known = occasionsOf(records);
+  std::set<std::string> known;
+  for (const Record& r : records) known.insert(r.occasion);
   if (occasion.empty() || known.count(occasion) > 0) return;
   std::string list;
   for (const std::string& name : known) list += (list.empty() ? "" : ", ") + shown(name);

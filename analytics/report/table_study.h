@@ -33,6 +33,9 @@ struct TableStudyOptions : StudyChoices {
 /// rule: rows of one person are not independent.
 Study makeTableStudy(const CsvTable& table, const TableStudyOptions& options);
 
+/// @throws Error (damaged) naming line and column.
+[[noreturn]] void failAt(const CsvTable& table, std::size_t line, const std::string& column, const std::string& what);
+
 /// A column that is compared.
 struct Outcome {
   std::string name;

@@ -42,7 +42,7 @@ struct ContrastingGroups {
   Misjudged falsePositives;  ///< novices who pass
   Misjudged falseNegatives;  ///< experts who fail
   /// Percentile bootstrap with groups resampled separately; wide for ten values per group.
-  Expected<Interval> interval = Expected<Interval>::none("not computed");
+  Expected<Interval> interval = NoResult{"not computed"};
   std::size_t resamplesWithoutCut = 0;  ///< when there is an interval
   std::uint64_t seed = 0;
 };

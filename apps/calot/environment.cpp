@@ -15,7 +15,6 @@
 #include "recorder/base/errors.h"
 #include "recorder/base/nearest_word.h"
 #include "recorder/base/program_files.h"
-#include "recorder/base/text_output.h"
 #include "recorder/base/text_words.h"
 #include "recorder/formats/scene_file.h"
 
@@ -134,8 +133,6 @@ double parseTime(const std::string& text) {
                 fmt::format("'{}' is no time: write seconds (12.5) or minutes and seconds (1:02.5)", text));
   return 60.0 * minutes + seconds;
 }
-
-void refuseExisting(const std::filesystem::path& file, bool force) { recorder::refuseOutput(file, force); }
 
 namespace {
 std::atomic<bool> requested{false};

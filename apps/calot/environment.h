@@ -62,9 +62,6 @@ std::string wholeNumber(const std::string& text);
 /// "12.5", "12.5s" or "1:02.5" in seconds. @throws Error (invalid)
 double parseTime(const std::string& text);
 
-/// Refuses a target that is there, is a folder, or lies in none. @throws Error (invalid)
-void refuseExisting(const std::filesystem::path& file, bool force);
-
 /// From here on both signals ask to stop instead of ending the program.
 void stopOnSignals();
 

@@ -1,18 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // calot mesh: tetrahedra from a closed surface, with an honest report; repaired and coarser surfaces for scenes.
-#include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
-#include <memory>
-#include <nlohmann/json.hpp>
-#include <string>
-#include <utility>
 
-#include "apps/calot/commands.h"
-#include "apps/calot/results.h"
-#include "apps/calot/wrong_word.h"
-#include "apps/common/exit_code.h"
-#include "recorder/base/errors.h"
+#include "apps/calot/command.h"
 #include "recorder/base/text_output.h"
 #include "recorder/formats/mesh_file.h"
 #include "recorder/formats/mesh_report.h"
@@ -28,15 +19,13 @@ struct CoarseSurface {
   TriangleMesh mesh;
 };
 
-/// A closed surface of about so many triangles: the boundary of a tetrahedral mesh (mesh_to_count.h) of the same
-/// volume within 1 %. Thin parts go as they do there.
-/// @param surface closed, outward, manifold
-[[nodiscard]] CoarseSurface coarseSurface(const TriangleMesh& surface, int triangles);
-
 /// Share of the requested number.
 constexpr double goodEnough = 0.1, acceptable = 0.3;
 constexpr int searches = 8;
 
+/// A closed surface of about so many triangles: the boundary of a tetrahedral mesh (mesh_to_count.h) of the same
+/// volume within 1 %. Thin parts go as they do there.
+/// @param surface closed, outward, manifold
 CoarseSurface coarseSurface(const TriangleMesh& surface, int triangles) {
   CoarseSurface best;
   if (triangles >= surface.triangles()) {
@@ -160,7 +149,7 @@ void writeOutputs(const MeshOptions& o, const TriangleMesh& surface, recorder::M
   report.surfaceOutputVolume = signedVolume(written);
 }
 
-int meshSurface(const MeshOptions& o) {
+void meshSurface(const MeshOptions& o) {
   checkFiles(o);
   recorder::MeshReport report;
   report.input = o.input;
@@ -187,7 +176,7 @@ int meshSurface(const MeshOptions& o) {
     writeOutputs(o, whole, report);
   }
   if (o.json) {
-    printResult("mesh", nlohmann::ordered_json::parse(recorder::meshReportJson(report)));
+    printResult("mesh", Json::parse(recorder::meshReportJson(report)));
   } else {
     fmt::print("{}", recorder::meshReportText(report));
     std::fflush(stdout);
@@ -195,15 +184,14 @@ int meshSurface(const MeshOptions& o) {
   for (const std::string& warning : recorder::meshWarnings(report))
     fmt::print(stderr, "calot: warning: {}: {}\n", o.input, warning);
   if (!report.faults.empty()) throw Error(ErrorKind::refused, o.input + ": " + report.faults.front());
-  return static_cast<int>(ExitCode::yes);
 }
 
 }  // namespace
 
 void addMesh(CLI::App& app, Run& run) {
-  CLI::App* command = app.add_subcommand(
-      "mesh", "Fill a closed surface with tetrahedra (isosurface stuffing); repair a surface for a scene");
-  const auto options = std::make_shared<MeshOptions>();
+  const auto [command, options] = addCommand(
+      app, run, "mesh", "Fill a closed surface with tetrahedra (isosurface stuffing); repair a surface for a scene",
+      meshSurface);
   command->add_option("surface", options->input, "the surface, a .obj, .stl or .ply file")->required();
   command->add_option("--unit", options->unit, "of the file's coordinates: m, cm or mm")
       ->required()
@@ -221,7 +209,6 @@ void addMesh(CLI::App& app, Run& run) {
   command->add_flag("--repair", options->repair, "fill holes");
   command->add_flag("--json", options->json, "print the report as JSON");
   command->add_flag("--force", options->force, "replace files that are there");
-  command->callback([options, &run] { run = [options] { return meshSurface(*options); }; });
 }
 
 }  // namespace calot::apps

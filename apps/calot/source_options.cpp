@@ -15,6 +15,9 @@
 #include "recorder/sources/performer.h"
 #include "recorder/sources/performer_profile.h"
 #include "recorder/sources/scope/scope_source.h"
+#ifdef CALOT_BULLET
+#include "sim/bullet/bullet_tree.h"
+#endif
 
 namespace calot::apps {
 namespace {
@@ -73,7 +76,7 @@ void recordDevice(recorder::SampleSource& source, recorder::RecordingWriter& wri
   if (auto* device = source.device(); device != nullptr) writer.takeRawSamples(device->rawSamples(), firstTick);
 }
 
-void tellDevice(recorder::SampleSource& source) {
+void printDevice(recorder::SampleSource& source) {
   const auto* device = source.device();
   if (device == nullptr) return;
   const recorder::DeviceCounts& counts = device->counts();
@@ -175,14 +178,6 @@ std::string stationOf(const std::string& named, const std::optional<recorder::St
     throw Error(ErrorKind::invalid, fmt::format("--station {}: the key is that of station {}", named, key->station));
   return key->station;
 }
-
-}  // namespace calot::apps
-
-#ifdef CALOT_BULLET
-#include "sim/bullet/bullet_tree.h"
-#endif
-
-namespace calot::apps {
 
 CLI::Option* addBroadPhase(CLI::App& command, std::string& name) {
   return command

@@ -54,7 +54,7 @@ void driveDevice(recorder::SampleSource& source, recorder::RunSettings& run);
 void recordDevice(recorder::SampleSource& source, recorder::RecordingWriter& writer, std::uint64_t firstTick = 0);
 
 /// Where the source is a device: what came from it, on stdout.
-void tellDevice(recorder::SampleSource& source);
+void printDevice(recorder::SampleSource& source);
 
 struct ScopeOptions {
   std::optional<double> optic;  ///< degrees between shaft and view; none: the camera is fixed

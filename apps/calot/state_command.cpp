@@ -1,14 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <fmt/format.h>
 
-#include <iostream>
-#include <nlohmann/json.hpp>
-
-#include "apps/calot/commands.h"
-#include "apps/calot/environment.h"
-#include "apps/calot/results.h"
-#include "apps/common/exit_code.h"
-#include "recorder/base/errors.h"
+#include "apps/calot/command.h"
 #include "recorder/base/text_output.h"
 #include "recorder/engine/state_fields.h"
 #include "recorder/prepared_scene.h"
@@ -30,8 +22,8 @@ struct StateOptions {
   bool flat = false, force = false, anyway = false;
 };
 
-int state(const StateOptions& o) {
-  refuseExisting(o.output, o.force);
+void state(const StateOptions& o) {
+  recorder::refuseOutput(o.output, o.force);
   recorder::probe(o.recording);
   recorder::Recording recording(o.recording);
   if (o.step >= recording.stepCount()) {
@@ -56,12 +48,9 @@ int state(const StateOptions& o) {
   if (!restoreState(scene->model(), keyframe.state, state))
     throw Error(ErrorKind::damaged, fmt::format("{}: the State of step {} is none", o.recording, o.step));
   if (!o.flat) {
-    std::vector<recorder::NamedNumbers> fields;
-    for (recorder::StateField& f : recorder::stateFields(scene->model(), state)) {
-      fields.emplace_back(std::move(f.name), std::move(f.values));
-    }
-    recorder::writeStateFile(o.output, o.step, simulationVersion, fields, o.force);
-    return 0;
+    recorder::writeStateFile(o.output, o.step, simulationVersion, recorder::stateFields(scene->model(), state),
+                             o.force);
+    return;
   }
   FlatState flat;
   flat.scene = scene->model().scene();
@@ -73,7 +62,6 @@ int state(const StateOptions& o) {
   }
   const std::vector<std::byte> bytes = saveFlat(flat);
   recorder::writeText(o.output, {reinterpret_cast<const char*>(bytes.data()), bytes.size()}, o.force);
-  return 0;
 }
 
 struct DiffOptions {
@@ -81,15 +69,10 @@ struct DiffOptions {
   bool json = false;
 };
 
-int diff(const DiffOptions& o) {
+ExitCode diff(const DiffOptions& o) {
   const recorder::StateFile a = recorder::readStateFile(o.first);
   const recorder::StateFile b = recorder::readStateFile(o.second);
-  const auto fields = [](const recorder::StateFile& file) {
-    std::vector<recorder::StateField> out;
-    for (const recorder::NamedNumbers& f : file.fields) out.push_back({f.first, f.second});
-    return out;
-  };
-  const auto difference = recorder::firstDifference(fields(a), fields(b));
+  const auto difference = recorder::firstDifference(a.fields, b.fields);
   if (o.json) {
     nlohmann::json json{{"equal", !difference}};
     if (difference) {
@@ -105,31 +88,28 @@ int diff(const DiffOptions& o) {
     fmt::print("equal: {} fields of step {}\n", a.fields.size(), a.step);
   }
   if (a.step != b.step && !o.json) fmt::print("the first is of step {}, the second of step {}\n", a.step, b.step);
-  return static_cast<int>(difference ? ExitCode::no : ExitCode::yes);
+  return difference ? ExitCode::no : ExitCode::yes;
 }
 
 }  // namespace
 
 void addState(CLI::App& app, Run& run) {
-  auto o = std::make_shared<StateOptions>();
-  CLI::App* command = app.add_subcommand("state", "Writes the State after a step, as HDF5 or as plain bytes.");
+  const auto [command, o] =
+      addCommand(app, run, "state", "Writes the State after a step, as HDF5 or as plain bytes.", state);
   command->add_option("recording", o->recording, "recording")->required();
   command->add_option("--step", o->step, "the step after which")->check(wholeNumber)->required();
   command->add_flag("--flat", o->flat, "scene, State and the next 200 steps' samples as plain bytes, for the matrix");
   command->add_option("-o,--output", o->output, "file to write")->required();
   command->add_flag("--anyway", o->anyway, "what this build makes of a recording of another simulation version, too");
   command->add_flag("--force", o->force, "replace the output if it is there");
-  command->callback([o, &run] { run = [o] { return state(*o); }; });
 }
 
 void addDiff(CLI::App& app, Run& run) {
-  auto o = std::make_shared<DiffOptions>();
-  CLI::App* command =
-      app.add_subcommand("diff", "First field, index and both values that differ between two State files.");
+  const auto [command, o] =
+      addCommand(app, run, "diff", "First field, index and both values that differ between two State files.", diff);
   command->add_option("first", o->first, "file of `calot state`")->required();
   command->add_option("second", o->second, "file of `calot state`")->required();
   command->add_flag("--json", o->json, "print the result as JSON");
-  command->callback([o, &run] { run = [o] { return diff(*o); }; });
 }
 
 }  // namespace calot::apps

@@ -2,31 +2,111 @@
 #include "gui/dashboard/ratings_page.h"
 
 #include <algorithm>
-#include <QBoxLayout>
 #include <QButtonGroup>
-#include <QCheckBox>
-#include <QComboBox>
+#include <QCryptographicHash>
 #include <QGroupBox>
-#include <QLabel>
-#include <QLineEdit>
-#include <QPushButton>
 #include <QRadioButton>
 #include <QScrollArea>
-#include <QShortcut>
-#include <QSignalBlocker>
-#include <QSplitter>
+#include <QSettings>
 
-#include "gui/attempt/attempt_recording.h"
-#include "gui/attempt/replay_transport.h"
-#include "gui/attempt/widget_parts.h"
-#include "gui/dashboard/attempt_banner.h"
-#include "gui/dashboard/page_parts.h"
 #include "gui/dashboard/settings.h"
-#include "gui/view/scene_picture_widget.h"
 #include "gui/words/problem_words.h"
 #include "recorder/base/errors.h"
 
 namespace calot::gui {
+
+namespace fs = std::filesystem;
+
+KnownForms readForms(const std::vector<fs::path>& folders) {
+  std::map<std::string, fs::path> byName;
+  for (const fs::path& root : folders) {
+    std::error_code fault;
+    for (fs::directory_iterator it(root / "forms", fault), end; !fault && it != end; it.increment(fault)) {
+      if (it->path().extension() == ".json") byName.emplace(it->path().stem().string(), it->path());
+    }
+  }
+  KnownForms known;
+  for (const auto& entry : byName) {
+    try {
+      known.forms.push_back(analytics::readRatingForm(entry.second));
+    } catch (const Error& error) {
+      known.faults.emplace_back(problemText(error));
+    }
+  }
+  return known;
+}
+
+void RatingDraft::store(const std::string& database, const std::string& attempt, const std::string& rater,
+                        const std::string& participant, bool replace) const {
+  if (form_.ofAttempts && attempt.empty()) throw Error(ErrorKind::invalid, "Choose the attempt that is rated.");
+  if (form_.ofAttempts && rater.empty()) throw Error(ErrorKind::invalid, "Say who rates, by a pseudonym.");
+  if (!form_.ofAttempts && participant.empty())
+    throw Error(ErrorKind::invalid, "Choose the participant who fills in the form.");
+  std::vector<std::pair<std::string, std::string>> given;
+  for (const auto& [item, score] : answers_) given.emplace_back(item, score ? std::to_string(*score) : "-");
+  analytics::Rating rating;
+  rating.attempt = form_.ofAttempts ? attempt : std::string();
+  rating.rater = form_.ofAttempts ? rater : std::string();
+  rating.participant = form_.ofAttempts ? std::string() : participant;
+  rating.answers = analytics::answersOf(form_, given);
+  analytics::AssessmentDatabase(database, analytics::CohortDatabase::Access::write)
+      .storeRating({form_.name, form_.version, form_.sha256, form_.text}, rating, replace);
+}
+
+std::optional<analytics::Rating> earlierRating(const std::vector<analytics::Rating>& ratings,
+                                               const analytics::RatingForm& form, const std::string& attempt,
+                                               const std::string& rater, const std::string& participant) {
+  const auto at = std::find_if(ratings.begin(), ratings.end(), [&](const analytics::Rating& r) {
+    if (r.form != form.name || r.formVersion != form.version) return false;
+    return form.ofAttempts ? r.attempt == attempt && r.rater == rater
+                           : r.attempt.empty() && r.participant == participant;
+  });
+  if (at == ratings.end()) return std::nullopt;
+  return *at;
+}
+
+namespace {
+
+QSettings drafts() { return {QSettings::IniFormat, QSettings::UserScope, "calot", "drafts"}; }
+
+/// A group of the settings: no name stands there.
+QString groupOf(const DraftSubject& s) {
+  QCryptographicHash hash(QCryptographicHash::Sha256);
+  for (const std::string& part :
+       {s.database, s.form, std::to_string(s.formVersion), s.attempt, s.rater, s.participant}) {
+    hash.addData(QByteArray::fromStdString(part));
+    hash.addData(QByteArray(1, '\0'));
+  }
+  return QString::fromLatin1(hash.result().toHex());
+}
+
+constexpr const char* blankMark = "-";
+
+}  // namespace
+
+void keepDraft(const DraftSubject& subject, const DraftAnswers& answers) {
+  QSettings store = drafts();
+  store.beginGroup(groupOf(subject));
+  store.remove("");
+  for (const auto& [item, score] : answers)
+    store.setValue(QString::fromStdString(item), score ? QString::number(*score) : QString(blankMark));
+}
+
+DraftAnswers keptDraft(const DraftSubject& subject) {
+  QSettings store = drafts();
+  store.beginGroup(groupOf(subject));
+  DraftAnswers answers;
+  for (const QString& item : store.childKeys()) {
+    const QString text = store.value(item).toString();
+    bool number = false;
+    const int score = text.toInt(&number);
+    if (number || text == blankMark) answers[item.toStdString()] = number ? std::optional(score) : std::nullopt;
+  }
+  return answers;
+}
+
+void dropDraft(const DraftSubject& subject) { drafts().remove(groupOf(subject)); }
+
 namespace {
 
 constexpr int blank = -1000;  // button of an item that is left blank: no form's score
@@ -40,66 +120,31 @@ QString scoreText(const analytics::RatingForm& form, int score) {
 
 }  // namespace
 
-RatingPage::RatingPage(QWidget* parent) : QWidget(parent) {
-  replayPart_ = buildReplay();
-  auto* parts = new QSplitter(Qt::Horizontal);
-  parts->addWidget(replayPart_);
-  parts->addWidget(buildForm());
-  parts->setStretchFactor(0, 1);
-  parts->setStretchFactor(1, 1);
-  parts->setChildrenCollapsible(false);
+RatingPage::RatingPage(QWidget* parent) : CohortPage(parent), replay_(new RecordingView({.timeline = false})) {
   auto* layout = new QVBoxLayout(this);
-  layout->addWidget(parts, 1);
+  layout->addWidget(makeSplitter(Qt::Horizontal, {{replay_, 1}, {buildForm(), 1}}), 1);
   connectParts();
-  setProperty(beginProperty, QVariant::fromValue<QObject*>(choice_));
-}
-
-RatingPage::~RatingPage() { replay_.reset(); }  // its thread uses the picture
-
-QWidget* RatingPage::buildReplay() {
-  picture_ = new ScenePictureWidget;
-  replay_ = std::make_unique<Replay>(
-      [picture = picture_](std::shared_ptr<const SceneView> view) { picture->showView(std::move(view)); });
-  auto* made = new QWidget;
-  auto* layout = parts::bare<QVBoxLayout>(made);
-  layout->addWidget(picture_, 1);
-  layout->addWidget(new TransportBar(*replay_));
-  connect(replay_.get(), &Replay::opened, this, [this] { opening_ = false; });
-  connect(replay_.get(), &Replay::failed, this, [this](const QString& reason) {
-    opening_ = false;
-    picture_->showText(reason);
-  });
-  return made;
+  begin_ = choice_;
 }
 
 QWidget* RatingPage::buildForm() {
   auto* made = new QWidget;
   auto* layout = parts::bare<QVBoxLayout>(made);
   auto* row = new QHBoxLayout;
-  const auto add = [&](QLabel* label, QWidget* field, int stretch) {
-    label->setBuddy(field);
-    row->addWidget(label);
-    row->addWidget(field, stretch);
-  };
-  choice_ = parts::choice("form", 12);
-  add(new QLabel("Fo&rm"), choice_, 2);
-  rater_ = parts::named("rater", new QLineEdit);
+  choice_ = parts::labelled(*row, "Fo&rm", parts::choice("form", 12), 2);
+  rater_ = parts::labelled(*row, "Rated b&y", parts::named("rater", new QLineEdit), 1);
+  raterLabel_ = row->itemAt(row->count() - 2)->widget();
   rater_->setMaxLength(64);
   rater_->setPlaceholderText("pseudonym");
-  raterLabel_ = new QLabel("Rated b&y");
-  add(raterLabel_, rater_, 1);
-  participant_ = parts::named("rating-participant", new QComboBox);
-  participantLabel_ = new QLabel("Part&icipant");
-  add(participantLabel_, participant_, 1);
+  participant_ = parts::labelled(*row, "Part&icipant", parts::named("rating-participant", new QComboBox), 1);
+  participantLabel_ = row->itemAt(row->count() - 2)->widget();
   layout->addLayout(row);
   reveal_ = parts::named("reveal", new QCheckBox("Sho&w who it was"));
   reveal_->setToolTip("Who rates blinded judges what was done, not who did it");
   layout->addWidget(reveal_);
   banner_ = new AttemptBanner;
   layout->addWidget(banner_);
-  source_ = new QLabel;
-  source_->setTextFormat(Qt::PlainText);
-  source_->setWordWrap(true);
+  source_ = parts::plainLabel("form-source");
   layout->addWidget(source_);
   area_ = parts::named("form-area", new QScrollArea);
   area_->setWidgetResizable(true);
@@ -129,13 +174,9 @@ void RatingPage::connectParts() {
   };
   connect(next_, &QPushButton::clicked, this, storeAndGo);
   connect(reveal_, &QCheckBox::toggled, this, [this] { showSubject(); });
-  const auto key = [this](const QKeySequence& keys, auto action) {
-    connect(new QShortcut(keys, this, nullptr, nullptr, Qt::WidgetWithChildrenShortcut), &QShortcut::activated, this,
-            action);
-  };
-  key(Qt::CTRL | Qt::Key_Return, storeAndGo);
-  key(Qt::Key_Comma, [this] { replay_->stepBy(-1); });
-  key(Qt::Key_Period, [this] { replay_->stepBy(1); });
+  onKey(*this, Qt::CTRL | Qt::Key_Return, storeAndGo);
+  onKey(*this, Qt::Key_Comma, [this] { replay_->replay().stepBy(-1); });
+  onKey(*this, Qt::Key_Period, [this] { replay_->replay().stepBy(1); });
 }
 
 void RatingPage::setForms(KnownForms forms) {
@@ -150,40 +191,10 @@ void RatingPage::setForms(KnownForms forms) {
   showForm();
 }
 
-void RatingPage::setDocument(std::shared_ptr<const CohortDocument> document) {
-  document_ = std::move(document);
-  read_ = false;
-  if (isVisible()) readPeople();
-}
-
-void RatingPage::showEvent(QShowEvent* event) {
-  QWidget::showEvent(event);
-  if (!read_ && document_) readPeople();
-  openReplay();
-}
-
-void RatingPage::hideEvent(QHideEvent* event) {
-  QWidget::hideEvent(event);
-  replay_->pause();
-}
-
-quint64 RatingPage::replayShown() const { return picture_->shown(); }
-bool RatingPage::settled() const {
-  return !opening_ && (!replay_->isOpen() || (replay_->position().settled && !picture_->picture().isNull()));
-}
-
 void RatingPage::openReplay() {
   if (!document_ || !attempt_ || !isVisible() || shown_ == attempt_->uuid) return;
   shown_ = attempt_->uuid;
-  replay_->close();
-  const std::filesystem::path file = findRecording(*attempt_, document_->path(), settings::recordingPlaces());
-  if (file.empty()) {
-    picture_->showText("The recording was not found. Open the attempt on its own page to say where it is.");
-    return;
-  }
-  picture_->showText("Opening the recording …");
-  opening_ = true;
-  replay_->open(file, attempt_->uuid);
+  replay_->open(*attempt_, *document_);
 }
 
 DraftSubject RatingPage::draftSubject() const {
@@ -196,30 +207,27 @@ DraftSubject RatingPage::draftSubject() const {
           shown.ofAttempts ? std::string() : participant_->currentText().toStdString()};
 }
 
-void RatingPage::readPeople() {
-  read_ = true;
+void RatingPage::read() {
   if (rater_->text().isEmpty()) rater_->setText(settings::person());
   {
     const QSignalBlocker quiet(participant_);
     const QString before = participant_->currentText();
     participant_->clear();
-    try {
-      for (const std::string& name : document_->participants()) participant_->addItem(QString::fromStdString(name));
-    } catch (const Error& error) {
-      emit problem(QString::fromStdString(problemText(error)));
-    }
+    tryTo([this] {
+      for (const analytics::Participant& person : document_->participants())
+        participant_->addItem(QString::fromStdString(person.pseudonym));
+    });
     participant_->setCurrentIndex(std::max(0, participant_->findText(before)));
   }
   showEarlier();
+  openReplay();
 }
 
 void RatingPage::setAttempt(const analytics::AttemptRow& attempt) {
   const bool another = !attempt_ || attempt_->uuid != attempt.uuid;
   attempt_ = attempt;
   showSubject();
-  if (another && isVisible()) showEarlier();
-  openReplay();
-  if (another) read_ = read_ && isVisible();
+  if (another) outdate();
 }
 
 void RatingPage::chooseForm(const QString& name) {
@@ -233,12 +241,10 @@ const analytics::RatingForm* RatingPage::form() const {
 
 void RatingPage::showSubject() {
   const bool ofAttempts = form() == nullptr || form()->ofAttempts;
-  for (QWidget* widget :
-       {static_cast<QWidget*>(rater_), static_cast<QWidget*>(raterLabel_), static_cast<QWidget*>(reveal_), replayPart_})
+  for (QWidget* widget : std::initializer_list<QWidget*>{rater_, raterLabel_, reveal_, replay_})
     widget->setVisible(ofAttempts);
   banner_->setVisible(ofAttempts && (reveal_->isChecked() || !attempt_));
-  for (QWidget* widget : {static_cast<QWidget*>(participant_), static_cast<QWidget*>(participantLabel_)})
-    widget->setVisible(!ofAttempts);
+  for (QWidget* widget : {static_cast<QWidget*>(participant_), participantLabel_}) widget->setVisible(!ofAttempts);
   if (!attempt_)
     banner_->showText("Select the attempt that is rated on the page Attempts.");
   else
@@ -271,9 +277,8 @@ void RatingPage::showForm() {
 }
 
 void RatingPage::addItem(QVBoxLayout& layout, const analytics::FormItem& item) {
-  auto* text = new QLabel(QString::fromStdString(item.text));
-  text->setTextFormat(Qt::PlainText);
-  text->setWordWrap(true);
+  auto* text = parts::plainLabel("");
+  text->setText(QString::fromStdString(item.text));
   parts::embolden(text);
   layout.addWidget(text);
   auto* buttons = new QButtonGroup(text);
@@ -301,10 +306,8 @@ void RatingPage::addItem(QVBoxLayout& layout, const analytics::FormItem& item) {
       anchors += QString("%1: %2").arg(shown.least + static_cast<int>(i)).arg(QString::fromStdString(item.anchors[i]));
   }
   if (!anchors.isEmpty()) {
-    auto* words = new QLabel(anchors.join('\n'));
-    words->setObjectName(QString::fromStdString(item.key) + "-anchors");
-    words->setTextFormat(Qt::PlainText);
-    words->setWordWrap(true);
+    auto* words = parts::plainLabel((item.key + "-anchors").c_str());
+    words->setText(anchors.join('\n'));
     layout.addWidget(words);
   }
   layout.addSpacing(6);
@@ -325,12 +328,10 @@ void RatingPage::showEarlier() {
   const analytics::RatingForm& shown = *form();
   std::optional<analytics::Rating> earlier;
   if (document_) {
-    try {
-      earlier = earlierRating(document_->ratings(), shown, attempt_ ? attempt_->uuid : std::string(),
+    tryTo([&] {
+      earlier = earlierRating(document_->assessment().ratings(), shown, attempt_ ? attempt_->uuid : std::string(),
                               rater_->text().toStdString(), participant_->currentText().toStdString());
-    } catch (const Error& error) {
-      emit problem(QString::fromStdString(problemText(error)));
-    }
+    });
   }
   replaces_ = earlier.has_value();
   draft_.emplace(shown);
@@ -371,18 +372,14 @@ void RatingPage::showState() {
 }
 
 bool RatingPage::store() {
-  try {
+  return tryTo([this] {
     draft_->store(document_->path(), attempt_ ? attempt_->uuid : std::string(), rater_->text().toStdString(),
                   participant_->currentText().toStdString(), replaces_);
     dropDraft(draftSubject());
     replaces_ = true;
     showState();
     state_->setText("Stored. " + state_->text());
-    return true;
-  } catch (const Error& error) {
-    emit problem(QString::fromStdString(problemText(error)));
-    return false;
-  }
+  });
 }
 
 }  // namespace calot::gui

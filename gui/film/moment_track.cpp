@@ -9,8 +9,8 @@
 #include <cstddef>
 #include <string_view>
 
+#include "analytics/checkpoints/checkpoint.h"
 #include "analytics/checkpoints/phases.h"
-#include "analytics/checkpoints/registry.h"
 #include "recorder/base/errors.h"
 #include "recorder/formats/scene_file.h"
 #include "recorder/recording/layout.h"
@@ -33,15 +33,13 @@ std::string readable(double value) {
 
 /// Every step's result is needed.
 void refuseLean(const recorder::Recording& recording) {
-  if (!hasResults(recording))
+  if (recorder::isMinimal(recording.header()))
     throw Error(ErrorKind::invalid, Where{recording.path().string()},
                 "is a golden recording, which holds no results of its steps: overlays other than time, and alignment "
                 "by phase, need one of `calot record`");
 }
 
 }  // namespace
-
-bool hasResults(const recorder::Recording& recording) { return !recorder::isMinimal(recording.header()); }
 
 MomentTrack::MomentTrack(const std::filesystem::path& recording, bool checkpoints) : recording_(recording) {
   refuseLean(recording_);
@@ -55,22 +53,20 @@ MomentTrack::MomentTrack(const std::filesystem::path& recording, bool checkpoint
     collector_ = std::make_unique<analytics::CheckpointCollector>(header, scene, analytics::Origin::observables);
 }
 
-MomentTrack::~MomentTrack() = default;
-
 void MomentTrack::add(const recorder::RecordedStep& step) {
   const double time = static_cast<double>(step.step + 1) * stepSeconds_;
   const StepResult& result = results_->of(step);
   for (const Event& event : judge_->observe(result).events) {
     const EventWords* const words = wordsOf(event.kind);
-    if (words != nullptr) told_.push_back({time, textOf(event, names_), words->fault});
+    if (words != nullptr) moment_.events.push_back({textOf(event, names_), words->fault, time});
   }
   smoke_.add(time, step.result.events);
   for (std::size_t h = 0; h < handCount; ++h) {
     const HandResult& hand = step.result.hand[h];
     if (hand.instrument == InstrumentKind::none)
-      passed_[h].clear();
+      moment_.path[h].clear();
     else
-      passed_[h].push_back({time, hand.tipSimulated});
+      moment_.path[h].push_back({hand.tipSimulated, time});
   }
   if (collector_) collector_->onStep({step.step, step.samples, step.ticks, result, step.digest, step.lateness, {}, {}});
 }
@@ -78,7 +74,7 @@ void MomentTrack::add(const recorder::RecordedStep& step) {
 void MomentTrack::refreshCheckpoints(double time) {
   if (!collector_ || (checkpointsAt_ >= 0.0 && time < checkpointsAt_ + refreshSeconds)) return;
   checkpointsAt_ = time;
-  checkpoints_.clear();
+  moment_.checkpoints.clear();
   const std::vector<analytics::CheckpointValue> values = collector_->values();
   for (const std::string_view name : shownCheckpoints) {
     const analytics::CheckpointDefinition* const definition = analytics::findCheckpoint(name);
@@ -87,28 +83,24 @@ void MomentTrack::refreshCheckpoints(double time) {
       if (value.name != name || !value.value) continue;
       const double shown = *value.value * definition->displayFactor;
       const std::string unit = definition->displayUnit == "1" ? "" : " " + definition->displayUnit;
-      checkpoints_.push_back(
+      moment_.checkpoints.push_back(
           fmt::format("{}{}{}  {}{}", name, value.subject.empty() ? "" : " ", value.subject, readable(shown), unit));
     }
   }
 }
 
-Moment MomentTrack::at(std::uint64_t n) {
+const Moment& MomentTrack::at(std::uint64_t n) {
   while (next_ <= n) add(recording_.step(next_++));
-  Moment moment;
-  moment.time = static_cast<double>(next_) * stepSeconds_;
-  moment.phase = wordFor(judge_->judgement().phase);
-  while (!told_.empty() && told_.front().time < moment.time - eventSeconds) told_.pop_front();
-  for (const Told& told : told_) moment.events.push_back({told.text, told.fault, moment.time - told.time});
-  for (std::size_t h = 0; h < handCount; ++h) {
-    std::deque<Passed>& passed = passed_[h];
-    while (!passed.empty() && passed.front().time < moment.time - pathSeconds) passed.pop_front();
-    for (const Passed& place : passed) moment.path[h].push_back({place.p_W, moment.time - place.time});
-  }
-  moment.smoke = smoke_.at(moment.time);
-  refreshCheckpoints(moment.time);
-  moment.checkpoints = checkpoints_;
-  return moment;
+  moment_.time = static_cast<double>(next_) * stepSeconds_;
+  moment_.phase = wordFor(judge_->judgement().phase);
+  const auto forget = [&](auto& past, double seconds) {
+    while (!past.empty() && past.front().time < moment_.time - seconds) past.pop_front();
+  };
+  forget(moment_.events, Moment::eventSeconds);
+  for (auto& path : moment_.path) forget(path, Moment::pathSeconds);
+  moment_.smoke = smoke_.at(moment_.time);
+  refreshCheckpoints(moment_.time);
+  return moment_;
 }
 
 std::array<double, 4> phaseStarts(const std::filesystem::path& path) {

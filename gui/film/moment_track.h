@@ -24,36 +24,32 @@ struct Moment {
   struct Line {
     std::string text;
     bool fault = false;
-    double age = 0.0;  ///< since it happened (s)
+    double time = 0.0;  ///< when it happened (s)
   };
-  double time = 0.0;                     ///< s
-  std::string phase;                     ///< "clipping", or empty
-  std::vector<Line> events;              ///< of the last eventSeconds, oldest first
-  std::vector<std::string> checkpoints;  ///< "path-length left  412 mm"
   struct Place {
     Vec3 p_W = Vec3::Zero();
-    double age = 0.0;  ///< s
+    double time = 0.0;  ///< s
   };
+  double time = 0.0;                              ///< s
+  std::string phase;                              ///< "clipping", or empty
+  std::deque<Line> events;                        ///< of the last eventSeconds, oldest first
+  std::vector<std::string> checkpoints;           ///< "path-length left  412 mm"
+  std::array<std::deque<Place>, handCount> path;  ///< of the simulated tips in the last pathSeconds, oldest first
   std::vector<Puff> smoke;
-  std::array<std::vector<Place>, handCount> path;  ///< of the simulated tips, oldest first
+
+  static constexpr double eventSeconds = 5.0, pathSeconds = 3.0;
 };
 
 /// Reads the results of a recording's steps and sums up, from its first step on: judgement needs all of them.
 class MomentTrack {
  public:
-  static constexpr double eventSeconds = 5.0;
-  static constexpr double pathSeconds = 3.0;
-
   /// @param checkpoints are asked for: they are computed as the track goes on
   /// @throws Error (invalid) for a golden recording, which holds no results of its steps; (damaged) where it can't be
   /// read
   MomentTrack(const std::filesystem::path& recording, bool checkpoints);
-  ~MomentTrack();
-  MomentTrack(const MomentTrack&) = delete;
-  MomentTrack& operator=(const MomentTrack&) = delete;
 
   /// Data after step n; forward only. @pre n is not before that of the last call, and below the recording's stepCount()
-  [[nodiscard]] Moment at(std::uint64_t n);
+  [[nodiscard]] const Moment& at(std::uint64_t n);
 
  private:
   void add(const recorder::RecordedStep& step);
@@ -66,24 +62,10 @@ class MomentTrack {
   std::uint64_t next_ = 0;                                     ///< step to read
   std::optional<recorder::RecordedResults> results_;
   std::optional<Judge> judge_;
-  struct Told {
-    double time = 0.0;
-    std::string text;
-    bool fault = false;
-  };
-  std::deque<Told> told_;
-  struct Passed {
-    double time = 0.0;
-    Vec3 p_W = Vec3::Zero();
-  };
-  std::array<std::deque<Passed>, handCount> passed_;
+  Moment moment_;
   SmokeTrail smoke_;
-  std::vector<std::string> checkpoints_;
   double checkpointsAt_ = -1.0;  ///< when they were last computed (s)
 };
-
-/// Does a recording hold the results of its steps? Golden recordings do not.
-[[nodiscard]] bool hasResults(const recorder::Recording& recording);
 
 /// Per phase of the procedure (identification to dissection): when it first began (s), or -1. @throws Error (damaged)
 [[nodiscard]] std::array<double, 4> phaseStarts(const std::filesystem::path& recording);

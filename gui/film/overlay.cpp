@@ -16,10 +16,13 @@ namespace {
 constexpr Colour white{245, 245, 245}, amber{255, 190, 70}, grey{190, 190, 190};
 constexpr std::array<Colour, handCount> handColour{Colour{90, 200, 255}, Colour{255, 170, 60}};  // blue and orange
 
-std::string clockText(double seconds) {
-  const auto tenths = static_cast<long long>(std::floor(10.0 * seconds + 1e-6));
-  return fmt::format("{}:{:02}.{}", tenths / 600, tenths / 10 % 60, tenths % 10);
-}
+constexpr std::array<std::pair<std::string_view, bool Overlays::*>, 5> overlayWords{{
+    {"time", &Overlays::time},
+    {"phase", &Overlays::phase},
+    {"checkpoints", &Overlays::checkpoints},
+    {"events", &Overlays::events},
+    {"tools", &Overlays::tools},
+}};
 
 /// A dot with a soft edge.
 void dot(Image& image, double x, double y, double radius, const Colour& colour, double opacity) {
@@ -46,7 +49,7 @@ void drawPaths(Image& image, const Moment& moment, const SceneView& view) {
       const double away = drawn ? std::hypot(x - lastX, y - lastY) : 1e9;
       if (away < 1.0) continue;                                                         // at rest, dots would pile up
       const int steps = away < 200.0 ? static_cast<int>(std::ceil(away / radius)) : 1;  // else it jumped: one dot
-      const double opacity = 0.55 * (1.0 - place.age / MomentTrack::pathSeconds);
+      const double opacity = 0.55 * (1.0 - (moment.time - place.time) / Moment::pathSeconds);
       for (int i = 1; i <= steps; ++i) {
         const double share = static_cast<double>(i) / steps;
         const double fromX = steps > 1 ? lastX : x, fromY = steps > 1 ? lastY : y;
@@ -67,19 +70,12 @@ Overlays parseOverlays(const std::string& text) {
   while (begin <= text.size()) {
     const std::size_t end = std::min(text.find(',', begin), text.size());
     const std::string_view word = std::string_view(text).substr(begin, end - begin);
-    if (word == "time")
-      overlays.time = true;
-    else if (word == "phase")
-      overlays.phase = true;
-    else if (word == "checkpoints")
-      overlays.checkpoints = true;
-    else if (word == "events")
-      overlays.events = true;
-    else if (word == "tools")
-      overlays.tools = true;
-    else
+    const auto* const known = std::find_if(overlayWords.begin(), overlayWords.end(),
+                                           [&](const auto& overlay) { return overlay.first == word; });
+    if (known == overlayWords.end())
       throw Error(ErrorKind::invalid,
                   fmt::format("there is no overlay '{}'; there are time, phase, checkpoints, events, tools", word));
+    overlays.*known->second = true;
     begin = end + 1;
   }
   return overlays;
@@ -126,7 +122,7 @@ void OverlayPainter::paintEvents(Image& image, const Moment& moment, int bottom)
   for (auto line = moment.events.rbegin(); line != moment.events.rend(); ++line) {
     y -= letters_.lineHeight();
     if (y < image.height / 2) break;
-    const double fading = std::clamp(MomentTrack::eventSeconds - line->age, 0.0, 1.0);
+    const double fading = std::clamp(Moment::eventSeconds - (moment.time - line->time), 0.0, 1.0);
     letters_.write(image, line->text, margin_, y, Anchor::left, line->fault ? amber : white, fading);
   }
 }
@@ -137,7 +133,7 @@ void OverlayPainter::paint(Image& image, const Overlays& overlays, const Moment&
   if (overlays.tools) drawPaths(image, moment, view);
   int y = margin_;
   if (overlays.time) {
-    letters_.write(image, clockText(moment.time), margin_, y, Anchor::left, white);
+    letters_.write(image, timeText(moment.time), margin_, y, Anchor::left, white);
     y += letters_.lineHeight();
   }
   if (overlays.phase && !moment.phase.empty()) letters_.write(image, moment.phase, margin_, y, Anchor::left, white);

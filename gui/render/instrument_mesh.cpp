@@ -12,23 +12,10 @@
 
 namespace calot::gui {
 
-std::vector<InstrumentPart> makeInstrument(const InstrumentView& instrument) {
-  InstrumentParts parts(instrument);
-  switch (instrument.kind) {
-    case InstrumentKind::none:
-      break;
-#define CALOT_DRAWN(name, number) \
-  case InstrumentKind::name:      \
-    drawing::name(parts);         \
-    break;
-      CALOT_INSTRUMENTS(CALOT_DRAWN)
-#undef CALOT_DRAWN
-  }
-  return parts.take();
-}
-
 namespace {
 
+constexpr double mm = 1e-3;                 // m
+constexpr int around = 20;                  // points of a ring
 constexpr double nominalRadius = 2.5 * mm;  // sizes of drawings are those of 5 mm instruments
 
 Quat aboutHinge(double angle) { return Quat(Eigen::AngleAxisd(angle, Vec3::UnitX())); }
@@ -59,8 +46,7 @@ Mesh hingePin(double hinge, double scale) {
   return tube({Vec3(-2.2 * mm * scale, 0, hinge), Vec3(2.2 * mm * scale, 0, hinge)}, 0.75 * mm * scale, 16);
 }
 
-}  // namespace
-
+/// The other jaw: y to -y.
 Mesh mirrored(Mesh mesh) {
   for (Vec3& p : mesh.position) p.y() = -p.y();
   for (Vec3& n : mesh.normal) n.y() = -n.y();
@@ -68,33 +54,38 @@ Mesh mirrored(Mesh mesh) {
   return mesh;
 }
 
-InstrumentParts::InstrumentParts(const InstrumentView& instrument)
-    : scale_(instrument.radius / nominalRadius), jaw_(std::clamp(instrument.jaw, 0.0, 2.5)) {
-  const Vec3 axis = instrument.pose.orientation.normalized() * Vec3::UnitZ();
-  const double toPort = (instrument.pose.position - instrument.port).dot(axis);
-  shaftStart_ = -std::max(toPort, 0.06) - 0.10;  // ten centimetres of it stand outside the port
-}
+/// The parts of one instrument, as they are drawn. A drawing multiplies the sizes of a 5 mm instrument with `scale`.
+struct InstrumentParts {
+  double scale, jaw;  ///< jaw: opening angle (rad)
+  double shaftStart;  ///< z (m)
+  std::vector<InstrumentPart> list = {};
 
-void InstrumentParts::add(Appearance appearance, Mesh mesh) { parts_.push_back({appearance, std::move(mesh)}); }
+  explicit InstrumentParts(const InstrumentView& instrument)
+      : scale(instrument.radius / nominalRadius), jaw(std::clamp(instrument.jaw, 0.0, 2.5)) {
+    const Vec3 axis = instrument.pose.orientation.normalized() * Vec3::UnitZ();
+    const double toPort = (instrument.pose.position - instrument.port).dot(axis);
+    shaftStart = -std::max(toPort, 0.06) - 0.10;  // ten centimetres of it stand outside the port
+  }
 
-void InstrumentParts::addShaft(double end) {
-  add(Appearance::insulation, barrel(shaftStart_, end, nominalRadius * scale_, 0.4 * mm * scale_));
-}
+  void add(Appearance appearance, Mesh mesh) { list.push_back({appearance, std::move(mesh)}); }
 
-void InstrumentParts::addHinged(double jawLength, double forkLength) {
-  const double hinge = -jawLength;
-  const double sleeveEnd = hinge - forkLength;
-  addShaft(sleeveEnd);
-  add(Appearance::steel, clevis(sleeveEnd - 0.5 * mm * scale_, hinge, scale_));
-  add(Appearance::steel, hingePin(hinge, scale_));
-}
+  /// The insulated shaft, from outside the port to `end` (z).
+  void addShaft(double end) {
+    add(Appearance::insulation, barrel(shaftStart, end, nominalRadius * scale, 0.4 * mm * scale));
+  }
 
-void InstrumentParts::addJaws(const Mesh& upper, const Mesh& lower, double jawLength) {
-  add(Appearance::steel, moved(upper, aboutHinge(-0.5 * jaw_), Vec3(0, 0, -jawLength)));
-  add(Appearance::steel, moved(lower, aboutHinge(0.5 * jaw_), Vec3(0, 0, -jawLength)));
-}
-
-namespace {
+  /// Shaft, fork and pin, and both jaws, opened. @param upper, lower from the hinge at z = 0 along z, inner faces at
+  /// y = 0 when closed @param jawLength from the hinge to the tips @param forkLength from the shaft's end to the hinge
+  void addJaws(const Mesh& upper, const Mesh& lower, double jawLength, double forkLength) {
+    const double hinge = -jawLength;
+    const double sleeveEnd = hinge - forkLength;
+    addShaft(sleeveEnd);
+    add(Appearance::steel, clevis(sleeveEnd - 0.5 * mm * scale, hinge, scale));
+    add(Appearance::steel, hingePin(hinge, scale));
+    add(Appearance::steel, moved(upper, aboutHinge(-0.5 * jaw), Vec3(0, 0, hinge)));
+    add(Appearance::steel, moved(lower, aboutHinge(0.5 * jaw), Vec3(0, 0, hinge)));
+  }
+};
 
 // A bar that first leaves the axis and then runs parallel to it, its tip turned inward.
 Mesh clipJaw(double length, double scale) {
@@ -113,16 +104,15 @@ Mesh clipJaw(double length, double scale) {
   return loft(rings);
 }
 
-}  // namespace
+namespace drawing {
 
-void drawing::clipApplier(InstrumentParts& parts) {
-  const double m = mm * parts.scale();
-  const double length = instrument::clipApplier.jawLength * parts.scale();
-  const Mesh jaw = clipJaw(length, parts.scale());
-  parts.addHinged(length, 10.0 * m);
-  parts.addJaws(jaw, mirrored(jaw), length);
+void clipApplier(InstrumentParts& parts) {
+  const double m = mm * parts.scale;
+  const double length = instrument::clipApplier.jawLength * parts.scale;
+  const Mesh jaw = clipJaw(length, parts.scale);
+  parts.addJaws(jaw, mirrored(jaw), length, 10.0 * m);
   // A loaded clip: a V whose legs lie in the jaws.
-  const auto leg = [&](double z) { return std::sin(0.5 * parts.jaw()) * z + 1.15 * m; };
+  const auto leg = [&](double z) { return std::sin(0.5 * parts.jaw) * z + 1.15 * m; };
   const double front = length - 1.2 * m, back = length - 8.5 * m;
   std::vector<Vec3> path{{0, leg(front), front - length},
                          {0, leg(back + 1.5 * m), back + 1.5 * m - length},
@@ -132,8 +122,6 @@ void drawing::clipApplier(InstrumentParts& parts) {
                          {0, -leg(front), front - length}};
   parts.add(Appearance::titanium, tube(path, 0.42 * m, 14));
 }
-
-namespace {
 
 // One jaw from its hinge at z = 0 along z, its inner face at y = 0: tapered, rounded at the tip, toothed inside.
 Mesh grasperJaw(double length, double scale) {
@@ -157,17 +145,14 @@ Mesh grasperJaw(double length, double scale) {
   return loft(rings);
 }
 
-}  // namespace
-
-void drawing::grasper(InstrumentParts& parts) {
-  const double length = instrument::grasper.jawLength * parts.scale();
-  const Mesh jaw = grasperJaw(length, parts.scale());
-  parts.addHinged(length, 9.0 * mm * parts.scale());
-  parts.addJaws(jaw, mirrored(jaw), length);
+void grasper(InstrumentParts& parts) {
+  const double length = instrument::grasper.jawLength * parts.scale;
+  const Mesh jaw = grasperJaw(length, parts.scale);
+  parts.addJaws(jaw, mirrored(jaw), length, 9.0 * mm * parts.scale);
 }
 
-void drawing::hook(InstrumentParts& parts) {
-  const double m = mm * parts.scale();
+void hook(InstrumentParts& parts) {
+  const double m = mm * parts.scale;
   const double sleeveEnd = -13.0 * m;
   parts.addShaft(sleeveEnd);
   parts.add(Appearance::ceramic, loft({superellipse({0, 0, sleeveEnd}, 2.0 * m, 2.0 * m, 2, around),
@@ -185,8 +170,8 @@ void drawing::hook(InstrumentParts& parts) {
   parts.add(Appearance::steel, tube(path, wire, 18));
 }
 
-void drawing::probe(InstrumentParts& parts) {
-  const double radius = 2.5 * mm * parts.scale();
+void probe(InstrumentParts& parts) {
+  const double radius = 2.5 * mm * parts.scale;
   const double shaft = -4.0 * radius;
   parts.addShaft(shaft);
   std::vector<Ring> rings{superellipse({0, 0, shaft}, radius, radius, 2, around)};
@@ -198,8 +183,6 @@ void drawing::probe(InstrumentParts& parts) {
   }
   parts.add(Appearance::steel, loft(rings));
 }
-
-namespace {
 
 // A curved, pointed blade; side is +1 or -1: which side of the hinge plane it lies on.
 Mesh scissorBlade(double length, double side, double scale) {
@@ -220,12 +203,28 @@ Mesh scissorBlade(double length, double side, double scale) {
   return loft(rings);
 }
 
+void scissors(InstrumentParts& parts) {
+  const double length = instrument::scissors.jawLength * parts.scale;
+  parts.addJaws(scissorBlade(length, 1.0, parts.scale), mirrored(scissorBlade(length, -1.0, parts.scale)), length,
+                9.0 * mm * parts.scale);
+}
+
+}  // namespace drawing
 }  // namespace
 
-void drawing::scissors(InstrumentParts& parts) {
-  const double length = instrument::scissors.jawLength * parts.scale();
-  parts.addHinged(length, 9.0 * mm * parts.scale());
-  parts.addJaws(scissorBlade(length, 1.0, parts.scale()), mirrored(scissorBlade(length, -1.0, parts.scale())), length);
+std::vector<InstrumentPart> makeInstrument(const InstrumentView& instrument) {
+  InstrumentParts parts(instrument);
+  switch (instrument.kind) {
+    case InstrumentKind::none:
+      break;
+#define CALOT_DRAWN(name, number) \
+  case InstrumentKind::name:      \
+    drawing::name(parts);         \
+    break;
+      CALOT_INSTRUMENTS(CALOT_DRAWN)
+#undef CALOT_DRAWN
+  }
+  return std::move(parts.list);
 }
 
 Mesh makeClip(const ClipView& clip) {

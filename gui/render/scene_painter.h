@@ -6,7 +6,6 @@
 #include <string>
 
 #include "gui/render/draw_list.h"
-#include "gui/render/gl_functions.h"
 #include "gui/render/gl_objects.h"
 #include "gui/render/renderer.h"
 #include "gui/render/scene_resources.h"

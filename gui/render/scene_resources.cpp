@@ -57,47 +57,8 @@ std::vector<DrawPart> looksToCome(const DrawList& list) {
   return parts;
 }
 
-namespace {
-
-// What the qualities differ in. Interactive: noise of eight bits, its slow part for every vertex instead of every pixel
-// and its finest part not at all; narrow shadows; occlusion and cavity at half the size.
-const char* const filmChoices = R"(
-#define FIELD_SIDES 96
-#define OCCLUSION_SAMPLES 24
-#define BLOCKERS 8
-#define SHADOW_SAMPLES 16
-#define SHEET_SHADOW_SAMPLES 4
-#define PATTERN 4
-#define STRIDE 1
-#define SAMPLES_ASIDE 2
-#define DIRECT 0
-#define NOISE_BYTES 0
-#define BROAD_PER_VERTEX 0
-#define FINE 1
-#define EXACT 1
-#define SOFT_SHADOWS 1
-#define SHADOW_OFFSET 0.0006
-)";
-const char* const interactiveChoices = R"(
-#define FIELD_SIDES 96
-#define OCCLUSION_SAMPLES 6
-#define SHEET_SHADOW_SAMPLES 1
-#define PATTERN 2
-#define STRIDE 2
-#define SAMPLES_ASIDE 1
-#define DIRECT 1
-#define NOISE_BYTES 1
-#define BROAD_PER_VERTEX 1
-#define FINE 0
-#define EXACT 0
-#define SOFT_SHADOWS 0
-#define SHADOW_OFFSET 0.0016
-)";
-
-}  // namespace
-
 ScenePrograms::ScenePrograms(const GlFunctions& gl, Quality quality)
-    : ScenePrograms(gl, quality == Quality::film ? filmChoices : interactiveChoices) {}
+    : ScenePrograms(gl, quality == Quality::film ? glsl::filmChoices : glsl::interactiveChoices) {}
 
 ScenePrograms::ScenePrograms(const GlFunctions& gl, const char* choices)
     : shadow(gl, "shadow", {choices, glsl::common, glsl::surfaceVertex}, {glsl::emptyFragment}),

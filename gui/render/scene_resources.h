@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "gui/render/draw_list.h"
-#include "gui/render/gl_functions.h"
 #include "gui/render/gl_objects.h"
 #include "gui/render/renderer.h"
 

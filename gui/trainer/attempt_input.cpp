@@ -27,6 +27,11 @@ void setPlaces(recorder::MouseInput& mouse, const SceneDescription& scene, const
 
 }  // namespace
 
+void AttemptInput::setOut(recorder::SampleSource& source, const SceneDescription& /*scene*/, const TickSamples& start) {
+  if (auto* const device = source.device(); device != nullptr) device->setOutFrom(start);
+  if (auto* const scope = source.scope(); scope != nullptr) scope->setOutFrom(start.camera);
+}
+
 MouseAttemptInput::MouseAttemptInput(std::shared_ptr<recorder::MouseInput> mouse,
                                      recorder::DeviceSourceSettings settings, AddScope addScope)
     : mouse_(std::move(mouse)), settings_(std::move(settings)), addScope_(std::move(addScope)) {}
@@ -44,13 +49,7 @@ std::unique_ptr<recorder::SampleSource> MouseAttemptInput::open(const SceneDescr
 void MouseAttemptInput::setOut(recorder::SampleSource& source, const SceneDescription& scene,
                                const TickSamples& start) {
   setPlaces(*mouse_, scene, start.camera, {start.hand[0].position, start.hand[1].position});
-  source.device()->setOutFrom(start);
-  if (auto* const scope = source.scope(); scope != nullptr) scope->setOutFrom(start.camera);
-}
-
-void MouseAttemptInput::record(recorder::SampleSource& source, recorder::RecordingWriter& writer,
-                               std::uint64_t firstTick) {
-  writer.takeRawSamples(source.device()->rawSamples(), firstTick);
+  AttemptInput::setOut(source, scene, start);
 }
 
 }  // namespace calot::gui

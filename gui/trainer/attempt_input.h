@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <cstdint>
 #include <functional>
 #include <memory>
 
 #include "recorder/loop.h"
-#include "recorder/recording/writer.h"
 #include "recorder/sources/devices/device_source.h"
 #include "recorder/sources/devices/window_input.h"
 #include "recorder/sources/source.h"
@@ -25,15 +23,11 @@ class AttemptInput {
   /// A source for a new attempt. @throws calot::Error where it is not there
   virtual std::unique_ptr<recorder::SampleSource> open(const SceneDescription& scene) = 0;
 
-  /// Before the first tick of a branch: its hands set out from here.
-  virtual void setOut(recorder::SampleSource& source, const SceneDescription& scene, const TickSamples& start) = 0;
+  /// Before the first tick of a branch: hands and endoscope of the source set out from here.
+  virtual void setOut(recorder::SampleSource& source, const SceneDescription& scene, const TickSamples& start);
 
   /// Requirements of the source on its run: feedback to motors.
-  virtual void drive(recorder::SampleSource& source, recorder::RunSettings& run) = 0;
-
-  /// Raw samples of the source for the recording. @param firstTick of the attempt, at
-  /// which the source's tick 0 lies
-  virtual void record(recorder::SampleSource& source, recorder::RecordingWriter& writer, std::uint64_t firstTick) = 0;
+  virtual void drive(recorder::SampleSource& /*source*/, recorder::RunSettings& /*run*/) {}
 };
 
 /// Both hands by mouse and keyboard. An assessment wants a calibration, which is declared.
@@ -49,8 +43,6 @@ class MouseAttemptInput final : public AttemptInput {
 
   std::unique_ptr<recorder::SampleSource> open(const SceneDescription& scene) override;
   void setOut(recorder::SampleSource& source, const SceneDescription& scene, const TickSamples& start) override;
-  void drive(recorder::SampleSource&, recorder::RunSettings&) override {}
-  void record(recorder::SampleSource& source, recorder::RecordingWriter& writer, std::uint64_t firstTick) override;
 
  private:
   std::shared_ptr<recorder::MouseInput> mouse_;

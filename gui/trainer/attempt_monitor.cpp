@@ -50,31 +50,23 @@ bool MistakeList::add(std::span<const Event> events) {
 
 namespace {
 
-std::vector<std::string> structureNames(const Model& model) {
-  std::vector<std::string> names;
-  for (const StructureModel& structure : model.structures()) names.push_back(structure.name);
-  return names;
-}
-
-std::vector<std::string> connectiveNames(const Model& model) {
-  std::vector<std::string> names;
-  for (const ConnectiveDescription& tissue : model.scene().connective) names.push_back(tissue.name);
+SubjectNames namesOf(const Model& model) {
+  SubjectNames names;
+  for (const StructureModel& structure : model.structures()) names.structures.push_back(structure.name);
+  for (const ConnectiveDescription& tissue : model.scene().connective) names.connective.push_back(tissue.name);
   return names;
 }
 
 std::size_t bedOf(const SceneDescription& scene) {
-  std::size_t bed = 0;
-  while (bed < scene.connective.size() && scene.connective[bed].name != scene.procedure.bed) ++bed;
-  return bed;
+  const auto bed = std::find_if(scene.connective.begin(), scene.connective.end(),
+                                [&](const auto& tissue) { return tissue.name == scene.procedure.bed; });
+  return static_cast<std::size_t>(bed - scene.connective.begin());
 }
 
 }  // namespace
 
 AttemptMonitor::AttemptMonitor(const Model& model)
-    : model_(model),
-      judge_(model.scene()),
-      list_({structureNames(model), connectiveNames(model)}, model.stepSeconds()),
-      bed_(bedOf(model.scene())) {
+    : model_(model), judge_(model.scene()), list_(namesOf(model), model.stepSeconds()), bed_(bedOf(model.scene())) {
   for (std::size_t h = 0; h < handCount; ++h) {
     lastPose_.hand[h].instrument = InstrumentKind::none;
     figures_.hand[h].instrument = model.scene().hands[h].instrument;

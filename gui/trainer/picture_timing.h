@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "recorder/engine/session.h"
-#include "recorder/sources/source.h"
+#include "recorder/live/wrapped_sources.h"
 
 namespace calot::gui {
 
@@ -37,25 +37,16 @@ class MotionClock {
   std::array<Entry, kept> entries_;
 };
 
-/// A source whose ticks are noted in a MotionClock; else what it wraps.
-class ClockedSource final : public recorder::SampleSource {
+/// A source whose ticks are noted in a MotionClock.
+class ClockedSource final : public recorder::WrappedSource {
  public:
   /// @param source, clock outlive this. @param firstStep of the attempt, in which the source's tick 0 lies
   ClockedSource(recorder::SampleSource& source, MotionClock& clock, std::uint64_t firstStep, std::uint32_t ticksPerStep)
-      : source_(source), clock_(clock), firstStep_(firstStep), ticksPerStep_(ticksPerStep) {}
+      : WrappedSource(source), clock_(clock), firstStep_(firstStep), ticksPerStep_(ticksPerStep) {}
 
-  [[nodiscard]] const recorder::Provenance& provenance() const override { return source_.provenance(); }
   bool next(std::uint64_t tick, TickSamples& out) override;
-  recorder::SourceStatus status() override { return source_.status(); }
-  void rest() override { source_.rest(); }
-  [[nodiscard]] recorder::Observer* watcher() override { return source_.watcher(); }
-  [[nodiscard]] recorder::DeviceSource* device() override { return source_.device(); }
-  [[nodiscard]] recorder::ScopeSource* scope() override { return source_.scope(); }
-  [[nodiscard]] recorder::Outcome ending() const override { return source_.ending(); }
-  [[nodiscard]] std::string statusText() const override { return source_.statusText(); }
 
  private:
-  recorder::SampleSource& source_;
   MotionClock& clock_;
   std::uint64_t firstStep_;
   std::uint32_t ticksPerStep_;

@@ -110,21 +110,18 @@ class TrainingSession {
     std::optional<double> back;  ///< go back to this time; none: a new attempt
   };
   struct Interrupted {};  ///< thrown where another command came before a run began
-  class Registered;
 
   void post(Command command, recorder::Outcome ending);
   void work();
-  void obey(const Command& command);
-  void prepare();
-  void attempt();
-  void branch(double time);
+  void attempt(std::optional<double> back);
+  void takeParent(recorder::Recording& parent, recorder::Session& session, std::uint64_t fork,
+                  recorder::RecordingWriter& writer);
   void run(recorder::Session& session, recorder::SampleSource& source, recorder::ControlledSource& controlled,
            recorder::RecordingWriter& writer, AttemptMonitor& monitor, const recorder::AttemptHeader& header,
            const std::filesystem::path& file);
   void awaitPicture(recorder::Session& session);
   void countDown(recorder::SampleSource& source);
   void keepResult(const recorder::RunReport& report, const recorder::SampleSource& source);
-  void enter(Stage stage);
   void giveWay() const;
 
   TrainingSettings settings_;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -15,6 +16,12 @@ namespace calot::recorder {
 /// Who acts. Set by the source, not by the caller. Numbers are stored and never reused.
 enum class OperatorKind : std::uint8_t { human = 0, kinematics = 1, performer = 2 };
 enum class Mode : std::uint8_t { practice = 0, assessment = 1 };
+
+/// Names, as recordings store them. @pre the value is one that has a name
+inline constexpr std::array<const char*, 3> operatorKindNames{"human", "kinematics", "performer"};
+inline constexpr std::array<const char*, 2> modeNames{"practice", "assessment"};
+inline constexpr const char* wordFor(OperatorKind kind) { return operatorKindNames[static_cast<std::size_t>(kind)]; }
+inline constexpr const char* wordFor(Mode mode) { return modeNames[static_cast<std::size_t>(mode)]; }
 
 /// Version of the file format (schemas/recording.md) that is written, and the first one that is read.
 inline constexpr std::uint32_t formatVersion = 2;
@@ -37,9 +44,19 @@ struct Asset {
   std::vector<std::byte> bytes;
 };
 
+/// Facts about an attempt supplied by the caller, beyond source and scene.
+struct AttemptSettings {
+  std::string participant;  ///< pseudonym, or empty
+  std::string station;
+  std::string purpose = "training";    ///< "training", "study", "golden", "demo"
+  std::string handedness = "unknown";  ///< "right", "left", "unknown"
+  Mode mode = Mode::practice;
+  std::uint64_t seed = 0;
+};
+
 /// Everything that is known when an attempt starts; the recording's root attributes and /scene. Names of tissue in the
 /// Model's order: columns of the observables, since the version of StepResult that brought them.
-struct AttemptHeader : Tissues::Names {
+struct AttemptHeader : AttemptSettings, Tissues::Names {
   std::uint32_t formatVersion = recorder::formatVersion;  ///< of the file that it stands in
   std::string attempt;                                    ///< uuid, lower case with hyphens
   std::string parent;                                     ///< uuid of the recording this one branches from, or empty
@@ -49,13 +66,7 @@ struct AttemptHeader : Tissues::Names {
   std::string build;                                      ///< compiler, type, revision
   std::uint32_t simulationVersion = 0;
   std::uint32_t stepResultVersion = 0;
-  std::string participant;  ///< pseudonym, or empty
   Provenance provenance;
-  std::string station;
-  Mode mode = Mode::practice;
-  std::string purpose;     ///< "training", "study", "golden", "demo"
-  std::string handedness;  ///< "right", "left", "unknown"
-  std::uint64_t seed = 0;
   double tickSeconds = tickLength;
   std::uint32_t ticksPerStep = 10;
   std::string sceneName;

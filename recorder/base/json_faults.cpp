@@ -22,7 +22,13 @@ void JsonFaults::note(const Error& fault) {
   if (!known) found_.push_back(fault);
 }
 
-std::size_t JsonFaults::count() { return noting == nullptr ? 0 : noting->found_.size(); }
+bool JsonFaults::at(std::initializer_list<std::string_view> pointers) {
+  return noting != nullptr && std::any_of(noting->found_.begin(), noting->found_.end(), [&](const Error& fault) {
+           const std::string place = fault.where().place + "/";
+           return std::any_of(pointers.begin(), pointers.end(),
+                              [&](std::string_view p) { return place.starts_with(std::string(p) + "/"); });
+         });
+}
 
 void JsonFaults::report(const Error& fault) {
   if (noting == nullptr) throw fault;

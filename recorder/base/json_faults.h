@@ -2,7 +2,8 @@
 // All faults of a JSON file at once, rather than the first.
 #pragma once
 
-#include <cstddef>
+#include <initializer_list>
+#include <string_view>
 #include <vector>
 
 #include "recorder/base/errors.h"
@@ -22,8 +23,8 @@ class JsonFaults {
   [[nodiscard]] const std::vector<Error>& found() const { return found_; }
   void note(const Error& fault);
 
-  /// How many faults this thread has noted; 0 where none are noted.
-  [[nodiscard]] static std::size_t count();
+  /// Has this thread noted a fault at one of these places of a file, or within it?
+  [[nodiscard]] static bool at(std::initializer_list<std::string_view> pointers);
   /// Notes the fault where faults are noted. @throws the fault where they are not
   static void report(const Error& fault);
   /// Runs a part of the reading whose fault does not keep other parts from being read.

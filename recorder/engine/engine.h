@@ -28,7 +28,7 @@ struct RecordedProcedure {
   bool operator==(const RecordedProcedure&) const = default;
 };
 
-/// Failure of an engine program. Numbers are those of schemas/engine.md.
+/// Confinement of an engine program. Numbers are those of schemas/engine.md.
 enum class Confinement : std::uint8_t {
   none = 0,
   own = 1,     ///< everything but reading, writing, computing and ending

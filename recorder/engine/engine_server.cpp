@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "recorder/base/errors.h"
-#include "recorder/engine/wire_forms.h"
+#include "recorder/engine/wire.h"
 #include "recorder/formats/scene_assets.h"
 #include "sim/scene/version.h"
 
@@ -76,7 +76,7 @@ void EngineServer::dispatch(std::uint32_t kind, std::span<const std::byte> paylo
       wire::Explain request;
       if (!decode(payload, request)) break;
       if (!stepped()) return;
-      const auto difference = engine_->explain(wire::fromWire(std::move(request.keyframe)));
+      const auto difference = engine_->explain(request.keyframe);
       wire::IsExplained explained;
       if (difference) explained = {1, difference->field, difference->detail};
       return appendMessage(explained, answer_);
@@ -129,7 +129,7 @@ void EngineServer::restore(std::span<const std::byte> payload) {
     return fail(wire::FaultCode::message, "restore has not the bytes that it must have");
   std::optional<NamedSets> named;
   if (request.known == 1) named = request.named;
-  if (!engine_->restore(wire::fromWire(std::move(request.keyframe)), named))
+  if (!engine_->restore(request.keyframe, named))
     return appendMessage(wire::IsRefused{"the keyframe is no State of the scene's model"}, answer_);
   begun_ = true;
   appendMessage(wire::IsReady{engine_->steps()}, answer_);

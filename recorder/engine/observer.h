@@ -90,6 +90,15 @@ enum class Outcome : std::uint8_t {
   technicalFailure = 5
 };
 
+/// Names, as recordings store them, and as tables and reports have them. @pre the value is one that has a name
+inline constexpr std::array<const char*, 6> outcomeNames{"running",   "completed", "time_limit",
+                                                         "abandoned", "stopped",   "technical_failure"};
+inline constexpr const char* wordFor(Outcome outcome) {
+  if (outcome == Outcome::timeLimit) return "time limit";
+  if (outcome == Outcome::technicalFailure) return "technical failure";
+  return outcomeNames[static_cast<std::size_t>(outcome)];
+}
+
 class Observer {
  public:
   virtual ~Observer() = default;

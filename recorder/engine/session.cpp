@@ -50,7 +50,7 @@ Session::Session(const Model& model, std::uint64_t seed, Executor& executor, con
   }
 }
 
-TickOutcome Session::tick(const TickSamples& samples, const std::optional<std::array<std::int64_t, handCount>>& sets) {
+TickOutcome Session::tick(const TickSamples& samples, const std::optional<NamedSets>& sets) {
   TickOutcome outcome;
   for (std::size_t h = 0; h < handCount; ++h) {
     const std::int64_t named = sets ? (*sets)[h] : newest_;
@@ -85,7 +85,7 @@ const StepResult& Session::withStretch(const StepResult& result, std::span<const
   return flagged_;
 }
 
-void Session::step(std::span<const TickSamples> samples, std::span<const TickOutcome> ticks, float lateness) {
+EngineStep Session::step(std::span<const TickSamples> samples, std::span<const TickOutcome> ticks, float lateness) {
   const StepResult& result = withStretch(stepper_.step(state_, samples), ticks);
   newest_ = static_cast<std::int64_t>(result.step);
   oldest_ = std::max(oldest_, newest_ + 1 - static_cast<std::int64_t>(keptSets));
@@ -96,9 +96,10 @@ void Session::step(std::span<const TickSamples> samples, std::span<const TickOut
   const StepRecord record{
       result.step, samples, ticks, result, digest, lateness, [this] { return keyframe(); }, [this] { return view(); }};
   for (Observer* observer : observers_) observer->onStep(record);
+  return {result.step, ticks, result, digest};
 }
 
-std::span<const TickOutcome> Session::run(const StepInput& input) {
+EngineStep Session::run(const StepInput& input) {
   ticks_.resize(input.samples.size());
   for (std::size_t i = 0; i < ticks_.size(); ++i) {
     if (input.logged.empty()) {
@@ -109,8 +110,7 @@ std::span<const TickOutcome> Session::run(const StepInput& input) {
       ticks_[i].lateness = logged.lateness;
     }
   }
-  step(input.samples, ticks_, input.lateness);
-  return ticks_;
+  return step(input.samples, ticks_, input.lateness);
 }
 
 SceneView Session::view() {
@@ -137,7 +137,7 @@ Keyframe Session::keyframe() const {
   return frame;
 }
 
-bool Session::restore(const Keyframe& keyframe, const std::optional<std::array<std::int64_t, handCount>>& named) {
+bool Session::restore(const Keyframe& keyframe, const std::optional<NamedSets>& named) {
   State state;
   if (!restoreState(model_, keyframe.state, state) || state.clock.step != keyframe.step + 1) return false;
   HapticStates haptic;
@@ -169,30 +169,19 @@ bool Session::restore(const Keyframe& keyframe, const std::optional<std::array<s
   return true;
 }
 
-std::unique_ptr<Session> LocalEngine::makeSession(std::uint64_t seed) {
-  auto session = std::make_unique<Session>(model_, seed, *executor_, services_);
-  session->join(newest_);
-  return session;
-}
-
 void LocalEngine::start(std::uint64_t seed) {
-  owned_ = makeSession(seed);
+  owned_ = std::make_unique<Session>(model_, seed, *executor_, services_);
   session_ = owned_.get();
 }
 
 bool LocalEngine::restore(const Keyframe& keyframe, const std::optional<NamedSets>& named) {
   // A session that is used again keeps what it worked out of the model. The seed went into the keyframe's State.
   if (session_ != nullptr) return session_->restore(keyframe, named);
-  std::unique_ptr<Session> fresh = makeSession(0);
+  auto fresh = std::make_unique<Session>(model_, 0, *executor_, services_);
   if (!fresh->restore(keyframe, named)) return false;
   owned_ = std::move(fresh);
   session_ = owned_.get();
   return true;
-}
-
-EngineStep LocalEngine::step(const StepInput& input) {
-  const std::span<const TickOutcome> ticks = session_->run(input);
-  return {session_->steps() - 1, ticks, *newest_.result, *newest_.digest};
 }
 
 }  // namespace calot::recorder

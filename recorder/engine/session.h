@@ -52,17 +52,15 @@ class Session {
   /// @param sets which contact sets to use; none: the newest (the previous step's). Live, older ones come where the
   /// simulation was behind; a hand's numbers never fall from tick to tick.
   /// @throws std::out_of_range where a named set is not known any more, or not yet, or older than the tick before's.
-  TickOutcome tick(const TickSamples& samples,
-                   const std::optional<std::array<std::int64_t, handCount>>& sets = std::nullopt);
+  TickOutcome tick(const TickSamples& samples, const std::optional<NamedSets>& sets = std::nullopt);
 
   /// The step after its ticks; then notifies the observers. Where a tick is later than maxLag, the tick clock was
   /// stretched, and the step's events end with one EventKind::clockStretched: the sum over its ticks of the excess.
-  void step(std::span<const TickSamples> samples, std::span<const TickOutcome> ticks, float lateness);
+  EngineStep step(std::span<const TickSamples> samples, std::span<const TickOutcome> ticks, float lateness);
 
   /// A whole step: its ticks, then the step. @param input its `logged` names contact sets and lateness of each tick;
   /// empty: each tick uses the newest set and is in time
-  /// @returns the ticks; valid until the next call
-  std::span<const TickOutcome> run(const StepInput& input);
+  EngineStep run(const StepInput& input);
 
   void end(Outcome outcome);
 
@@ -78,8 +76,7 @@ class Session {
   /// Goes on from a keyframe. @returns false, leaving all as it was, when its bytes do not fit the model.
   /// @param named the contact sets that the last tick before used; none: the oldest that the keyframe has, which a hand
   /// that lagged less than the other has left behind
-  bool restore(const Keyframe& keyframe,
-               const std::optional<std::array<std::int64_t, handCount>>& named = std::nullopt);
+  bool restore(const Keyframe& keyframe, const std::optional<NamedSets>& named = std::nullopt);
 
   /// Haptic states after the last tick, and the newest contact sets: what a haptic thread begins with.
   [[nodiscard]] const HapticStates& haptics() const { return haptic_; }
@@ -103,7 +100,7 @@ class Session {
   std::vector<ContactSets> sets_;  ///< of step n at (n + 1) % keptSets: slots keep their memory
   std::int64_t oldest_ = -1;       ///< steps whose sets are at hand
   std::int64_t newest_ = -1;
-  std::array<std::int64_t, handCount> named_{-1, -1};  ///< by the last tick
+  NamedSets named_{-1, -1};  ///< by the last tick
   StepResult flagged_;
   std::function<void(const ContactSets&)> tell_;
   std::vector<Observer*> observers_;
@@ -118,16 +115,13 @@ class LocalEngine final : public Engine {
   LocalEngine(const Model& model, Executor& executor, const StepperServices& services = {})
       : model_(model), executor_(&executor), services_(services) {}
   /// Goes on with a session that is there, which outlives the engine. @pre nobody calls start()
-  explicit LocalEngine(Session& session) : model_(session.model()), session_(&session) { session.join(newest_); }
-  ~LocalEngine() override {
-    if (session_ != nullptr) session_->leave(newest_);
-  }
+  explicit LocalEngine(Session& session) : model_(session.model()), session_(&session) {}
 
   [[nodiscard]] const DigestLayout& layout() const override { return model_.layout(); }
   void start(std::uint64_t seed) override;
   [[nodiscard]] bool restore(const Keyframe& keyframe, const std::optional<NamedSets>& named) override;
   [[nodiscard]] std::uint64_t steps() const override { return session_ != nullptr ? session_->steps() : 0; }
-  EngineStep step(const StepInput& input) override;
+  EngineStep step(const StepInput& input) override { return session_->run(input); }
   [[nodiscard]] Keyframe keyframe() override { return session_->keyframe(); }
   [[nodiscard]] SceneView view() override { return session_->view(); }
   [[nodiscard]] std::optional<KeyframeDifference> explain(const Keyframe& recorded) override {
@@ -138,24 +132,9 @@ class LocalEngine final : public Engine {
   [[nodiscard]] const Session& session() const { return *session_; }
 
  private:
-  /// Keeps what a step came to.
-  class Newest final : public Observer {
-   public:
-    void onStep(const StepRecord& record) override {
-      result = &record.result;
-      digest = &record.digest;
-    }
-    void onEnd(Outcome /*outcome*/) override {}
-    const StepResult* result = nullptr;
-    const StateDigest* digest = nullptr;
-  };
-
-  [[nodiscard]] std::unique_ptr<Session> makeSession(std::uint64_t seed);
-
   const Model& model_;
   Executor* executor_ = nullptr;
   StepperServices services_;
-  Newest newest_;
   std::unique_ptr<Session> owned_;
   Session* session_ = nullptr;
 };

@@ -11,7 +11,9 @@
 #include <string>
 #include <vector>
 
+#include "recorder/engine/observer.h"
 #include "sim/math/fields.h"
+#include "sim/scene/scene_view.h"
 
 namespace calot::recorder::wire {
 
@@ -30,48 +32,39 @@ inline constexpr std::uint8_t wantAll = wantKeyframe | wantContactSets | wantVie
 
 enum class FaultCode : std::uint32_t { message = 1, protocol = 2, scene = 3, contactSet = 4, other = 5 };
 
+/// Visits fields in their order, which is all that the protocol knows of them.
+void visitAll(auto& visit, auto&... field) { (visit("", field), ...); }
+
 // Requests
 
 struct Hello {
   static constexpr std::uint32_t kind = 1;
   std::array<char, 8> magic = wire::magic;
   std::uint32_t protocol = wire::protocol;
-  static void fields(auto& self, auto& visit) {
-    visit("magic", self.magic);
-    visit("protocol", self.protocol);
-  }
+  static void fields(auto& self, auto& visit) { visitAll(visit, self.magic, self.protocol); }
 };
 
 struct File {
   std::string name;
   Bytes content;
-  static void fields(auto& self, auto& visit) {
-    visit("name", self.name);
-    visit("content", self.content);
-  }
+  static void fields(auto& self, auto& visit) { visitAll(visit, self.name, self.content); }
 };
 
 struct Scene {
   static constexpr std::uint32_t kind = 2;
   std::vector<File> files;
-  static void fields(auto& self, auto& visit) { visit("files", self.files); }
+  static void fields(auto& self, auto& visit) { visitAll(visit, self.files); }
 };
 
 struct Start {
   static constexpr std::uint32_t kind = 3;
   std::uint64_t seed = 0;
-  static void fields(auto& self, auto& visit) { visit("seed", self.seed); }
+  static void fields(auto& self, auto& visit) { visitAll(visit, self.seed); }
 };
 
-struct Keyframe {
+struct Keyframe : recorder::Keyframe {
   static constexpr std::uint32_t kind = 106;
-  std::uint64_t step = 0;
-  Bytes state, haptics;
-  static void fields(auto& self, auto& visit) {
-    visit("step", self.step);
-    visit("state", self.state);
-    visit("haptics", self.haptics);
-  }
+  static void fields(auto& self, auto& visit) { visitAll(visit, self.step, self.state, self.haptics); }
 };
 
 struct Restore {
@@ -79,11 +72,7 @@ struct Restore {
   Keyframe keyframe;
   std::uint8_t known = 0;
   std::array<std::int64_t, 2> named{-1, -1};
-  static void fields(auto& self, auto& visit) {
-    visit("keyframe", self.keyframe);
-    visit("known", self.known);
-    visit("named", self.named);
-  }
+  static void fields(auto& self, auto& visit) { visitAll(visit, self.keyframe, self.known, self.named); }
 };
 
 struct HandSample {
@@ -93,13 +82,7 @@ struct HandSample {
   std::uint8_t instrument = 0, buttons = 0, valid = 1;
   std::int64_t set = -1;
   static void fields(auto& self, auto& visit) {
-    visit("position", self.position);
-    visit("orientation", self.orientation);
-    visit("jaw", self.jaw);
-    visit("instrument", self.instrument);
-    visit("buttons", self.buttons);
-    visit("valid", self.valid);
-    visit("set", self.set);
+    visitAll(visit, self.position, self.orientation, self.jaw, self.instrument, self.buttons, self.valid, self.set);
   }
 };
 
@@ -109,10 +92,7 @@ struct Tick {
   Rotation cameraOrientation{1.0, 0.0, 0.0, 0.0};
   float lateness = 0.0F;
   static void fields(auto& self, auto& visit) {
-    visit("hand", self.hand);
-    visit("camera.position", self.cameraPosition);
-    visit("camera.orientation", self.cameraOrientation);
-    visit("lateness", self.lateness);
+    visitAll(visit, self.hand, self.cameraPosition, self.cameraOrientation, self.lateness);
   }
 };
 
@@ -121,11 +101,7 @@ struct Step {
   std::uint8_t wanted = 0;
   float lateness = 0.0F;
   std::vector<Tick> ticks;
-  static void fields(auto& self, auto& visit) {
-    visit("wanted", self.wanted);
-    visit("lateness", self.lateness);
-    visit("ticks", self.ticks);
-  }
+  static void fields(auto& self, auto& visit) { visitAll(visit, self.wanted, self.lateness, self.ticks); }
 };
 
 struct AskKeyframe {
@@ -141,7 +117,7 @@ struct AskView {
 struct Explain {
   static constexpr std::uint32_t kind = 8;
   Keyframe keyframe;
-  static void fields(auto& self, auto& visit) { visit("keyframe", self.keyframe); }
+  static void fields(auto& self, auto& visit) { visitAll(visit, self.keyframe); }
 };
 
 // Answers
@@ -154,32 +130,20 @@ struct IsHello {
   std::string software;
   std::uint8_t confined = 0;
   static void fields(auto& self, auto& visit) {
-    visit("magic", self.magic);
-    visit("protocol", self.protocol);
-    visit("simulation", self.simulation);
-    visit("result", self.result);
-    visit("software", self.software);
-    visit("confined", self.confined);
+    visitAll(visit, self.magic, self.protocol, self.simulation, self.result, self.software, self.confined);
   }
 };
 
 struct Field {
   std::uint32_t component = 0;
   std::string name;
-  static void fields(auto& self, auto& visit) {
-    visit("component", self.component);
-    visit("name", self.name);
-  }
+  static void fields(auto& self, auto& visit) { visitAll(visit, self.component, self.name); }
 };
 
 struct Column {
   std::string path, type;
   std::uint32_t width = 0;
-  static void fields(auto& self, auto& visit) {
-    visit("path", self.path);
-    visit("type", self.type);
-    visit("width", self.width);
-  }
+  static void fields(auto& self, auto& visit) { visitAll(visit, self.path, self.type, self.width); }
   bool operator==(const Column&) const = default;
 };
 
@@ -192,25 +156,20 @@ struct IsScene {
   std::vector<std::string> structures;
   std::vector<Column> columns;
   static void fields(auto& self, auto& visit) {
-    visit("ticks", self.ticks);
-    visit("tick", self.tick);
-    visit("components", self.components);
-    visit("fields", self.digested);
-    visit("structures", self.structures);
-    visit("columns", self.columns);
+    visitAll(visit, self.ticks, self.tick, self.components, self.digested, self.structures, self.columns);
   }
 };
 
 struct IsReady {
   static constexpr std::uint32_t kind = 103;
   std::uint64_t steps = 0;
-  static void fields(auto& self, auto& visit) { visit("steps", self.steps); }
+  static void fields(auto& self, auto& visit) { visitAll(visit, self.steps); }
 };
 
 struct IsRefused {
   static constexpr std::uint32_t kind = 104;
   std::string why;
-  static void fields(auto& self, auto& visit) { visit("why", self.why); }
+  static void fields(auto& self, auto& visit) { visitAll(visit, self.why); }
 };
 
 struct Event {
@@ -220,12 +179,7 @@ struct Event {
   Vec3 position = Vec3::Zero();
   double value = 0.0;
   static void fields(auto& self, auto& visit) {
-    visit("step", self.step);
-    visit("kind", self.event);
-    visit("hand", self.hand);
-    visit("subject", self.subject);
-    visit("position", self.position);
-    visit("value", self.value);
+    visitAll(visit, self.step, self.event, self.hand, self.subject, self.position, self.value);
   }
 };
 
@@ -238,48 +192,21 @@ struct IsStep {
   std::vector<Event> events;
   Bytes results, keyframe, sets, view;
   static void fields(auto& self, auto& visit) {
-    visit("step", self.step);
-    visit("forces", self.forces);
-    visit("components", self.components);
-    visit("fields", self.digested);
-    visit("events", self.events);
-    visit("results", self.results);
-    visit("keyframe", self.keyframe);
-    visit("sets", self.sets);
-    visit("view", self.view);
+    visitAll(visit, self.step, self.forces, self.components, self.digested, self.events, self.results, self.keyframe,
+             self.sets, self.view);
   }
 };
 
-struct Surface {
-  std::string structure, appearance;
-  std::uint8_t role = 0;
-  std::vector<Vec3> position, rest;
-  std::vector<std::array<std::uint32_t, 3>> triangle;
-  std::vector<float> charred, face;
+struct Surface : SurfaceView {
   static void fields(auto& self, auto& visit) {
-    visit("structure", self.structure);
-    visit("appearance", self.appearance);
-    visit("role", self.role);
-    visit("positions", self.position);
-    visit("rest", self.rest);
-    visit("triangles", self.triangle);
-    visit("charred", self.charred);
-    visit("face", self.face);
+    visitAll(visit, self.organ, self.appearance, self.role, self.position, self.rest, self.triangle, self.charred,
+             self.face);
   }
 };
 
-struct Bed {
-  std::string name;
-  std::vector<std::array<Vec3, 2>> strand;
-  std::vector<std::uint8_t> condition;
-  std::vector<float> alpha;
-  std::vector<std::array<std::uint32_t, 2>> sheet;
+struct Bed : ConnectiveView {
   static void fields(auto& self, auto& visit) {
-    visit("name", self.name);
-    visit("strands", self.strand);
-    visit("conditions", self.condition);
-    visit("alpha", self.alpha);
-    visit("sheets", self.sheet);
+    visitAll(visit, self.name, self.strand, self.condition, self.alpha, self.sheet);
   }
 };
 
@@ -288,11 +215,7 @@ struct Clip {
   Rotation orientation{1.0, 0.0, 0.0, 0.0};
   double width = 0.0, legs = 0.0, halfGap = 0.0;
   static void fields(auto& self, auto& visit) {
-    visit("position", self.position);
-    visit("orientation", self.orientation);
-    visit("width", self.width);
-    visit("legs", self.legs);
-    visit("half gap", self.halfGap);
+    visitAll(visit, self.position, self.orientation, self.width, self.legs, self.halfGap);
   }
 };
 
@@ -304,13 +227,7 @@ struct Instrument {
   double radius = 0.0, jaw = 0.0;
   std::uint8_t touching = 0;
   static void fields(auto& self, auto& visit) {
-    visit("kind", self.instrument);
-    visit("position", self.position);
-    visit("orientation", self.orientation);
-    visit("port", self.port);
-    visit("radius", self.radius);
-    visit("jaw", self.jaw);
-    visit("touching", self.touching);
+    visitAll(visit, self.instrument, self.position, self.orientation, self.port, self.radius, self.jaw, self.touching);
   }
 };
 
@@ -326,15 +243,8 @@ struct View {
   Rotation cameraOrientation{1.0, 0.0, 0.0, 0.0};
   double fieldOfView = 0.0;
   static void fields(auto& self, auto& visit) {
-    visit("step", self.step);
-    visit("time", self.time);
-    visit("surfaces", self.surface);
-    visit("beds", self.bed);
-    visit("clips", self.clip);
-    visit("instruments", self.instrument);
-    visit("camera.position", self.cameraPosition);
-    visit("camera.orientation", self.cameraOrientation);
-    visit("field of view", self.fieldOfView);
+    visitAll(visit, self.step, self.time, self.surface, self.bed, self.clip, self.instrument, self.cameraPosition,
+             self.cameraOrientation, self.fieldOfView);
   }
 };
 
@@ -342,22 +252,35 @@ struct IsExplained {
   static constexpr std::uint32_t kind = 108;
   std::uint8_t differs = 0;
   std::string field, detail;
-  static void fields(auto& self, auto& visit) {
-    visit("differs", self.differs);
-    visit("field", self.field);
-    visit("detail", self.detail);
-  }
+  static void fields(auto& self, auto& visit) { visitAll(visit, self.differs, self.field, self.detail); }
 };
 
 struct Fault {
   static constexpr std::uint32_t kind = 199;
   FaultCode code = FaultCode::other;
   std::string message;
-  static void fields(auto& self, auto& visit) {
-    visit("code", self.code);
-    visit("message", self.message);
-  }
+  static void fields(auto& self, auto& visit) { visitAll(visit, self.code, self.message); }
 };
+
+// Samples, events, keyframes and scene views in the protocol's form, and back.
+
+/// The ticks of a step's request, into memory that is used again. @param logged names contact sets, and how late each
+/// tick ran @pre as many outcomes as samples
+void toWire(std::span<const TickSamples> samples, std::span<const TickOutcome> logged, std::vector<Tick>& out);
+/// @return false where something in it is no number, no rotation or no instrument that there is
+bool fromWire(const Tick& tick, TickSamples& samples, TickOutcome& logged);
+
+Event toWire(const calot::Event& event);
+calot::Event fromWire(const Event& event);
+
+/// Without its parts, of which the protocol knows nothing.
+inline Keyframe toWire(const recorder::Keyframe& keyframe) {
+  return {{keyframe.step, keyframe.state, keyframe.haptics}};
+}
+
+View toWire(const SceneView& view);
+/// @return false where its lists do not fit one another
+bool fromWire(View view, SceneView& out);
 
 }  // namespace calot::recorder::wire
 

@@ -7,48 +7,66 @@
 #include <utility>
 
 #include "recorder/base/errors.h"
-#include "recorder/formats/scene_names.h"
-#include "recorder/formats/scene_rules.h"
-#include "recorder/formats/surface_bytes.h"
+#include "recorder/base/json_faults.h"
+#include "recorder/base/record_reader.h"
+#include "recorder/formats/mesh_report.h"
 #include "sim/geometry/surface_report.h"
 #include "sim/math/elementary.h"
+#include "sim/tissue/description_fields.h"
 
 namespace calot::recorder {
 
-namespace {
-
-/// x' = scale R x + t, R by Rodrigues' formula from a rotation vector. Nothing is touched where nothing is asked for:
-/// scenes without these keys keep their bits.
-void placeMesh(const JsonObject& mesh, TriangleMesh& surface) {
-  if (!mesh.has("scale") && !mesh.has("rotation") && !mesh.has("translation")) return;
-  double scale = 1.0;
-  Vec3 rotation = Vec3::Zero(), translation = Vec3::Zero();
-  mesh.read("scale", scale);
-  mesh.read("rotation", rotation);
-  mesh.read("translation", translation);
-  const double angle = rotation.norm();
-  const Vec3 axis = angle > 0.0 ? Vec3(rotation / angle) : Vec3::UnitX();
-  const double c = cosine(angle), s = sine(angle);
-  for (Vec3& x : surface.vertex) {
-    const Vec3 turned = c * x + s * axis.cross(x) + (1.0 - c) * axis.dot(x) * axis;
-    x = scale * turned + translation;
-  }
+std::vector<Field> MeshFile::fields() {
+  using S = MeshFile;
+  static const TextRule assetName{200, R"(^(?!\.{1,2}(/|$))[^/\\:]+(/(?!\.{1,2}(/|$))[^/\\:]+)*$)",
+                                  "a path relative to the assets folder is wanted, with / and without . or .."};
+  const auto number = [](LengthUnit unit) { return static_cast<std::uint32_t>(unit); };
+  return {
+      object("mesh", "Surface file: OBJ, STL (ASCII or binary) or PLY (ASCII or binary), by the end of its name"),
+      {"file", at<S, &S::file>, assetName,
+       "Path relative to the assets folder, with / and without . or .., ending in .obj, .stl or .ply"},
+      {"unit", at<S, &S::unit>,
+       FieldWords{{"cm", number(LengthUnit::centimetre)},
+                  {"m", number(LengthUnit::metre)},
+                  {"mm", number(LengthUnit::millimetre)}},
+       "Unit of its coordinates"},
+      optional("scale", at<S, &S::scale>, "1", within(0.001, 1000),
+               "Factor of its coordinates, about their origin: first"),
+      optional("rotation", at<S, &S::rotation>, "rad", within(-7, 7),
+               "Rotation about the origin, after the scale: along the axis, as long as the angle"),
+      optional("translation", at<S, &S::translation>, "m", sceneCoordinate, "Translation, at last"),
+  };
 }
 
-}  // namespace
+namespace {
 
+/// A surface as its file has it, and what the file is called in messages.
+struct NamedSurface {
+  TriangleMesh mesh;  ///< m
+  std::string file;
+};
+
+/// x' = scale R x + t, R by Rodrigues' formula from a rotation vector. Nothing is touched where nothing is asked for:
+/// scenes without these keys keep their bits. Empty where the place has faults that were noted.
 NamedSurface readMesh(const JsonPlace& place, const FetchAsset& fetch) {
-  const JsonObject mesh = place.object(sceneRule("mesh"));
-  const LengthUnit unit = readWord<LengthUnit>(
-      mesh, "unit", {{"m", LengthUnit::metre}, {"cm", LengthUnit::centimetre}, {"mm", LengthUnit::millimetre}});
-  const std::string name = readAssetName(mesh, "file");
-  if (!isSurfaceName(name)) mesh.at("file").fail("surfaces are read from .obj, .stl and .ply files");
-  const Asset& asset = fetch(name, mesh.at("file"));
-  NamedSurface surface{parseSurface(asset.bytes, asset.name, unit), asset.name};
-  placeMesh(mesh, surface.mesh);
+  MeshFile mesh;
+  readRecord(place, mesh);
+  if (JsonFaults::at({place.pointer()})) return {};
+  if (!isSurfaceName(mesh.file)) place.at("file").fail("surfaces are read from .obj, .stl and .ply files");
+  const Asset& asset = fetch(mesh.file, place.at("file"));
+  NamedSurface surface{parseSurface(asset.bytes, asset.name, mesh.unit), asset.name};
+  if (!place.has("scale") && !place.has("rotation") && !place.has("translation")) return surface;
+  const double angle = mesh.rotation.norm();
+  const Vec3 axis = angle > 0.0 ? Vec3(mesh.rotation / angle) : Vec3::UnitX();
+  const double c = cosine(angle), s = sine(angle);
+  for (Vec3& x : surface.mesh.vertex) {
+    const Vec3 turned = c * x + s * axis.cross(x) + (1.0 - c) * axis.dot(x) * axis;
+    x = mesh.scale * turned + mesh.translation;
+  }
   return surface;
 }
 
+/// @param what "an organ", for messages
 SurfaceDescription closedSurface(NamedSurface surface, const char* what) {
   const SurfaceReport report = inspectSurface(surface.mesh);
   if (!report.closedManifold()) {
@@ -69,15 +87,38 @@ SurfaceDescription closedSurface(NamedSurface surface, const char* what) {
   return {std::move(surface.mesh.vertex), std::move(surface.mesh.triangle)};
 }
 
-MaterialDescription readMaterial(const JsonPlace& place) {
-  const JsonObject object = place.object(sceneRule("material"));
-  MaterialDescription material;
-  object.read("youngModulus", material.youngModulus);
-  object.read("poissonRatio", material.poissonRatio);
-  object.read("density", material.density);
-  object.read("massDamping", material.massDamping);
-  object.read("stiffnessDamping", material.stiffnessDamping);
-  return material;
+}  // namespace
+
+SurfaceDescription readOrganSurface(const JsonPlace& mesh, const FetchAsset& fetch) {
+  NamedSurface surface = readMesh(mesh, fetch);
+  return surface.file.empty() ? SurfaceDescription{} : closedSurface(std::move(surface), "an organ");
+}
+
+SurfaceDescription readFatSurface(const JsonPlace& mesh, const FetchAsset& fetch, std::vector<std::string>& warnings) {
+  NamedSurface surface = readMesh(mesh, fetch);
+  if (surface.file.empty()) return {};
+  const std::string file = surface.file;
+  int turned = 0;
+  // A sound surface is not repaired: the repair would treat a part that starts inside another one as a cavity.
+  if (const SurfaceReport found = inspectSurface(surface.mesh);
+      !found.closedManifold() || found.coincidentVertices + found.degenerateTriangles + found.unusedVertices > 0) {
+    SurfaceRepair repair = repairSurface(surface.mesh);
+    turned = repair.flippedTriangles;
+    if (repair.changed()) warnings.push_back(file + ": put right before use: " + repairSummary(repair));
+    surface.mesh = std::move(repair.mesh);
+  }
+  SurfaceDescription closed = closedSurface(std::move(surface), "fat");
+  const SelfCrossing crossing = findSelfCrossing({closed.vertex, closed.triangle});
+  if (crossing.pairs > 0) {
+    const std::string where = fmt::format("{}: the surface passes through itself, as at ({:.4f}, {:.4f}, {:.4f}) m",
+                                          file, crossing.where[0], crossing.where[1], crossing.where[2]);
+    if (turned > 0) {
+      throw Error(ErrorKind::damaged,
+                  where + ", and its triangles do not agree on what is outside: its inside cannot be told");
+    }
+    warnings.push_back(where + "; what it winds around is taken as its inside");
+  }
+  return closed;
 }
 
 }  // namespace calot::recorder

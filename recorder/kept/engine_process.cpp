@@ -10,8 +10,9 @@
 #include <vector>
 
 #include "recorder/base/text_words.h"
-#include "recorder/engine/wire_forms.h"
+#include "recorder/engine/wire.h"
 #include "recorder/formats/scene_assets.h"
+#include "recorder/recording/block.h"
 #include "recorder/recording/layout.h"
 
 namespace calot::recorder {
@@ -27,17 +28,15 @@ AttemptHeader withResults(AttemptHeader header) {
 }  // namespace
 
 ResultReader::ResultReader(const AttemptHeader& header) : layout_(withResults(header)) {
-  const std::size_t end = layout_.tickColumns + layout_.stepColumns;
-  first_ = layout_.tickColumns;
-  while (first_ < end && !layout_.columns[first_].path.starts_with("/observables")) ++first_;
   offset_.push_back(0);
-  for (std::size_t c = first_; c < end; ++c) offset_.push_back(offset_.back() + layout_.columns[c].rowBytes());
+  for (std::size_t c = layout_.results; c < layout_.events; ++c)
+    offset_.push_back(offset_.back() + layout_.columns[c].rowBytes());
 }
 
 std::string ResultReader::fault(const std::vector<wire::Column>& declared) const {
   std::vector<wire::Column> ours;
-  for (std::size_t c = 0; c + 1 < offset_.size(); ++c) {
-    const Column& column = layout_.columns[first_ + c];
+  for (std::size_t c = layout_.results; c < layout_.events; ++c) {
+    const Column& column = layout_.columns[c];
     if (column.width > 0)
       ours.push_back({column.path, numberType(column.element), static_cast<std::uint32_t>(column.width)});
   }
@@ -50,8 +49,8 @@ std::string ResultReader::fault(const std::vector<wire::Column>& declared) const
 std::string ResultReader::read(std::span<const std::byte> row, StepResult& result, RecordedProcedure& procedure) const {
   if (row.size() != offset_.back())
     return fmt::format("results have {} bytes instead of {}", row.size(), offset_.back());
-  const auto place = [&](std::size_t column) { return row.data() + offset_[column - first_]; };
-  RowVisitor<decltype(place)> visit{layout_, place, first_, false, {}};
+  const auto place = [&](std::size_t column) { return row.data() + offset_[column - layout_.results]; };
+  RowVisitor<decltype(place)> visit{layout_, place, layout_.results, false, {}};
   visitResult(result, visit);
   if (layout_.procedure) visitProcedure(procedure, visit);
   return visit.fault;
@@ -182,7 +181,7 @@ EngineStep EngineProcess::step(const StepInput& input) {
   return {answer.step, ticks_, result_, digest_, results_->hasProcedure() ? &procedure_ : nullptr};
 }
 
-Keyframe EngineProcess::keyframe() { return wire::fromWire(ask<wire::Keyframe>(wire::AskKeyframe{})); }
+Keyframe EngineProcess::keyframe() { return ask<wire::Keyframe>(wire::AskKeyframe{}); }
 
 SceneView EngineProcess::view() {
   SceneView view;

@@ -34,8 +34,7 @@ class ResultReader {
 
  private:
   Layout layout_;
-  std::size_t first_ = 0;            ///< of the columns of results
-  std::vector<std::size_t> offset_;  ///< in a row, of each of them, and its end
+  std::vector<std::size_t> offset_;  ///< in a row, of each column of results, and its end
 };
 
 /// An engine that is another program (schemas/engine.md). Whatever becomes of it is an error of the recording that it

@@ -10,7 +10,6 @@
 #include "recorder/base/errors.h"
 #include "recorder/base/file_bytes.h"
 #include "recorder/engine/wire.h"
-#include "recorder/engine/wire_forms.h"
 #include "recorder/kept/engine_process.h"
 
 namespace calot::recorder {

@@ -130,8 +130,6 @@ bool becomePrompt() {
   return ::pthread_setschedparam(::pthread_self(), SCHED_FIFO, &parameters) == 0;
 }
 
-double seconds(Nanoseconds t) { return std::chrono::duration<double>(t).count(); }
-
 }  // namespace
 
 HapticThread::HapticThread(const Model& model, SampleSource& source, const HapticStates& states,
@@ -194,10 +192,7 @@ void HapticThread::ticks() {
     [[maybe_unused]] const bool taken = ring_.push(tick);
     assert(taken);
     if ((t + 1) % ticksPerStep_ != 0) continue;
-    report_.ticks = t + 1;
-    report_.missedDeadlines = clock_.missed();
-    report_.maxLateness = seconds(clock_.maxLateness());
-    report_.stretched = seconds(clock_.stretched());
+    report_.take(t + 1, clock_);
     ::sem_post(&steps_);
   }
 }

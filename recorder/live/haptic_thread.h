@@ -70,14 +70,10 @@ class ContactExchange {
   std::uint64_t generation_ = 0, grown_ = 0;
 };
 
-/// Statistics of the haptic thread. Ticks, deadlines and stretching are those of complete, and thus recorded, steps.
-struct HapticReport {
+/// Statistics of the haptic thread.
+struct HapticReport : TickReport {
   Outcome outcome = Outcome::completed;
   bool realTime = false;  ///< runs with real-time priority (SCHED_FIFO)
-  std::uint64_t ticks = 0;
-  std::uint64_t missedDeadlines = 0;
-  double maxLateness = 0.0;  ///< s
-  double stretched = 0.0;    ///< s
   SourcePauses pauses;
   CostHistogram cost;  ///< thread CPU time of a tick: both hands' samples taken and forces made
 };

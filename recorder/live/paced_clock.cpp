@@ -19,7 +19,8 @@ Nanoseconds read(clockid_t clock) {
   return std::chrono::seconds(t.tv_sec) + Nanoseconds(t.tv_nsec);
 }
 
-float lagSeconds(Nanoseconds t) { return static_cast<float>(std::chrono::duration<double>(t).count()); }
+double seconds(Nanoseconds t) { return std::chrono::duration<double>(t).count(); }
+float lagSeconds(Nanoseconds t) { return static_cast<float>(seconds(t)); }
 
 }  // namespace
 
@@ -58,6 +59,13 @@ float PacedClock::finish(std::uint64_t t, Nanoseconds ready) {
   return lateness;
 }
 
+void TickReport::take(std::uint64_t done, const PacedClock& clock) {
+  ticks = done;
+  missedDeadlines = clock.missed();
+  maxLateness = seconds(clock.maxLateness());
+  stretched = seconds(clock.stretched());
+}
+
 SourceStatus waitWhilePaused(SampleSource& source, const std::function<bool()>& stopped, PacedClock& clock,
                              SourcePauses& pauses) {
   constexpr Nanoseconds askAgain = std::chrono::milliseconds(2);
@@ -71,7 +79,7 @@ SourceStatus waitWhilePaused(SampleSource& source, const std::function<bool()>& 
   }
   const Nanoseconds length = monotonicNow() - began;
   clock.pause(length);
-  pauses.seconds += std::chrono::duration<double>(length).count();
+  pauses.seconds += seconds(length);
   return status;
 }
 

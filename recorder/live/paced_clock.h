@@ -60,6 +60,17 @@ class PacedClock {
   std::uint64_t missed_ = 0;
 };
 
+/// Ticks of the whole, and thus recorded, steps of a run.
+struct TickReport {
+  std::uint64_t ticks = 0;
+  std::uint64_t missedDeadlines =
+      0;                     ///< paced: ticks whose force was ready later than tickDeadline after they were due
+  double maxLateness = 0.0;  ///< of a tick (s)
+  double stretched = 0.0;    ///< by how much the tick clock was stretched: lag beyond maxLag (s)
+
+  void take(std::uint64_t done, const PacedClock& clock);
+};
+
 /// Number and length of the pauses of a run by its source.
 struct SourcePauses {
   std::uint64_t count = 0;

@@ -4,50 +4,38 @@
 #include <fmt/format.h>
 #include <sodium.h>
 #include <cassert>
-#include <cstring>
-
-#include "recorder/recording/layout.h"
+#include <cmath>
 
 namespace calot::recorder {
 
 namespace {
 
-/// Appends every visited value to its column.
-struct AppendVisitor {
-  const Layout& layout;
-  Block& block;
-  std::size_t index = 0;
+/// Takes every field from the front of the bytes.
+struct TakeFields {
+  std::span<const std::byte> bytes;
+  std::string fault = {};
 
   template <class T>
-  void operator()(const char*, const char*, const char*, const T& value) {
-    appendValue(block.column[index++], value);
-  }
-  void operator()(const char*, const char*, const char*, const Vec3& v) {
-    appendBytes(block.column[index++], v.data(), 3 * sizeof(double));
-  }
-  void operator()(const char*, const char*, const char*, const Quat& q) {
-    const std::array<double, 4> wxyz{q.w(), q.x(), q.y(), q.z()};
-    appendValue(block.column[index++], wxyz);
-  }
-  template <class T>
-  void outside(const char*, const char*, const char*, const T& value) {
-    appendValue(block.column[index++], value);
-  }
-  template <class T>
-  void list(const char*, const char*, const char*, const std::vector<T>& values, std::size_t width) {
-    assert(values.size() == width);
-    for (std::size_t i = 0; i < width; ++i) appendValue(block.column[index], i < values.size() ? values[i] : T{});
-    ++index;
-  }
-  template <class Part, class T>
-  void each(const char*, const char*, const char*, const std::vector<Part>& parts, T Part::*member) {
-    assert(parts.size() == layout.countOf(parts));
-    for (std::size_t i = 0; i < layout.countOf(parts); ++i) {
-      appendValue(block.column[index], i < parts.size() ? parts[i].*member : T{});
+  void operator()(const char* /*name*/, const char* /*unit*/, T& value) {
+    if constexpr (std::is_same_v<T, bool>) {
+      const auto flag = takeValue<std::uint8_t>(bytes);
+      if (flag > 1) fault = "has a flag that is neither 0 nor 1";
+      value = flag == 1;
+    } else if constexpr (std::is_same_v<T, Quat>) {
+      const auto wxyz = takeValue<std::array<double, 4>>(bytes);
+      value = Quat(wxyz[0], wxyz[1], wxyz[2], wxyz[3]);
+    } else {
+      value = takeValue<T>(bytes);
     }
-    ++index;
   }
 };
+
+template <class Row>
+std::string take(std::span<const std::byte> bytes, Row& out) {
+  TakeFields fields{bytes};
+  visitRow(out, fields);
+  return fields.fault;
+}
 
 /// Where a row of a block's columns lies.
 struct BlockRow {
@@ -67,6 +55,27 @@ std::string named(const std::string& fault, std::uint64_t row) {
 }
 
 }  // namespace
+
+std::string parseRow(std::span<const std::byte> bytes, Event& out) { return take(bytes, out); }
+std::string parseRow(std::span<const std::byte> bytes, KeyframeRow& out) { return take(bytes, out); }
+std::string parseRow(std::span<const std::byte> bytes, RawCounts& out) { return take(bytes, out); }
+
+std::string parseRow(std::span<const std::byte> bytes, StatusRow& out) {
+  const std::string fault = take(bytes, out);
+  if (out.wallNanoseconds < 0) return "was written before 1970";
+  const bool known =
+      fault.empty() && out.outcome <= Outcome::technicalFailure && out.completed == (out.outcome != Outcome::running);
+  return known ? "" : "has an unknown outcome";
+}
+
+std::string parseRow(std::span<const std::byte> bytes, RawSample& out) {
+  if (std::string fault = take(bytes, out); !fault.empty()) return fault;
+  const DeviceSample& s = out.sample;
+  if (out.used && !s.valid) return "was used and is not valid";
+  if (s.valid && !(s.position.allFinite() && s.orientation.coeffs().allFinite() && std::isfinite(s.gripper)))
+    return "is valid and not finite";
+  return {};
+}
 
 Block::Block(const Layout& layout) : column(layout.columns.size()) {
   for (std::size_t c = 0; c < column.size(); ++c) {
@@ -95,16 +104,15 @@ std::array<std::uint64_t, streamCount> countsOf(const StatusRow& row) {
 
 void appendStep(const Layout& layout, const StepRecord& record, Block& block) {
   assert(record.samples.size() == layout.ticksPerStep && record.ticks.size() == layout.ticksPerStep);
-  assert(!layout.exactForces);
+  assert(!layout.exactForces && !layout.procedure);  // only versions of old had them
   for (std::size_t t = 0; t < layout.ticksPerStep; ++t) {
-    AppendVisitor visit{layout, block};
+    AppendVisitor visit{layout, block.column};
     const TickOutcome tick = asStored(record.ticks[t]);
     visitTick(record.samples[t], tick, visit);
   }
-  AppendVisitor visit{layout, block, layout.tickColumns};
+  AppendVisitor visit{layout, block.column, layout.tickColumns};
   const std::uint64_t forces = forceDigest(record.ticks);
   if (layout.brief) shorten(record.digest, block.brief);
-  assert(!layout.procedure);  // only versions of old had it
   const RecordedProcedure none;
   visitStep(record.digest, block.brief, forces, record.lateness, record.result, none, visit);
   for (const Event& event : record.result.events) {
@@ -166,9 +174,9 @@ class Hash {
   }
   template <class T>
   requires std::is_arithmetic_v<T>
-  void number(T value) { bytes(&value, sizeof value); }
-  void string(const std::string& text) {
-    number(static_cast<std::uint32_t>(text.size()));
+  void value(T number) { bytes(&number, sizeof number); }
+  void value(const std::string& text) {
+    value(static_cast<std::uint32_t>(text.size()));
     bytes(text.data(), text.size());
   }
   ChainHead head() {
@@ -181,41 +189,19 @@ class Hash {
   crypto_generichash_state state_;
 };
 
-struct HashAttributes {
-  Hash& hash;
-  void operator()(const char* name, const std::string& value) {
-    hash.string(name);
-    hash.string(value);
-  }
-  template <class T>
-  requires std::is_arithmetic_v<T>
-  void operator()(const char* name, const T& value) {
-    hash.string(name);
-    hash.number(value);
-  }
-  template <class T>
-  void constant(const char* name, const T& value) {
-    (*this)(name, value);
-  }
-  template <class T, std::size_t N>
-  void choice(const char* name, const T& value, const std::array<const char*, N>& names) {
-    (*this)(name, std::string(names[static_cast<std::size_t>(value)]));
-  }
-};
-
 void appendNames(Hash& hash, const std::vector<std::string>& names) {
-  hash.number(static_cast<std::uint64_t>(names.size()));
-  for (const std::string& name : names) hash.string(name);
+  hash.value(static_cast<std::uint64_t>(names.size()));
+  for (const std::string& name : names) hash.value(name);
 }
 
 void appendCounts(Hash& hash, const StatusRow& row) {
-  hash.number(row.ticks);
-  hash.number(row.steps);
-  hash.number(row.events);
-  hash.number(row.keyframes);
-  hash.number(row.keyframeWords);
-  hash.number(static_cast<std::uint8_t>(row.completed ? 1 : 0));
-  hash.number(static_cast<std::uint8_t>(row.outcome));
+  hash.value(row.ticks);
+  hash.value(row.steps);
+  hash.value(row.events);
+  hash.value(row.keyframes);
+  hash.value(row.keyframeWords);
+  hash.value(static_cast<std::uint8_t>(row.completed ? 1 : 0));
+  hash.value(static_cast<std::uint8_t>(row.outcome));
 }
 
 }  // namespace
@@ -224,12 +210,14 @@ ChainHead chainStart(const AttemptHeader& header) {
   Hash hash;
   const std::string label = "calot-recording-chain-1";
   hash.bytes(label.data(), label.size());
-  HashAttributes visit{hash};
-  visitAttributes(header, visit);
-  hash.number(static_cast<std::uint64_t>(header.assets.size()));
+  forEachAttribute(header, [&](const char* name, const auto& value) {
+    hash.value(name);
+    hash.value(value);
+  });
+  hash.value(static_cast<std::uint64_t>(header.assets.size()));
   for (const Asset& asset : header.assets) {
-    hash.string(asset.name);
-    hash.number(static_cast<std::uint64_t>(asset.bytes.size()));
+    hash.value(asset.name);
+    hash.value(static_cast<std::uint64_t>(asset.bytes.size()));
     hash.bytes(asset.bytes.data(), asset.bytes.size());
   }
   Tissues::forEach([&]<class Kind>(std::type_identity<Kind>, TissueId) {
@@ -238,10 +226,10 @@ ChainHead chainStart(const AttemptHeader& header) {
     }
   });
   appendNames(hash, header.layout.components);
-  hash.number(static_cast<std::uint64_t>(header.layout.fields.size()));
+  hash.value(static_cast<std::uint64_t>(header.layout.fields.size()));
   for (const DigestLayout::Field& field : header.layout.fields) {
-    hash.number(field.component);
-    hash.string(field.name);
+    hash.value(field.component);
+    hash.value(field.name);
   }
   appendCounts(hash, StatusRow{});
   return hash.head();
@@ -254,10 +242,10 @@ ChainHead chainNext(const Layout& layout, const StatusRow& before, const Block& 
   for (std::size_t c = 0; c < layout.columns.size(); ++c) {
     const Column& column = layout.columns[c];
     if (!column.chained || column.width == 0) continue;
-    hash.string(column.path);
+    hash.value(column.path);
     const auto stream = static_cast<std::size_t>(column.stream);
-    hash.number(first[stream]);
-    hash.number(block.rows[stream]);
+    hash.value(first[stream]);
+    hash.value(block.rows[stream]);
     hash.bytes(block.column[c].data(), block.column[c].size());
   }
   appendCounts(hash, after);

@@ -15,74 +15,54 @@
 namespace calot::recorder {
 
 using hdf5::damaged;
-using hdf5::Id;
+
+namespace {
+
+/// How many bytes of decoded keyframes are kept for the next ones.
+constexpr std::size_t maxKnownBytes = std::size_t{64} << 20U;
+
+}  // namespace
 
 ColumnReader::ColumnReader(std::filesystem::path path, const hdf5::Id& file, const Layout& layout,
                            std::uint64_t fileBytes)
-    : path_(std::move(path)), layout_(layout), fileBytes_(fileBytes) {
-  // Open /status first: in a file being written, data sets opened later contain at least the rows it covers.
-  statusColumn_.path = "/status";
-  statusColumn_.element = Element::status;
-  status_ = open(file, statusColumn_);
-  rawCountsColumn_.path = std::string(rawCountsPath);
-  rawCountsColumn_.element = Element::rawCounts;
-  rawCountsColumn_.chunkRows = rawChunkRows;
-  rawCountsColumn_.width = layout.deviceSamples ? 1 : 0;
-  rawCounts_ = open(file, rawCountsColumn_);
-  for (const Column& column : layout.columns) source_.push_back(open(file, column));
-  statusRows_ = status_.rows;
-  if (statusRows_ < 1) throw damaged(path_, "/status", "is empty");
-  if (statusRows_ > fileBytes) throw damaged(path_, "/status", "claims more rows than the file can hold");
+    : path_(std::move(path)),
+      layout_(layout),
+      fileBytes_(fileBytes),
+      // Open /status first: in a file being written, data sets opened later contain at least the rows it covers.
+      status_(open(file, layout.status)),
+      rawCounts_(open(file, layout.rawCounts)) {
+  for (const Column& column : layout.columns) rows_.push_back(open(file, column));
+  if (statusRows() < 1) throw damaged(path_, "/status", "is empty");
+  if (statusRows() > fileBytes) throw damaged(path_, "/status", "claims more rows than the file can hold");
 }
 
-ColumnReader::Source ColumnReader::open(const hdf5::Id& file, const Column& column) const {
-  Source s;
-  s.type = hdf5::elementType(column.element);
-  if (column.width == 0) return s;
-  const Id how = hdf5::datasetAccess(column.rowBytes() * static_cast<std::size_t>(column.chunkRows));
-  s.dataset = hdf5::dataset(H5Dopen2(file.get(), column.path.c_str(), how.get()));
-  if (!s.dataset.valid()) throw damaged(path_, column.path, "is missing or cannot be read");
-  const Id type = hdf5::type(H5Dget_type(s.dataset.get()));
-  if (H5Tequal(type.get(), s.type.get()) <= 0) throw damaged(path_, column.path, "has the wrong type");
-  const Id space = hdf5::space(H5Dget_space(s.dataset.get()));
-  const int rank = column.vector ? 2 : 1;
-  std::array<hsize_t, 2> extent{};
-  if (H5Sget_simple_extent_ndims(space.get()) != rank ||
-      H5Sget_simple_extent_dims(space.get(), extent.data(), nullptr) != rank ||
-      (column.vector && extent[1] != column.width)) {
-    throw damaged(path_, column.path, "has the wrong shape");
-  }
-  s.rows = extent[0];
-  return s;
+hdf5::Rows ColumnReader::open(const hdf5::Id& file, const Column& column) const {
+  hdf5::Rows rows(file, column);
+  if (const std::string fault = rows.measure(); !fault.empty()) throw damaged(path_, column.path, fault);
+  return rows;
 }
 
-void ColumnReader::read(const Source& source, const Column& column, std::uint64_t first, std::uint64_t rows,
+void ColumnReader::read(const hdf5::Rows& source, std::uint64_t first, std::uint64_t rows,
                         std::vector<std::byte>& out) const {
+  const Column& column = source.column();
   out.resize(static_cast<std::size_t>(rows) * column.rowBytes());
   if (rows == 0 || column.width == 0) return;
-  if (first + rows > source.rows) {
+  if (first + rows > source.count()) {
     throw damaged(path_, column.path,
-                  fmt::format("holds {} rows where /status vouches for {}", source.rows, first + rows));
+                  fmt::format("holds {} rows where /status vouches for {}", source.count(), first + rows));
   }
-  const std::array<hsize_t, 2> start{first, 0};
-  const std::array<hsize_t, 2> count{rows, column.width};
-  const Id fileSpace = hdf5::space(H5Dget_space(source.dataset.get()));
-  const Id memorySpace = hdf5::space(H5Screate_simple(column.vector ? 2 : 1, count.data(), nullptr));
-  if (H5Sselect_hyperslab(fileSpace.get(), H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr) < 0 ||
-      H5Dread(source.dataset.get(), source.type.get(), memorySpace.get(), fileSpace.get(), H5P_DEFAULT, out.data()) <
-          0) {
-    throw damaged(path_, column.path, fmt::format("rows {} to {}: {}", first, first + rows - 1, hdf5::reason()));
-  }
+  if (const std::string why = source.read(first, rows, out.data()); !why.empty())
+    throw damaged(path_, column.path, fmt::format("rows {} to {}: {}", first, first + rows - 1, why));
 }
 
 void ColumnReader::readRows(std::size_t column, std::uint64_t first, std::uint64_t rows,
                             std::vector<std::byte>& out) const {
-  read(source_[column], layout_.columns[column], first, rows, out);
+  read(rows_[column], first, rows, out);
 }
 
 StatusRow ColumnReader::readStatus(std::uint64_t row) const {
   std::vector<std::byte> bytes;
-  read(status_, statusColumn_, row, 1, bytes);
+  read(status_, row, 1, bytes);
   StatusRow out;
   if (const std::string fault = parseRow(bytes, out); !fault.empty())
     throw damaged(path_, "/status", fmt::format("row {} {}", row, fault));
@@ -95,7 +75,7 @@ StatusRow ColumnReader::readStatus(std::uint64_t row) const {
 void ColumnReader::readRawCounts(const StatusRow& before, std::uint64_t row, StatusRow& out) const {
   if (!layout_.deviceSamples) return;
   std::vector<std::byte> bytes;
-  read(rawCounts_, rawCountsColumn_, row, 1, bytes);
+  read(rawCounts_, row, 1, bytes);
   RawCounts counts;
   static_cast<void>(parseRow(bytes, counts));
   const auto refuse = [&](const char* why) { throw damaged(path_, rawCountsPath, fmt::format("row {} {}", row, why)); };
@@ -141,7 +121,7 @@ void ColumnReader::readBlock(const StatusRow& before, const StatusRow& after, bo
       block.column[c].clear();
       continue;
     }
-    read(source_[c], layout_.columns[c], first[stream], block.rows[stream], block.column[c]);
+    read(rows_[c], first[stream], block.rows[stream], block.column[c]);
   }
 }
 
@@ -152,7 +132,7 @@ void ColumnReader::readRaw(const StatusRow& before, const StatusRow& after, Bloc
     const std::uint64_t rows = after.rawSamples[h] - before.rawSamples[h];
     block.rows[static_cast<std::size_t>(column.stream)] = rows;
     block.rawDropped[h] = after.rawDropped[h] - before.rawDropped[h];
-    read(source_[layout_.raw[h]], column, before.rawSamples[h], rows, bytes);
+    read(rows_[layout_.raw[h]], before.rawSamples[h], rows, bytes);
     RawSample raw;
     std::optional<std::uint64_t> sequence;
     for (std::uint64_t i = 0; i < rows; ++i) {
@@ -167,20 +147,13 @@ void ColumnReader::readRaw(const StatusRow& before, const StatusRow& after, Bloc
   }
 }
 
-namespace {
-
-/// How many bytes of decoded keyframes are kept for the next ones.
-constexpr std::size_t maxKnownBytes = std::size_t{64} << 20U;
-
-}  // namespace
-
 KeyframeReader::KeyframeReader(std::filesystem::path path, const Layout& layout, const ColumnReader& columns,
                                const StatusRow& last)
     : path_(std::move(path)), layout_(layout), columns_(columns), totalWords_(last.keyframeWords) {
   if (layout.minimal && (last.keyframes | last.keyframeWords) != 0)
-    throw hdf5::damaged(path_, "/status", "counts keyframes, and a golden recording has none");
+    throw damaged(path_, "/status", "counts keyframes, and a golden recording has none");
   const auto refuse = [this](std::uint64_t row, const char* why) {
-    throw hdf5::damaged(path_, "/keyframes/index", fmt::format("row {} {}", row, why));
+    throw damaged(path_, "/keyframes/index", fmt::format("row {} {}", row, why));
   };
   std::vector<std::byte> bytes;
   columns.readRows(layout.keyframeIndex, 0, last.keyframes, bytes);
@@ -212,26 +185,26 @@ std::vector<std::byte> KeyframeReader::plain(std::size_t index) const {
   const std::uint64_t first = row.offset / 8;
   const std::uint64_t end = (row.offset + row.stateBytes + row.hapticsBytes + 7) / 8;
   std::vector<std::byte> bytes;
-  {
-    const hdf5::Session session;
-    columns_.readRows(layout_.keyframeWords, first, end - first, bytes);
-  }
+  const hdf5::Session session;
+  columns_.readRows(layout_.keyframeWords, first, end - first, bytes);
   bytes.erase(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(row.offset % 8));
   bytes.resize(static_cast<std::size_t>(row.stateBytes + row.hapticsBytes));
   return bytes;
 }
 
-std::vector<std::byte> KeyframeReader::words(std::size_t index) const {
+std::vector<std::uint64_t> KeyframeReader::words(std::size_t index) const {
   const std::uint64_t first = rows_[index].offset / 8;
   const std::uint64_t end = index + 1 < rows_.size() ? rows_[index + 1].offset / 8 : totalWords_;
   std::vector<std::byte> bytes;
   const hdf5::Session session;
   columns_.readRows(layout_.keyframeWords, first, end - first, bytes);
-  return bytes;
+  std::vector<std::uint64_t> words(bytes.size() / 8);
+  std::memcpy(words.data(), bytes.data(), bytes.size());
+  return words;
 }
 
 Error KeyframeReader::refused(std::size_t index, const std::string& why) const {
-  return hdf5::damaged(path_, "/keyframes/bytes", fmt::format("the keyframe of step {} {}", rows_[index].step, why));
+  return damaged(path_, "/keyframes/bytes", fmt::format("the keyframe of step {} {}", rows_[index].step, why));
 }
 
 const std::vector<std::byte>& KeyframeReader::decoded(std::size_t index) {
@@ -243,10 +216,7 @@ const std::vector<std::byte>& KeyframeReader::decoded(std::size_t index) {
   std::vector<Coded> way;
   for (std::size_t at = index; !known_.contains(at);) {
     if (way.size() == maxKeyframeWay) throw refused(index, "lies too many others away from one that stands alone");
-    const std::vector<std::byte> bytes = words(at);
-    std::vector<std::uint64_t> code(bytes.size() / 8);
-    std::memcpy(code.data(), bytes.data(), code.size() * 8);
-    way.push_back({at, std::move(code)});
+    way.push_back({at, words(at)});
     const CodedKeyframe coded(way.back().words, at);
     if (!coded.fault().empty()) throw refused(at, coded.fault());
     if (!coded.base()) break;
@@ -255,9 +225,8 @@ const std::vector<std::byte>& KeyframeReader::decoded(std::size_t index) {
   for (; !way.empty(); way.pop_back()) {
     const std::size_t at = way.back().index;
     const CodedKeyframe coded(way.back().words, at);
-    const std::span<const std::byte> base =
-        coded.base() ? std::span<const std::byte>(known_.at(static_cast<std::size_t>(*coded.base())).bytes)
-                     : std::span<const std::byte>{};
+    std::span<const std::byte> base;
+    if (coded.base()) base = known_.at(static_cast<std::size_t>(*coded.base())).bytes;
     Known now{{}, coded.base()};
     const std::string fault = coded.decode(base, rows_[at].stateBytes + rows_[at].hapticsBytes, now.bytes);
     if (!fault.empty()) throw refused(at, fault);

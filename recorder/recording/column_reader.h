@@ -14,7 +14,6 @@
 #include "recorder/recording/hdf5.h"
 #include "recorder/recording/layout.h"
 #include "recorder/recording/reader.h"
-#include "recorder/recording/rows.h"
 
 namespace calot::recorder {
 
@@ -24,7 +23,7 @@ class ColumnReader {
   ColumnReader(std::filesystem::path path, const hdf5::Id& file, const Layout& layout, std::uint64_t fileBytes);
 
   /// How many rows of /status the file claims; at least one.
-  [[nodiscard]] std::uint64_t statusRows() const { return statusRows_; }
+  [[nodiscard]] std::uint64_t statusRows() const { return status_.count(); }
   [[nodiscard]] StatusRow readStatus(std::uint64_t row) const;
   /// The counts of raw samples that belong to a row of /status, checked against those of the row before it (or of an
   /// empty one). Nothing where there is no /device. @throws Error damaged; `out` is as it was.
@@ -41,24 +40,18 @@ class ColumnReader {
   /// Checks that a row of /status can follow another. @throws Error damaged naming its number.
   void checkFollows(const StatusRow& before, const StatusRow& after, std::uint64_t row) const;
 
+  /// Rows of one column. @throws Error damaged
   void readRows(std::size_t column, std::uint64_t first, std::uint64_t rows, std::vector<std::byte>& out) const;
 
  private:
-  struct Source {
-    hdf5::Id dataset, type;
-    std::uint64_t rows = 0;
-  };
-  Source open(const hdf5::Id& file, const Column& column) const;
-  void read(const Source& source, const Column& column, std::uint64_t first, std::uint64_t rows,
-            std::vector<std::byte>& out) const;
+  hdf5::Rows open(const hdf5::Id& file, const Column& column) const;
+  void read(const hdf5::Rows& source, std::uint64_t first, std::uint64_t rows, std::vector<std::byte>& out) const;
 
   std::filesystem::path path_;
   const Layout& layout_;
   std::uint64_t fileBytes_;
-  std::vector<Source> source_;
-  Column statusColumn_, rawCountsColumn_;
-  Source status_, rawCounts_;
-  std::uint64_t statusRows_ = 0;
+  hdf5::Rows status_, rawCounts_;
+  std::vector<hdf5::Rows> rows_;  ///< as Layout::columns
 };
 
 class KeyframeReader {
@@ -80,7 +73,7 @@ class KeyframeReader {
     std::optional<std::uint64_t> base;
   };
   [[nodiscard]] std::vector<std::byte> plain(std::size_t index) const;
-  [[nodiscard]] std::vector<std::byte> words(std::size_t index) const;
+  [[nodiscard]] std::vector<std::uint64_t> words(std::size_t index) const;
   const std::vector<std::byte>& decoded(std::size_t index);
   /// Keeps what the way to a keyframe needs.
   void forgetAllBut(std::size_t index);

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -11,7 +12,6 @@
 
 #include "recorder/base/file_bytes.h"
 #include "recorder/recording/block.h"
-#include "recorder/recording/file_driver.h"
 #include "recorder/recording/hdf5.h"
 #include "recorder/recording/layout.h"
 #include "recorder/recording/open_file.h"
@@ -24,6 +24,10 @@ using hdf5::Id;
 
 /// What the kernel writes whole or not at all, whenever the process is killed: a page of its cache.
 constexpr hsize_t atomicBytes = 4096;
+
+Column signatureColumn() {
+  return {signaturePath, Element::u1, {}, false, 1, std::tuple_size_v<Signature>, 0, false, ""};
+}
 
 /// Creates objects in a file in memory, which is written plainly once complete: HDF5 does not always survive a disk
 /// that fills up during creation. Every failure is an exception.
@@ -88,12 +92,25 @@ class Builder {
     return d;
   }
 
+  /// A data set of the column's rows, still empty.
+  void column(const Column& column) const {
+    std::vector<hsize_t> shape{0};
+    if (column.vector) shape.push_back(column.width);
+    const Id type = hdf5::elementType(column.element);
+    static_cast<void>(dataset(column.path, type.get(), shape, column.chunkRows, column.deflate, true));
+  }
+
+  /// A data set with its values.
+  Id write(const std::string& path, hid_t type, hsize_t size, hsize_t chunkRows, const void* values,
+           unsigned deflate = 0, bool growing = false) const {
+    Id d = dataset(path, type, {size}, chunkRows, deflate, growing);
+    need(size == 0 || H5Dwrite(d.get(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0, path);
+    return d;
+  }
+
   void bytes(const std::string& path, const Asset& asset) const {
-    const Id type = hdf5::elementType(Element::u1);
-    const Id d =
-        dataset(path, type.get(), {asset.bytes.size()}, std::min<hsize_t>(asset.bytes.size(), 65536), deflate_, false);
-    need(asset.bytes.empty() || H5Dwrite(d.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, asset.bytes.data()) >= 0,
-         path);
+    const hsize_t size = asset.bytes.size();
+    const Id d = write(path, H5T_STD_U8LE, size, std::min<hsize_t>(size, 65536), asset.bytes.data(), deflate_);
     text(d.get(), "name", asset.name);
     text(d.get(), "sha256", sha256Hex(asset.bytes));
   }
@@ -104,9 +121,15 @@ class Builder {
     for (const std::string& n : names) longest = std::max(longest, n.size());
     std::string padded(longest * names.size(), '\0');
     for (std::size_t i = 0; i < names.size(); ++i) std::memcpy(&padded[i * longest], names[i].data(), names[i].size());
-    const Id type = hdf5::stringType(longest);
-    const Id d = dataset(path, type.get(), {names.size()}, names.size(), 0, false);
-    need(H5Dwrite(d.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, padded.data()) >= 0, path);
+    write(path, hdf5::stringType(longest).get(), names.size(), names.size(), padded.data());
+  }
+
+  /// A data set of the column that grows, with its first row.
+  template <class Row>
+  void firstRow(const Column& column, const Row& row) const {
+    std::vector<std::byte> packed;
+    appendRow(row, packed);
+    write(column.path, hdf5::elementType(column.element).get(), 1, column.chunkRows, packed.data(), 0, true);
   }
 
   void need(bool ok, const std::string& what) const {
@@ -116,15 +139,10 @@ class Builder {
 
   /// Writes the file to its path.
   void close() {
-    need(H5Fflush(file_.get(), H5F_SCOPE_LOCAL) >= 0, "the file");
-    const ssize_t size = H5Fget_file_image(file_.get(), nullptr, 0);
-    need(size > 0, "the file");
-    std::vector<unsigned char> image(static_cast<std::size_t>(size));
-    need(H5Fget_file_image(file_.get(), image.data(), image.size()) == size, "the file");
-    need(file_.reset(), "the file");
-    need(markClosed(image), "the file");  // the image was taken while the file was open
+    const std::string image = closedImage(file_);
+    need(!image.empty(), "the file");
     std::ofstream out(path_, std::ios::binary | std::ios::trunc);
-    out.write(reinterpret_cast<const char*>(image.data()), static_cast<std::streamsize>(image.size()));
+    out << image;
     out.close();
     if (!out)
       throw Error(ErrorKind::failure, Where{path_.string()},
@@ -135,29 +153,6 @@ class Builder {
   std::filesystem::path path_;
   unsigned deflate_;
   Id file_;
-};
-
-struct WriteAttributes {
-  const Builder& builder;
-  void operator()(const char* name, const std::string& v) { builder.text(builder.root(), name, v); }
-  void operator()(const char* name, const std::uint32_t& v) {
-    builder.attribute(builder.root(), name, H5T_STD_U32LE, &v);
-  }
-  void operator()(const char* name, const std::uint64_t& v) {
-    builder.attribute(builder.root(), name, H5T_STD_U64LE, &v);
-  }
-  void operator()(const char* name, const std::int64_t& v) {
-    builder.attribute(builder.root(), name, H5T_STD_I64LE, &v);
-  }
-  void operator()(const char* name, const double& v) { builder.attribute(builder.root(), name, H5T_IEEE_F64LE, &v); }
-  template <class T>
-  void constant(const char* name, const T& v) {
-    (*this)(name, v);
-  }
-  template <class T, std::size_t N>
-  void choice(const char* name, const T& v, const std::array<const char*, N>& names) {
-    (*this)(name, std::string(names[static_cast<std::size_t>(v)]));
-  }
 };
 
 void observables(Builder& builder, const AttemptHeader& header, const Layout& layout) {
@@ -176,15 +171,18 @@ void observables(Builder& builder, const AttemptHeader& header, const Layout& la
 /// The signer is known from the start; the signature comes with the last flush.
 void signature(Builder& builder, const PublicKey& signer) {
   builder.group("/signature");
-  const Id type = hdf5::elementType(Element::u1);
-  const Id key = builder.dataset(publicKeyPath, type.get(), {signer.size()}, signer.size(), 0, false);
-  builder.need(H5Dwrite(key.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, signer.data()) >= 0, publicKeyPath);
-  const Id value = builder.dataset(signaturePath, type.get(), {0}, std::tuple_size_v<Signature>, 0, true);
+  builder.write(publicKeyPath, H5T_STD_U8LE, signer.size(), signer.size(), signer.data());
+  builder.column(signatureColumn());
 }
 
 StatusRow build(Builder& builder, const AttemptHeader& header, const Layout& layout, const PublicKey* signer) {
-  WriteAttributes attributes{builder};
-  visitAttributes(header, attributes);
+  forEachAttribute(header, [&]<class T>(const char* name, const T& value) {
+    if constexpr (std::is_same_v<T, std::string>) {
+      builder.text(builder.root(), name, value);
+    } else {
+      builder.attribute(builder.root(), name, hdf5::elementType(storedAs<T>()).get(), &value);
+    }
+  });
   for (const char* name : {"/scene", "/scene/assets", "/ticks", "/ticks/left", "/ticks/right", "/camera", "/steps"}) {
     builder.group(name);
   }
@@ -193,11 +191,7 @@ StatusRow build(Builder& builder, const AttemptHeader& header, const Layout& lay
     for (const char* name : {"/device", "/device/left", "/device/right"}) builder.group(name);
   }
   for (const Column& column : layout.columns) {
-    if (column.width == 0) continue;
-    const Id type = hdf5::elementType(column.element);
-    std::vector<hsize_t> shape{0};
-    if (column.vector) shape.push_back(column.width);
-    const Id d = builder.dataset(column.path, type.get(), shape, column.chunkRows, column.deflate, true);
+    if (column.width > 0) builder.column(column);
   }
   if (signer != nullptr) signature(builder, *signer);
   Tissues::forEach([&]<class Kind>(std::type_identity<Kind>, TissueId) {
@@ -211,28 +205,14 @@ StatusRow build(Builder& builder, const AttemptHeader& header, const Layout& lay
     fieldComponents.push_back(f.component);
   }
   builder.names("/steps/field_names", fieldNames);
-  if (!fieldComponents.empty()) {
-    const Id d = builder.dataset("/steps/field_component", H5T_STD_U32LE, {fieldComponents.size()},
-                                 fieldComponents.size(), 0, false);
-    builder.need(H5Dwrite(d.get(), H5T_STD_U32LE, H5S_ALL, H5S_ALL, H5P_DEFAULT, fieldComponents.data()) >= 0,
-                 "/steps/field_component");
-  }
+  if (!fieldComponents.empty())
+    builder.write("/steps/field_component", H5T_STD_U32LE, fieldComponents.size(), fieldComponents.size(),
+                  fieldComponents.data());
 
   StatusRow first;
   first.chain = chainStart(header);
-  std::vector<std::byte> packed;
-  appendRow(first, packed);
-  const Id statusType = hdf5::elementType(Element::status);
-  const Id status = builder.dataset("/status", statusType.get(), {1}, 1, 0, true);
-  builder.need(H5Dwrite(status.get(), statusType.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, packed.data()) >= 0, "/status");
-
-  if (layout.deviceSamples) {
-    packed.clear();
-    appendRow(RawCounts{first.rawSamples, first.rawDropped}, packed);
-    const Id type = hdf5::elementType(Element::rawCounts);
-    const Id counts = builder.dataset(rawCountsPath, type.get(), {1}, rawChunkRows, 0, true);
-    builder.need(H5Dwrite(counts.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, packed.data()) >= 0, rawCountsPath);
-  }
+  builder.firstRow(layout.status, first);
+  if (layout.deviceSamples) builder.firstRow(layout.rawCounts, RawCounts{});
 
   builder.bytes("/scene/description", header.assets.front());
   for (std::size_t i = 1; i < header.assets.size(); ++i) {
@@ -284,71 +264,36 @@ StatusRow createRecordingFile(const std::filesystem::path& path, const AttemptHe
 }
 
 FileAppender::FileAppender(const std::filesystem::path& path, const Layout& layout, const StatusRow& first, bool swmr)
-    : path_(path), layout_(layout), swmr_(swmr), last_(first) {
+    : path_(path), layout_(layout), swmr_(swmr), last_(first), signatureColumn_(signatureColumn()) {
   const hdf5::Session session;
   const hdf5::Id access = hdf5::fileAccess(0);
   if (!hdf5::useOwnDriver(access.get())) fail("cannot be opened for writing");
-  file_ = hdf5::file(H5Fopen(path.c_str(), H5F_ACC_RDWR | (swmr ? H5F_ACC_SWMR_WRITE : 0U), access.get()));
-  if (!file_.valid()) fail("cannot be opened for writing");
-  for (const Column& column : layout.columns) {
-    type_.push_back(hdf5::elementType(column.element));
-    if (column.width == 0) {
-      dataset_.emplace_back();
-      continue;
-    }
-    const hdf5::Id how = hdf5::datasetAccess(column.rowBytes() * static_cast<std::size_t>(column.chunkRows));
-    dataset_.push_back(hdf5::dataset(H5Dopen2(file_.get(), column.path.c_str(), how.get())));
-    if (!dataset_.back().valid()) fail("cannot open " + column.path);
-  }
-  statusType_ = hdf5::elementType(Element::status);
-  const hdf5::Id how = hdf5::datasetAccess(statusBytes);
-  status_ = hdf5::dataset(H5Dopen2(file_.get(), "/status", how.get()));
-  if (!status_.valid()) fail("cannot open /status");
-  if (H5Lexists(file_.get(), "/signature", H5P_DEFAULT) > 0) {
-    byteType_ = hdf5::elementType(Element::u1);
-    const hdf5::Id little = hdf5::datasetAccess(std::tuple_size_v<Signature>);
-    signature_ = hdf5::dataset(H5Dopen2(file_.get(), signaturePath, little.get()));
-    if (!signature_.valid()) fail(std::string("cannot open ") + signaturePath);
-  }
-  if (!layout.deviceSamples) return;
-  rawCountsType_ = hdf5::elementType(Element::rawCounts);
-  const hdf5::Id small = hdf5::datasetAccess(rawCountsBytes * rawChunkRows);
-  rawCounts_ = hdf5::dataset(H5Dopen2(file_.get(), rawCountsPath, small.get()));
-  if (!rawCounts_.valid()) fail(std::string("cannot open ") + rawCountsPath);
+  open_.file = hdf5::file(H5Fopen(path.c_str(), H5F_ACC_RDWR | (swmr ? H5F_ACC_SWMR_WRITE : 0U), access.get()));
+  if (!open_.file.valid()) fail("cannot be opened for writing");
+  const auto open = [this](const Column& column) {
+    hdf5::Rows set(open_.file, column);
+    if (column.width > 0 && !set.valid()) fail("cannot open " + column.path);
+    return set;
+  };
+  for (const Column& column : layout.columns) open_.columns.push_back(open(column));
+  open_.status = open(layout.status);
+  if (H5Lexists(open_.file.get(), "/signature", H5P_DEFAULT) > 0) open_.signature = open(signatureColumn_);
+  open_.rawCounts = open(layout.rawCounts);
 }
 
 FileAppender::~FileAppender() {
   const hdf5::Session session;
-  dataset_.clear();
-  status_.reset();
-  rawCounts_.reset();
-  signature_.reset();
-  byteType_.reset();
-  type_.clear();
-  statusType_.reset();
-  rawCountsType_.reset();
-  file_.reset();
+  const Open closing = std::move(open_);  // the file last
 }
 
-void FileAppender::fail(const std::string& what) {
-  const std::string why = hdf5::reason();
-  hdf5::freeze(file_.get());
+void FileAppender::fail(const std::string& what, const std::string& why) {
+  hdf5::freeze(open_.file.get());
   throw Error(ErrorKind::failure, Where{path_.string()}, fmt::format("{}: {}", what, why));
 }
 
-void FileAppender::writeRows(const hdf5::Id& dataset, const hdf5::Id& type, std::uint64_t first, std::uint64_t rows,
-                             std::uint64_t width, bool vector, const void* data, const std::string& path) {
-  const int rank = vector ? 2 : 1;
-  const std::array<hsize_t, 2> extent{first + rows, width};
-  const std::array<hsize_t, 2> start{first, 0};
-  const std::array<hsize_t, 2> count{rows, width};
-  if (H5Dset_extent(dataset.get(), extent.data()) < 0) fail("cannot extend " + path);
-  const hdf5::Id fileSpace = hdf5::space(H5Dget_space(dataset.get()));
-  const hdf5::Id memorySpace = hdf5::space(H5Screate_simple(rank, count.data(), nullptr));
-  if (H5Sselect_hyperslab(fileSpace.get(), H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr) < 0 ||
-      H5Dwrite(dataset.get(), type.get(), memorySpace.get(), fileSpace.get(), H5P_DEFAULT, data) < 0) {
-    fail("cannot write " + path);
-  }
+void FileAppender::write(const hdf5::Rows& set, std::uint64_t first, std::uint64_t rows, const void* values) {
+  if (const std::string why = set.append(first, rows, values); !why.empty())
+    fail("cannot write " + set.column().path, why);
 }
 
 void FileAppender::append(const Block& block, std::int64_t wallNanoseconds) {
@@ -373,39 +318,40 @@ void FileAppender::append(const Block& block, std::int64_t wallNanoseconds) {
     const Column& column = layout_.columns[c];
     const auto stream = static_cast<std::size_t>(column.stream);
     if (column.width == 0 || block.rows[stream] == 0) continue;
-    writeRows(dataset_[c], type_[c], before[stream], block.rows[stream], column.width, column.vector,
-              block.column[c].data(), column.path);
+    assert(block.column[c].size() == block.rows[stream] * column.rowBytes());
+    write(open_.columns[c], before[stream], block.rows[stream], block.column[c].data());
   }
-  if (rawCounts_.valid()) {
+  if (open_.rawCounts.valid()) {
     packed_.clear();
     appendRow(RawCounts{row.rawSamples, row.rawDropped}, packed_);
-    writeRows(rawCounts_, rawCountsType_, statusRows_, 1, 1, false, packed_.data(), rawCountsPath);
+    write(open_.rawCounts, statusRows_, 1, packed_.data());
   }
   // The rows must be in the file before the row of /status that covers them.
-  if (swmr_ && H5Fflush(file_.get(), H5F_SCOPE_LOCAL) < 0) fail("cannot flush");
+  if (swmr_ && H5Fflush(open_.file.get(), H5F_SCOPE_LOCAL) < 0) fail("cannot flush");
   packed_.clear();
   appendRow(row, packed_);
-  writeRows(status_, statusType_, statusRows_, 1, 1, false, packed_.data(), "/status");
-  if (swmr_ && H5Dflush(status_.get()) < 0) fail("cannot flush /status");
+  write(open_.status, statusRows_, 1, packed_.data());
+  if (swmr_ && H5Dflush(open_.status.get()) < 0) fail("cannot flush /status");
   ++statusRows_;
   last_ = row;
 }
 
 void FileAppender::sign(const Signature& signature) {
   const hdf5::Session session;
-  writeRows(signature_, byteType_, 0, signature.size(), 1, false, signature.data(), signaturePath);
+  write(open_.signature, 0, signature.size(), signature.data());
 }
 
 void FileAppender::close() {
   const hdf5::Session session;
-  for (hdf5::Id& d : dataset_) {
-    if (!d.reset()) fail("cannot close");
-  }
-  if (!status_.reset()) fail("cannot close /status");
-  if (!rawCounts_.reset()) fail(std::string("cannot close ") + rawCountsPath);
-  if (!signature_.reset()) fail(std::string("cannot close ") + signaturePath);
-  if (H5Fflush(file_.get(), H5F_SCOPE_LOCAL) < 0) fail("cannot flush");
-  if (!file_.reset())
+  const auto closeSet = [this](hdf5::Rows& set) {
+    if (!set.close()) fail("cannot close " + set.column().path);
+  };
+  std::for_each(open_.columns.begin(), open_.columns.end(), closeSet);
+  closeSet(open_.status);
+  closeSet(open_.rawCounts);
+  closeSet(open_.signature);
+  if (H5Fflush(open_.file.get(), H5F_SCOPE_LOCAL) < 0) fail("cannot flush");
+  if (!open_.file.reset())
     throw Error(ErrorKind::failure, Where{path_.string()}, fmt::format("cannot be closed: {}", hdf5::reason()));
 }
 

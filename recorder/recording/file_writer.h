@@ -47,20 +47,21 @@ class FileAppender {
   [[nodiscard]] const StatusRow& last() const { return last_; }
 
  private:
-  void writeRows(const hdf5::Id& dataset, const hdf5::Id& type, std::uint64_t first, std::uint64_t rows,
-                 std::uint64_t width, bool vector, const void* data, const std::string& path);
-  [[noreturn]] void fail(const std::string& what);
+  void write(const hdf5::Rows& set, std::uint64_t first, std::uint64_t rows, const void* values);
+  [[noreturn]] void fail(const std::string& what, const std::string& why = hdf5::reason());
 
   std::filesystem::path path_;
   const Layout& layout_;
   bool swmr_ = false;
   StatusRow last_;
   std::uint64_t statusRows_ = 1;
-  hdf5::Id file_;
-  std::vector<hdf5::Id> type_, dataset_;
-  hdf5::Id statusType_, status_;
-  hdf5::Id rawCountsType_, rawCounts_;  ///< where there is a /device
-  hdf5::Id byteType_, signature_;       ///< where it will be signed
+  Column signatureColumn_;
+  struct Open {
+    hdf5::Id file;
+    std::vector<hdf5::Rows> columns;
+    hdf5::Rows status, rawCounts;
+    hdf5::Rows signature;  ///< where it will be signed
+  } open_;
   std::vector<std::byte> packed_;
 };
 

@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <limits>
+#include <memory>
 #include <type_traits>
 
-#include "recorder/recording/rows.h"
+#include "recorder/recording/block.h"
 
 namespace calot::recorder::hdf5 {
 
@@ -54,30 +56,39 @@ Error damaged(const std::filesystem::path& file, const std::string& place, const
 
 namespace {
 
+hid_t numberOf(Element element) {
+  switch (element) {
+    case Element::u1:
+      return H5T_STD_U8LE;
+    case Element::u2:
+      return H5T_STD_U16LE;
+    case Element::u4:
+      return H5T_STD_U32LE;
+    case Element::u8:
+      return H5T_STD_U64LE;
+    case Element::i8:
+      return H5T_STD_I64LE;
+    case Element::f4:
+      return H5T_IEEE_F32LE;
+    default:
+      return H5T_IEEE_F64LE;
+  }
+}
+
 /// The compound of a row's fields, one after the other.
 struct InsertFields {
   Id compound;
   std::size_t offset = 0;
 
-  void operator()(const char* name, const char* /*unit*/, const Vec3& /*value*/) {
-    insertArray(name, H5T_IEEE_F64LE, 3);
-  }
-  void operator()(const char* name, const char* /*unit*/, const Quat& /*value*/) {
-    insertArray(name, H5T_IEEE_F64LE, 4);
-  }
-  template <std::size_t N>
-  void operator()(const char* name, const char* /*unit*/, const std::array<std::uint8_t, N>& /*value*/) {
-    insertArray(name, H5T_STD_U8LE, N);
-  }
   template <class T>
   void operator()(const char* name, const char* /*unit*/, const T& /*value*/) {
-    constexpr bool isSigned = std::is_signed_v<T> && !std::is_enum_v<T>;
-    insert(name, std::is_floating_point_v<T> ? H5T_IEEE_F64LE
-                 : isSigned                  ? H5T_STD_I64LE
-                 : sizeof(T) == 8            ? H5T_STD_U64LE
-                 : sizeof(T) == 2            ? H5T_STD_U16LE
-                                             : H5T_STD_U8LE);
-    static_assert(sizeof(T) == 8 || (!std::is_floating_point_v<T> && !isSigned && sizeof(T) <= 2));
+    if constexpr (std::is_same_v<T, Vec3> || std::is_same_v<T, Quat>) {
+      insertArray(name, Element::f8, sizeof(T) / sizeof(double));
+    } else if constexpr (std::is_arithmetic_v<T> || std::is_enum_v<T>) {
+      insert(name, numberOf(storedAs<T>()));
+    } else {
+      insertArray(name, Element::u1, sizeof(T));
+    }
   }
 
  private:
@@ -85,17 +96,17 @@ struct InsertFields {
     H5Tinsert(compound.get(), name, offset, field);
     offset += H5Tget_size(field);
   }
-  void insertArray(const char* name, hid_t element, hsize_t size) {
-    insert(name, type(H5Tarray_create2(element, 1, &size)).get());
+  void insertArray(const char* name, Element element, hsize_t size) {
+    insert(name, type(H5Tarray_create2(numberOf(element), 1, &size)).get());
   }
 };
 
 template <class Row>
-Id rowType(std::size_t bytes) {
-  InsertFields fields{type(H5Tcreate(H5T_COMPOUND, bytes))};
+Id rowType(Element element) {
+  InsertFields fields{type(H5Tcreate(H5T_COMPOUND, elementBytes(element)))};
   const Row row{};
   visitRow(row, fields);
-  assert(fields.offset == bytes);
+  assert(fields.offset == elementBytes(element));
   return std::move(fields.compound);
 }
 
@@ -103,32 +114,19 @@ Id rowType(std::size_t bytes) {
 
 Id elementType(Element element) {
   switch (element) {
-    case Element::u1:
-      return type(H5Tcopy(H5T_STD_U8LE));
-    case Element::u2:
-      return type(H5Tcopy(H5T_STD_U16LE));
-    case Element::u4:
-      return type(H5Tcopy(H5T_STD_U32LE));
-    case Element::u8:
-      return type(H5Tcopy(H5T_STD_U64LE));
-    case Element::i8:
-      return type(H5Tcopy(H5T_STD_I64LE));
-    case Element::f4:
-      return type(H5Tcopy(H5T_IEEE_F32LE));
-    case Element::f8:
-      return type(H5Tcopy(H5T_IEEE_F64LE));
     case Element::event:
-      return rowType<Event>(eventBytes);
+      return rowType<Event>(element);
     case Element::keyframe:
-      return rowType<KeyframeRow>(keyframeBytes);
+      return rowType<KeyframeRow>(element);
     case Element::status:
-      return rowType<StatusRow>(statusBytes);
+      return rowType<StatusRow>(element);
     case Element::rawSample:
-      return rowType<RawSample>(rawSampleBytes);
+      return rowType<RawSample>(element);
     case Element::rawCounts:
-      return rowType<RawCounts>(rawCountsBytes);
+      return rowType<RawCounts>(element);
+    default:
+      return type(H5Tcopy(numberOf(element)));
   }
-  return {};
 }
 
 Id stringType(std::size_t bytes) {
@@ -147,10 +145,163 @@ Id fileAccess(unsigned metadataAttempts) {
   return p;
 }
 
-Id datasetAccess(std::size_t chunkBytes) {
-  Id p = properties(H5Pcreate(H5P_DATASET_ACCESS));
-  H5Pset_chunk_cache(p.get(), 3, 2 * chunkBytes, 1.0);
-  return p;
+Rows::Rows(const Id& file, const Column& column) : column_(&column), type_(elementType(column.element)) {
+  if (column.width == 0) return;
+  // A chunk cache that holds two chunks: whole chunks are written once.
+  const Id access = properties(H5Pcreate(H5P_DATASET_ACCESS));
+  const std::size_t chunkBytes = column.rowBytes() * static_cast<std::size_t>(column.chunkRows);
+  H5Pset_chunk_cache(access.get(), 3, 2 * chunkBytes, 1.0);
+  dataset_ = dataset(H5Dopen2(file.get(), column.path.c_str(), access.get()));
+}
+
+std::string Rows::measure() {
+  if (column_->width == 0) return "";
+  if (!valid()) return "is missing or cannot be read";
+  const Id stored = type(H5Dget_type(dataset_.get()));
+  if (H5Tequal(stored.get(), type_.get()) <= 0) return "has the wrong type";
+  const Id extent = space(H5Dget_space(dataset_.get()));
+  std::array<hsize_t, 2> size{};
+  if (H5Sget_simple_extent_ndims(extent.get()) != rank() ||
+      H5Sget_simple_extent_dims(extent.get(), size.data(), nullptr) != rank() ||
+      (column_->vector && size[1] != column_->width))
+    return "has the wrong shape";
+  count_ = size[0];
+  return "";
+}
+
+std::pair<Id, Id> Rows::select(std::uint64_t first, std::uint64_t rows) const {
+  const std::array<hsize_t, 2> start{first, 0};
+  const std::array<hsize_t, 2> count{rows, column_->width};
+  std::pair<Id, Id> spaces{space(H5Screate_simple(rank(), count.data(), nullptr)), space(H5Dget_space(dataset_.get()))};
+  // A failure is one of reading or writing, too.
+  H5Sselect_hyperslab(spaces.second.get(), H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr);
+  return spaces;
+}
+
+std::string Rows::read(std::uint64_t first, std::uint64_t rows, void* out) const {
+  const auto [memory, file] = select(first, rows);
+  const bool done = H5Dread(dataset_.get(), type_.get(), memory.get(), file.get(), H5P_DEFAULT, out) >= 0;
+  return done ? "" : reason();
+}
+
+std::string Rows::append(std::uint64_t first, std::uint64_t rows, const void* values) const {
+  const std::array<hsize_t, 2> extent{first + rows, column_->width};
+  if (H5Dset_extent(dataset_.get(), extent.data()) < 0) return reason();
+  const auto [memory, file] = select(first, rows);
+  const bool done = H5Dwrite(dataset_.get(), type_.get(), memory.get(), file.get(), H5P_DEFAULT, values) >= 0;
+  return done ? "" : reason();
+}
+
+namespace {
+
+/// What the library holds of a file. Its own part comes first.
+struct OpenFile {
+  H5FD_t library{};
+  H5FD_t* plain = nullptr;  ///< the same file by the library's own driver
+  bool frozen = false;
+};
+
+OpenFile& of(H5FD_t* file) { return *reinterpret_cast<OpenFile*>(file); }
+H5FD_t* plainOf(const H5FD_t* file) { return reinterpret_cast<const OpenFile*>(file)->plain; }
+
+hid_t registered = H5I_INVALID_HID;  // under the Session's lock
+
+extern "C" {
+
+H5FD_t* calotFileOpen(const char* name, unsigned flags, hid_t /*fileAccess*/, haddr_t most) {
+  const Id access = properties(H5Pcreate(H5P_FILE_ACCESS));
+  H5Pset_fapl_sec2(access.get());
+  H5FD_t* const plain = H5FDopen(name, flags, access.get(), most);
+  return plain == nullptr ? nullptr : &(new OpenFile{{}, plain})->library;
+}
+
+herr_t calotFileClose(H5FD_t* file) {
+  const std::unique_ptr<OpenFile> owned(&of(file));
+  return H5FDclose(owned->plain) >= 0 || owned->frozen ? 0 : -1;
+}
+
+int calotFileCompare(const H5FD_t* a, const H5FD_t* b) { return H5FDcmp(plainOf(a), plainOf(b)); }
+haddr_t calotFileAllocated(const H5FD_t* file, H5FD_mem_t kind) { return H5FDget_eoa(plainOf(file), kind); }
+herr_t calotFileAllocate(H5FD_t* file, H5FD_mem_t kind, haddr_t end) { return H5FDset_eoa(plainOf(file), kind, end); }
+haddr_t calotFileSize(const H5FD_t* file, H5FD_mem_t kind) { return H5FDget_eof(plainOf(file), kind); }
+
+/// Those of the library's own driver, also before a file is open.
+herr_t calotFileQuery(const H5FD_t* /*file*/, unsigned long* flags) {
+  *flags = H5FD_FEAT_AGGREGATE_METADATA | H5FD_FEAT_ACCUMULATE_METADATA | H5FD_FEAT_DATA_SIEVE |
+           H5FD_FEAT_AGGREGATE_SMALLDATA | H5FD_FEAT_POSIX_COMPAT_HANDLE | H5FD_FEAT_SUPPORTS_SWMR_IO |
+           H5FD_FEAT_DEFAULT_VFD_COMPATIBLE;
+  return 0;
+}
+
+herr_t calotFileHandle(H5FD_t* file, hid_t /*fileAccess*/, void** handle) {
+  *handle = &of(file);
+  return 0;
+}
+
+herr_t calotFileRead(H5FD_t* file, H5FD_mem_t kind, hid_t transfer, haddr_t at, size_t bytes, void* out) {
+  return H5FDread(plainOf(file), kind, transfer, at, bytes, out);
+}
+
+herr_t calotFileWrite(H5FD_t* file, H5FD_mem_t kind, hid_t transfer, haddr_t at, size_t bytes, const void* values) {
+  return of(file).frozen ? 0 : H5FDwrite(plainOf(file), kind, transfer, at, bytes, values);
+}
+
+herr_t calotFileTruncate(H5FD_t* file, hid_t transfer, hbool_t closing) {
+  return of(file).frozen ? 0 : H5FDtruncate(plainOf(file), transfer, closing);
+}
+
+herr_t calotFileLock(H5FD_t* file, hbool_t writing) { return H5FDlock(plainOf(file), writing); }
+herr_t calotFileUnlock(H5FD_t* file) { return H5FDunlock(plainOf(file)); }
+
+/// The library ends, or begins anew: the number means nothing then.
+herr_t calotFileTerminate() {
+  registered = H5I_INVALID_HID;
+  return 0;
+}
+}
+
+H5FD_class_t driver() {
+  H5FD_class_t c{};
+  c.name = "calot-recording";
+  c.maxaddr = static_cast<haddr_t>(std::numeric_limits<off_t>::max());
+  c.fc_degree = H5F_CLOSE_WEAK;
+  c.terminate = calotFileTerminate;
+  c.open = calotFileOpen;
+  c.close = calotFileClose;
+  c.cmp = calotFileCompare;
+  c.query = calotFileQuery;
+  c.get_eoa = calotFileAllocated;
+  c.set_eoa = calotFileAllocate;
+  c.get_eof = calotFileSize;
+  c.get_handle = calotFileHandle;
+  c.read = calotFileRead;
+  c.write = calotFileWrite;
+  c.truncate = calotFileTruncate;
+  c.lock = calotFileLock;
+  c.unlock = calotFileUnlock;
+  // As the library's own driver: raw data apart from structure (H5FD_FLMAP_DICHOTOMY).
+  constexpr H5FD_mem_t dichotomy[] = H5FD_FLMAP_DICHOTOMY;
+  std::copy(std::begin(dichotomy), std::end(dichotomy), std::begin(c.fl_map));
+  return c;
+}
+
+}  // namespace
+
+bool useOwnDriver(hid_t fileAccess) {
+  static const H5FD_class_t own = driver();
+  if (registered < 0) registered = H5FDregister(&own);
+  return registered >= 0 && H5Pset_driver(fileAccess, registered, nullptr) >= 0;
+}
+
+void freeze(hid_t file) {
+  void* handle = nullptr;
+  const Id access = properties(H5Fget_access_plist(file));
+  const bool ours = access.valid() && registered >= 0 && H5Pget_driver(access.get()) == registered;
+  if (!ours || H5Fget_vfd_handle(file, H5P_DEFAULT, &handle) < 0 || handle == nullptr) return;
+  static_cast<OpenFile*>(handle)->frozen = true;
+  // A flush that failed leaves the library's list of what is to be written in disorder, over which the next one, that
+  // of closing, would fail as well. One in between fails, too, but empties the list.
+  H5Fflush(file, H5F_SCOPE_LOCAL);
 }
 
 }  // namespace calot::recorder::hdf5

@@ -83,7 +83,49 @@ Id stringType(std::size_t bytes);
 /// Access with V110 bounds. @param metadataAttempts for SWMR readers; 0: the library's default.
 Id fileAccess(unsigned metadataAttempts);
 
-/// Access to a data set through a chunk cache that holds two of its chunks: whole chunks are written once.
-Id datasetAccess(std::size_t chunkBytes);
+/// The data set of a column, read and written by whole rows.
+class Rows {
+ public:
+  Rows() = default;
+  /// Opens it, where the column has a width. @param column outlives this
+  Rows(const Id& file, const Column& column);
+
+  [[nodiscard]] bool valid() const { return dataset_.valid(); }
+  [[nodiscard]] hid_t get() const { return dataset_.get(); }
+  [[nodiscard]] const Column& column() const { return *column_; }
+  /// Checks existence, type and shape of a column that has a width, and counts its rows. @return what is wrong, or
+  /// empty
+  std::string measure();
+  /// Rows that it had then.
+  [[nodiscard]] std::uint64_t count() const { return count_; }
+
+  /// @return reason() of a failure, or empty
+  [[nodiscard]] std::string read(std::uint64_t first, std::uint64_t rows, void* out) const;
+  /// Writes rows behind the first ones. @return as read()
+  [[nodiscard]] std::string append(std::uint64_t first, std::uint64_t rows, const void* values) const;
+  /// @return false if closing failed
+  bool close() { return dataset_.reset(); }
+
+ private:
+  [[nodiscard]] int rank() const { return column_->vector ? 2 : 1; }
+  /// Spaces of these rows in memory and in the file.
+  [[nodiscard]] std::pair<Id, Id> select(std::uint64_t first, std::uint64_t rows) const;
+
+  const Column* column_ = nullptr;
+  Id type_, dataset_;
+  std::uint64_t count_ = 0;
+};
+
+/// Sets a driver of our own for a file that is opened with these properties: the library's own, but that nothing is
+/// written any more after freeze().
+///
+/// A file whose disk is full must stay as it is: the library goes on trying to write its cache until the file is
+/// closed, in an order that endangers what was flushed. It must be closed all the same, or the library is left with
+/// half of it when the program ends; so what is written then succeeds and goes nowhere.
+/// @return false where the library refuses
+bool useOwnDriver(hid_t fileAccess);
+
+/// From now on nothing is written to this file. Nothing happens where it was not opened by that driver.
+void freeze(hid_t file);
 
 }  // namespace calot::recorder::hdf5

@@ -3,6 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <regex>
+
 #include "recorder/base/file_bytes.h"
 #include "recorder/recording/layout.h"
 
@@ -27,104 +30,118 @@ class HeaderReader {
   std::string text(hid_t object, const std::string& place, const char* name) const {
     const Id a = open(object, place, name);
     const Id type = hdf5::type(H5Aget_type(a.get()));
-    const std::size_t size = type.valid() ? H5Tget_size(type.get()) : 0;
-    if (H5Tget_class(type.get()) != H5T_STRING || H5Tis_variable_str(type.get()) != 0 || size < 1 ||
-        size > maxAttribute) {
-      throw damaged(path_, place + "@" + name, "is not a fixed-length string");
-    }
-    std::string value(size, '\0');
+    std::string value(sizeOfText(type, maxAttribute), '\0');
+    if (value.empty()) throw damaged(path_, place + "@" + name, "is not a fixed-length string");
     if (H5Aread(a.get(), type.get(), value.data()) < 0) throw damaged(path_, place + "@" + name, hdf5::reason());
-    while (!value.empty() && value.back() == '\0') value.pop_back();
-    if (value.find('\0') != std::string::npos) throw damaged(path_, place + "@" + name, "has a zero inside its text");
+    if (!trim(value)) throw damaged(path_, place + "@" + name, "has a zero inside its text");
     return value;
   }
 
-  void number(hid_t object, const std::string& place, const char* name, hid_t expected, void* value) const {
+  template <class T>
+  void number(hid_t object, const std::string& place, const char* name, T& value) const {
     const Id a = open(object, place, name);
     const Id type = hdf5::type(H5Aget_type(a.get()));
-    if (H5Tequal(type.get(), expected) <= 0) throw damaged(path_, place + "@" + name, "has the wrong type");
-    if (H5Aread(a.get(), expected, value) < 0) throw damaged(path_, place + "@" + name, hdf5::reason());
-  }
-
-  /// A data set of one dimension; its extent.
-  Id vector(const std::string& place, std::uint64_t& rows) const {
-    Id d = hdf5::dataset(H5Dopen2(file_.get(), place.c_str(), H5P_DEFAULT));
-    if (!d.valid()) throw damaged(path_, place, "is missing or cannot be read");
-    const Id space = hdf5::space(H5Dget_space(d.get()));
-    hsize_t extent = 0;
-    if (H5Sget_simple_extent_ndims(space.get()) != 1 || H5Sget_simple_extent_dims(space.get(), &extent, nullptr) != 1) {
-      throw damaged(path_, place, "has the wrong shape");
-    }
-    rows = extent;
-    return d;
+    const Id expected = hdf5::elementType(storedAs<T>());
+    if (H5Tequal(type.get(), expected.get()) <= 0) throw damaged(path_, place + "@" + name, "has the wrong type");
+    if (H5Aread(a.get(), expected.get(), &value) < 0) throw damaged(path_, place + "@" + name, hdf5::reason());
   }
 
   std::vector<std::string> names(const std::string& place, std::uint64_t most) const {
     if (!there(place)) return {};
-    std::uint64_t rows = 0;
-    const Id d = vector(place, rows);
-    const Id type = hdf5::type(H5Dget_type(d.get()));
-    const std::size_t size = type.valid() ? H5Tget_size(type.get()) : 0;
-    if (H5Tget_class(type.get()) != H5T_STRING || H5Tis_variable_str(type.get()) != 0 || size < 1 || size > maxName) {
-      throw damaged(path_, place, "does not hold fixed-length strings");
-    }
-    if (rows < 1 || rows > most) throw damaged(path_, place, "has the wrong shape");
-    if (rows * size > maxNameBytes)
-      throw damaged(path_, place, fmt::format("takes {} bytes; names take at most {}", rows * size, maxNameBytes));
-    std::string all(size * rows, '\0');
-    if (H5Dread(d.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, all.data()) < 0)
-      throw damaged(path_, place, hdf5::reason());
+    const List list = open(place);
+    const std::size_t size = sizeOfText(list.type, maxName);
+    if (size == 0) throw damaged(path_, place, "does not hold fixed-length strings");
+    if (list.rows < 1 || list.rows > most) throw damaged(path_, place, "has the wrong shape");
+    if (list.rows * size > maxNameBytes)
+      throw damaged(path_, place, fmt::format("takes {} bytes; names take at most {}", list.rows * size, maxNameBytes));
+    std::string all(size * list.rows, '\0');
+    read(list, place, all.data());
     std::vector<std::string> out;
-    for (std::size_t i = 0; i < rows; ++i) {
-      std::string one = all.substr(i * size, size);
-      while (!one.empty() && one.back() == '\0') one.pop_back();
-      if (one.find('\0') != std::string::npos) throw damaged(path_, place, "has a zero inside a name");
-      out.push_back(std::move(one));
+    for (std::size_t i = 0; i < list.rows; ++i) {
+      out.push_back(all.substr(i * size, size));
+      if (!trim(out.back())) throw damaged(path_, place, "has a zero inside a name");
     }
     return out;
   }
 
   Asset asset(const std::string& place) {
     Asset out;
-    std::uint64_t rows = 0;
-    const Id d = vector(place, rows);
-    const Id type = hdf5::type(H5Dget_type(d.get()));
-    if (H5Tequal(type.get(), H5T_STD_U8LE) <= 0) throw damaged(path_, place, "has the wrong type");
+    const List list = open(place, H5T_STD_U8LE);
     // Deflate cannot shrink more than 1032 to 1.
-    if (rows / 1040 > fileBytes_) throw damaged(path_, place, "claims more bytes than the file can hold");
-    assetBytes_ += rows;
-    if (rows > maxAssetBytes || assetBytes_ > maxAssetBytes)
+    if (list.rows / 1040 > fileBytes_) throw damaged(path_, place, "claims more bytes than the file can hold");
+    assetBytes_ += list.rows;
+    if (list.rows > maxAssetBytes || assetBytes_ > maxAssetBytes)
       throw damaged(path_, place, fmt::format("the scene's files take more than {} bytes", maxAssetBytes));
-    out.name = text(d.get(), place, "name");
-    const std::string sha = text(d.get(), place, "sha256");
-    out.bytes.resize(static_cast<std::size_t>(rows));
-    if (rows > 0 && H5Dread(d.get(), H5T_STD_U8LE, H5S_ALL, H5S_ALL, H5P_DEFAULT, out.bytes.data()) < 0) {
-      throw damaged(path_, place, hdf5::reason());
-    }
+    out.name = text(list.dataset.get(), place, "name");
+    const std::string sha = text(list.dataset.get(), place, "sha256");
+    out.bytes.resize(static_cast<std::size_t>(list.rows));
+    read(list, place, out.bytes.data());
     if (sha256Hex(out.bytes) != sha) throw damaged(path_, place, "does not have the SHA-256 it is said to have");
     return out;
+  }
+
+  std::vector<std::uint32_t> numbers(const std::string& place, std::uint64_t expected) const {
+    const List list = open(place, H5T_STD_U32LE);
+    if (list.rows != expected) throw damaged(path_, place, "has the wrong shape");
+    std::vector<std::uint32_t> out(static_cast<std::size_t>(expected));
+    read(list, place, out.data());
+    return out;
+  }
+
+  /// @return false where there are none, which may be
+  template <std::size_t N>
+  bool bytes(const std::string& place, std::array<std::uint8_t, N>& out, bool mayBeEmpty) const {
+    const List list = open(place, H5T_STD_U8LE);
+    if (list.rows == 0 && mayBeEmpty) return false;
+    if (list.rows != N) throw damaged(path_, place, "has the wrong shape");
+    read(list, place, out.data());
+    return true;
   }
 
   [[nodiscard]] bool there(const std::string& place) const {
     return H5Lexists(file_.get(), place.c_str(), H5P_DEFAULT) > 0;
   }
 
-  std::vector<std::uint32_t> numbers(const std::string& place, std::uint64_t expected) const {
-    std::uint64_t rows = 0;
-    const Id d = vector(place, rows);
-    const Id type = hdf5::type(H5Dget_type(d.get()));
-    if (H5Tequal(type.get(), H5T_STD_U32LE) <= 0) throw damaged(path_, place, "has the wrong type");
-    if (rows != expected) throw damaged(path_, place, "has the wrong shape");
-    std::vector<std::uint32_t> out(static_cast<std::size_t>(rows));
-    if (H5Dread(d.get(), H5T_STD_U32LE, H5S_ALL, H5S_ALL, H5P_DEFAULT, out.data()) < 0)
-      throw damaged(path_, place, hdf5::reason());
-    return out;
-  }
-
   [[nodiscard]] hid_t root() const { return file_.get(); }
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
 
  private:
+  /// A data set of one dimension.
+  struct List {
+    Id dataset, type;
+    hsize_t rows = 0;
+  };
+  /// @param expected type of its elements, or any
+  List open(const std::string& place, hid_t expected = H5I_INVALID_HID) const {
+    List list{hdf5::dataset(H5Dopen2(file_.get(), place.c_str(), H5P_DEFAULT)), {}};
+    if (!list.dataset.valid()) throw damaged(path_, place, "is missing or cannot be read");
+    list.type = hdf5::type(H5Dget_type(list.dataset.get()));
+    if (expected >= 0 && H5Tequal(list.type.get(), expected) <= 0) throw damaged(path_, place, "has the wrong type");
+    const Id space = hdf5::space(H5Dget_space(list.dataset.get()));
+    if (H5Sget_simple_extent_ndims(space.get()) != 1 ||
+        H5Sget_simple_extent_dims(space.get(), &list.rows, nullptr) != 1)
+      throw damaged(path_, place, "has the wrong shape");
+    return list;
+  }
+
+  void read(const List& list, const std::string& place, void* out) const {
+    if (list.rows > 0 && H5Dread(list.dataset.get(), list.type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, out) < 0)
+      throw damaged(path_, place, hdf5::reason());
+  }
+
+  /// Bytes of a fixed-length string; 0: it is none, or longer than `most`.
+  static std::size_t sizeOfText(const Id& type, std::size_t most) {
+    if (H5Tget_class(type.get()) != H5T_STRING || H5Tis_variable_str(type.get()) != 0) return 0;
+    const std::size_t size = H5Tget_size(type.get());
+    return size > most ? 0 : size;
+  }
+
+  /// Removes the padding. @return false where there is a zero inside
+  static bool trim(std::string& text) {
+    while (!text.empty() && text.back() == '\0') text.pop_back();
+    return text.find('\0') == std::string::npos;
+  }
+
   Id open(hid_t object, const std::string& place, const char* name) const {
     Id a = hdf5::attribute(H5Aopen(object, name, H5P_DEFAULT));
     if (!a.valid()) throw damaged(path_, place + "@" + name, "is missing; the file is not a recording, or damaged");
@@ -143,10 +160,10 @@ class HeaderReader {
 struct ReadAttributes {
   const HeaderReader& reader;
   void operator()(const char* name, std::string& v) { v = reader.text(reader.root(), "/", name); }
-  void operator()(const char* name, std::uint32_t& v) { reader.number(reader.root(), "/", name, H5T_STD_U32LE, &v); }
-  void operator()(const char* name, std::uint64_t& v) { reader.number(reader.root(), "/", name, H5T_STD_U64LE, &v); }
-  void operator()(const char* name, std::int64_t& v) { reader.number(reader.root(), "/", name, H5T_STD_I64LE, &v); }
-  void operator()(const char* name, double& v) { reader.number(reader.root(), "/", name, H5T_IEEE_F64LE, &v); }
+  template <class T>
+  void operator()(const char* name, T& v) {
+    reader.number(reader.root(), "/", name, v);
+  }
   void constant(const char* name, const std::string& expected) {
     if (reader.text(reader.root(), "/", name) != expected)
       throw damaged(reader.path(), std::string("/@") + name, "the file is not a recording");
@@ -154,24 +171,15 @@ struct ReadAttributes {
   template <class T, std::size_t N>
   void choice(const char* name, T& value, const std::array<const char*, N>& names) {
     const std::string text = reader.text(reader.root(), "/", name);
-    for (std::size_t i = 0; i < N; ++i) {
-      if (text == names[i]) {
-        value = static_cast<T>(i);
-        return;
-      }
-    }
-    throw damaged(reader.path(), std::string("/@") + name, "has an unknown value");
+    const auto at = std::find(names.begin(), names.end(), text);
+    if (at == names.end()) throw damaged(reader.path(), std::string("/@") + name, "has an unknown value");
+    value = static_cast<T>(at - names.begin());
   }
 };
 
 bool isUuid(const std::string& text) {
-  if (text.size() != 36) return false;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const bool hyphen = i == 8 || i == 13 || i == 18 || i == 23;
-    const char c = text[i];
-    if (hyphen ? c != '-' : !((c >= '0' && c <= '9') || (c >= 'a' && c <= 'f'))) return false;
-  }
-  return true;
+  static const std::regex uuid("[0-9a-f]{8}(-[0-9a-f]{4}){3}-[0-9a-f]{12}");
+  return text.size() == 36 && std::regex_match(text, uuid);
 }
 
 }  // namespace
@@ -225,33 +233,19 @@ AttemptHeader readHeader(const std::filesystem::path& path, const hdf5::Id& file
   const Id observables = hdf5::group(H5Gopen2(file.get(), "/observables", H5P_DEFAULT));
   if (!observables.valid()) throw damaged(path, "/observables", "is missing");
   std::uint32_t version = 0;
-  reader.number(observables.get(), "/observables", "version", H5T_STD_U32LE, &version);
+  reader.number(observables.get(), "/observables", "version", version);
   if (version != h.stepResultVersion)
     throw damaged(path, "/observables@version", "is not the root's step_result_version");
   return h;
 }
 
 std::optional<RecordedSignature> readSignature(const std::filesystem::path& path, const hdf5::Id& file) {
-  const auto bytes = [&](const char* place, auto& out, bool mayBeEmpty) {
-    const Id d = hdf5::dataset(H5Dopen2(file.get(), place, H5P_DEFAULT));
-    if (!d.valid()) throw damaged(path, place, "is missing");
-    const Id type = hdf5::type(H5Dget_type(d.get()));
-    const Id space = hdf5::space(H5Dget_space(d.get()));
-    if (H5Tequal(type.get(), H5T_STD_U8LE) <= 0) throw damaged(path, place, "has the wrong type");
-    hsize_t rows = 0;
-    if (H5Sget_simple_extent_ndims(space.get()) != 1 || H5Sget_simple_extent_dims(space.get(), &rows, nullptr) != 1)
-      throw damaged(path, place, "has the wrong shape");
-    if (rows == 0 && mayBeEmpty) return false;
-    if (rows != out.size()) throw damaged(path, place, "has the wrong shape");
-    if (H5Dread(d.get(), H5T_STD_U8LE, H5S_ALL, H5S_ALL, H5P_DEFAULT, out.data()) < 0)
-      throw damaged(path, place, hdf5::reason());
-    return true;
-  };
   if (H5Lexists(file.get(), "/signature", H5P_DEFAULT) <= 0) return std::nullopt;
+  const HeaderReader reader(path, file, 0);
   RecordedSignature signature;
-  bytes(publicKeyPath, signature.publicKey, false);
+  reader.bytes(publicKeyPath, signature.publicKey, false);
   Signature value{};
-  if (bytes(signaturePath, value, true)) signature.value = value;
+  if (reader.bytes(signaturePath, value, true)) signature.value = value;
   return signature;
 }
 

@@ -11,102 +11,7 @@
 
 namespace calot::recorder {
 
-std::size_t elementBytes(Element element) {
-  switch (element) {
-    case Element::u1:
-      return 1;
-    case Element::u2:
-      return 2;
-    case Element::u4:
-    case Element::f4:
-      return 4;
-    case Element::u8:
-    case Element::i8:
-    case Element::f8:
-      return 8;
-    case Element::event:
-      return eventBytes;
-    case Element::keyframe:
-      return keyframeBytes;
-    case Element::status:
-      return statusBytes;
-    case Element::rawSample:
-      return rawSampleBytes;
-    case Element::rawCounts:
-      return rawCountsBytes;
-  }
-  return 0;
-}
-
-const char* numberType(Element element) {
-  switch (element) {
-    case Element::u1:
-      return "u1";
-    case Element::u2:
-      return "u2";
-    case Element::u4:
-      return "u4";
-    case Element::u8:
-      return "u8";
-    case Element::i8:
-      return "i8";
-    case Element::f4:
-      return "f4";
-    case Element::f8:
-      return "f8";
-    default:
-      return "";
-  }
-}
-
 namespace {
-
-template <class T>
-struct Stored;
-template <>
-struct Stored<bool> {
-  static constexpr Element element = Element::u1;
-};
-template <>
-struct Stored<std::uint8_t> {
-  static constexpr Element element = Element::u1;
-};
-template <>
-struct Stored<InstrumentKind> {
-  static constexpr Element element = Element::u1;
-};
-template <>
-struct Stored<Cautery> {
-  static constexpr Element element = Element::u1;
-};
-template <>
-struct Stored<Phase> {
-  static constexpr Element element = Element::u1;
-};
-template <>
-struct Stored<std::uint16_t> {
-  static constexpr Element element = Element::u2;
-};
-template <>
-struct Stored<std::uint32_t> {
-  static constexpr Element element = Element::u4;
-};
-template <>
-struct Stored<std::uint64_t> {
-  static constexpr Element element = Element::u8;
-};
-template <>
-struct Stored<std::int64_t> {
-  static constexpr Element element = Element::i8;
-};
-template <>
-struct Stored<float> {
-  static constexpr Element element = Element::f4;
-};
-template <>
-struct Stored<double> {
-  static constexpr Element element = Element::f8;
-};
 
 /// Makes a column of every visited value.
 struct Collect {
@@ -140,16 +45,9 @@ struct Collect {
  private:
   template <class T>
   void add(const char* folder, const char* name, const char* unit, bool vector, std::size_t width) {
-    Column c;
-    c.path = fmt::format("{}/{}", folder, name);
-    c.element = Stored<T>::element;
-    c.stream = stream;
-    c.vector = vector;
-    c.width = width;
-    c.chunkRows = stream == Stream::ticks ? layout.ticksPerBlock : layout.stepsPerBlock;
-    c.deflate = layout.deflateLevel;
-    c.unit = std::string(unit);
-    layout.columns.push_back(std::move(c));
+    const std::uint64_t chunkRows = stream == Stream::ticks ? layout.ticksPerBlock : layout.stepsPerBlock;
+    layout.columns.push_back({fmt::format("{}/{}", folder, name), storedAs<T>(), stream, vector, width, chunkRows,
+                              layout.deflateLevel, true, unit});
   }
 };
 
@@ -224,24 +122,15 @@ Layout::Layout(const AttemptHeader& header)
   visitTick(samples, outcome, collect);
   tickColumns = columns.size();
   collect.stream = Stream::steps;
-  StateDigest digest;
-  BriefDigest shortDigest;
-  std::uint64_t forces = 0;
-  float lateness = 0.0F;
-  StepResult result;
-  RecordedProcedure recorded;
-  visitStep(digest, shortDigest, forces, lateness, result, recorded, collect);
+  RecordedStep step;
+  visitStep(step.digest, step.brief, step.forces, step.lateness, step.result, step.procedure, collect);
   stepColumns = columns.size() - tickColumns;
+  const auto isResult = [](const Column& c) { return c.path.starts_with("/observables"); };
+  results = static_cast<std::size_t>(std::find_if(columns.begin(), columns.end(), isResult) - columns.begin());
 
   const auto irregular = [this](const char* path, Element element, Stream stream, std::uint64_t chunkRows,
                                 unsigned deflate) {
-    Column c;
-    c.path = std::string(path);
-    c.element = element;
-    c.stream = stream;
-    c.chunkRows = chunkRows;
-    c.deflate = deflate;
-    columns.push_back(std::move(c));
+    columns.push_back({path, element, stream, false, 1, chunkRows, deflate, true, ""});
     return columns.size() - 1;
   };
   events = irregular("/events", Element::event, Stream::events, 32, 0);
@@ -255,6 +144,8 @@ Layout::Layout(const AttemptHeader& header)
     columns.back().width = deviceSamples ? 1 : 0;
     columns.back().chained = false;
   }
+  status = {"/status", Element::status, {}, false, 1, 1, 0, false, ""};
+  rawCounts = {rawCountsPath, Element::rawCounts, {}, false, deviceSamples ? 1U : 0U, rawChunkRows, 0, false, ""};
 }
 
 }  // namespace calot::recorder

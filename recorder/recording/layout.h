@@ -4,10 +4,7 @@
 // So are the root attributes: written, read, hashed and exported by the same list.
 #pragma once
 
-#include <fmt/format.h>
-
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <span>
@@ -41,9 +38,57 @@ enum class Element : std::uint8_t { u1, u2, u4, u8, i8, f4, f8, event, keyframe,
 enum class Stream : std::uint8_t { ticks, steps, events, keyframes, keyframeWords, rawLeft, rawRight };
 inline constexpr std::size_t streamCount = 7;
 
-std::size_t elementBytes(Element element);
-/// "u1" to "f8", as NumPy and the engines' protocol name them; empty for what is a row of several.
-const char* numberType(Element element);
+/// Packed rows of the compound data sets (bytes).
+inline constexpr std::size_t eventBytes = 45;
+inline constexpr std::size_t keyframeBytes = 32;
+inline constexpr std::size_t statusBytes = 82;
+inline constexpr std::size_t rawSampleBytes = 99;
+inline constexpr std::size_t rawCountsBytes = 32;
+
+inline constexpr std::size_t elementBytes(Element element) {
+  constexpr std::array<std::size_t, 12> bytes{
+      1, 2, 4, 8, 8, 4, 8, eventBytes, keyframeBytes, statusBytes, rawSampleBytes, rawCountsBytes};
+  return bytes[static_cast<std::size_t>(element)];
+}
+/// "u1" to "f8", as NumPy and the engines' protocol name them. @pre the element is a number
+inline constexpr const char* numberType(Element element) {
+  constexpr std::array<const char*, 7> names{"u1", "u2", "u4", "u8", "i8", "f4", "f8"};
+  return names[static_cast<std::size_t>(element)];
+}
+/// Stored type of a number, flag or choice.
+template <class T>
+constexpr Element storedAs() {
+  constexpr bool isSigned = std::is_signed_v<T> && !std::is_enum_v<T>;
+  if (std::is_floating_point_v<T>) return sizeof(T) == 4 ? Element::f4 : Element::f8;
+  static_assert(!isSigned || std::is_floating_point_v<T> || sizeof(T) == 8);
+  if (isSigned) return Element::i8;
+  return sizeof(T) == 1 ? Element::u1 : sizeof(T) == 2 ? Element::u2 : sizeof(T) == 4 ? Element::u4 : Element::u8;
+}
+
+/// Calls use(number) with a stored number.
+template <class Use>
+void withNumber(Element element, const std::byte* at, Use use) {
+  const auto as = [&]<class T>(T number) {
+    std::memcpy(&number, at, sizeof number);
+    use(number);
+  };
+  switch (element) {
+    case Element::u1:
+      return as(std::uint8_t{});
+    case Element::u2:
+      return as(std::uint16_t{});
+    case Element::u4:
+      return as(std::uint32_t{});
+    case Element::u8:
+      return as(std::uint64_t{});
+    case Element::i8:
+      return as(std::int64_t{});
+    case Element::f4:
+      return as(float{});
+    default:
+      return as(double{});
+  }
+}
 
 struct Column {
   std::string path;
@@ -59,13 +104,6 @@ struct Column {
   [[nodiscard]] std::size_t rowBytes() const { return elementBytes(element) * static_cast<std::size_t>(width); }
 };
 
-/// Packed rows of the compound data sets.
-inline constexpr std::size_t eventBytes = 45;
-inline constexpr std::size_t keyframeBytes = 32;
-inline constexpr std::size_t statusBytes = 82;
-inline constexpr std::size_t rawSampleBytes = 99;
-inline constexpr std::size_t rawCountsBytes = 32;
-
 /// A golden recording: a digest in the place of forces; no observables, keyframes, fields' digests.
 inline bool isMinimal(const AttemptHeader& header) { return header.purpose == "golden"; }
 
@@ -74,8 +112,10 @@ struct Layout {
   std::vector<Column> columns;
   std::size_t tickColumns = 0;                                   ///< the first ones
   std::size_t stepColumns = 0;                                   ///< the next ones
+  std::size_t results = 0;                                       ///< place of the first of those below /observables
   std::size_t events = 0, keyframeIndex = 0, keyframeWords = 0;  ///< places of the others
   std::array<std::size_t, handCount> raw{};
+  Column status, rawCounts;     ///< a row a flush
   bool deviceSamples = false;   ///< there is a /device
   bool minimal = false;         ///< isMinimal()
   bool brief = false;           ///< one digest of State and short ones of fields, in the place of those of components
@@ -218,11 +258,6 @@ void visitStep(Digest& digest, Brief& brief, Forces& forces, Lateness& lateness,
   if (visit.layout.procedure) visitProcedure(procedure, visit);
 }
 
-inline constexpr std::array<const char*, 3> operatorKindNames{"human", "kinematics", "performer"};
-inline constexpr std::array<const char*, 2> modeNames{"practice", "assessment"};
-inline constexpr std::array<const char*, 6> outcomeNames{"running",   "completed", "time_limit",
-                                                         "abandoned", "stopped",   "technical_failure"};
-
 /// Lists the root attributes in the order of the chain. Values: std::string, std::uint32_t, std::uint64_t,
 /// std::int64_t, double; `choice` is a string from a list.
 template <class Header, class Visitor>
@@ -257,109 +292,24 @@ void visitAttributes(Header& h, Visitor& visit) {
   visit("scene_minor", h.sceneMinor);
 }
 
-/// Reads every visited value from one row of its column, and finds the first that no writer makes. `place(column)` is
-/// where that column's row lies.
-template <class Place>
-struct RowVisitor {
-  const Layout& layout;
-  Place place;  ///< where the row of a column lies, by its number
-  std::size_t index = 0;
-  bool input = false;  ///< samples must be finite; results too, but where the simulation ran away (unfinite)
-  std::string fault;
-  std::string unfinite = {};  ///< first result that is no finite number
-
+/// Hands root attributes to use(name, value); a choice is the string that it is stored as.
+template <class Use>
+struct AttributeValues {
+  Use use;
   template <class T>
-  void operator()(const char*, const char*, const char*, T& value) {
-    std::memcpy(&value, at(), sizeof value);
-    check(value);
-    ++index;
+  void operator()(const char* name, const T& value) {
+    use(name, value);
   }
-  void operator()(const char*, const char*, const char*, bool& value) {
-    const auto byte = std::to_integer<unsigned>(*at());
-    if (byte > 1) fail("is neither 0 nor 1");
-    value = byte != 0;
-    ++index;
-  }
-  void operator()(const char*, const char*, const char*, InstrumentKind& value) {
-    const auto number = std::to_integer<unsigned>(*at());
-    if (!isInstrumentNumber(number)) fail("is no known instrument");
-    value = static_cast<InstrumentKind>(number);
-    ++index;
-  }
-  void operator()(const char*, const char*, const char*, Cautery& value) {
-    choice(value, Cautery::onTissue, "is no known state of the cautery");
-  }
-  void operator()(const char*, const char*, const char*, Phase& value) {
-    choice(value, Phase::done, "is no known phase");
-  }
-  void operator()(const char*, const char*, const char*, Vec3& v) {
-    std::memcpy(v.data(), at(), 3 * sizeof(double));
-    if (!v.allFinite()) failUnfinite();
-    ++index;
-  }
-  void operator()(const char*, const char*, const char*, Quat& q) {
-    std::array<double, 4> wxyz{};
-    std::memcpy(wxyz.data(), at(), sizeof wxyz);
-    q = Quat(wxyz[0], wxyz[1], wxyz[2], wxyz[3]);
-    const double norm = std::sqrt(wxyz[0] * wxyz[0] + wxyz[1] * wxyz[1] + wxyz[2] * wxyz[2] + wxyz[3] * wxyz[3]);
-    if (input && !(std::abs(norm - 1.0) <= 1e-3)) fail("is not a unit quaternion within 1e-3");
-    if (!std::isfinite(norm)) failUnfinite();
-    ++index;
-  }
-  template <class T>
-  void outside(const char*, const char*, const char*, T& value) {
-    std::memcpy(&value, at(), sizeof value);
-    if (!std::isfinite(value)) fail("is not finite");
-    if (value < T{}) fail("is negative");
-    ++index;
-  }
-  template <class T>
-  void list(const char*, const char*, const char*, std::vector<T>& values, std::size_t width) {
-    values.resize(width);
-    if (width > 0) std::memcpy(values.data(), at(), width * sizeof(T));
-    for (const T& v : values) check(v);
-    ++index;
-  }
-  template <class Part, class T>
-  void each(const char*, const char*, const char*, std::vector<Part>& parts, T Part::*member) {
-    parts.resize(layout.countOf(parts));
-    for (std::size_t i = 0; i < parts.size(); ++i) {
-      const std::byte* value = at() + i * sizeof(T);
-      if constexpr (std::is_same_v<T, bool>) {
-        const auto byte = std::to_integer<unsigned>(*value);
-        if (byte > 1) fail("is neither 0 nor 1");
-        parts[i].*member = byte != 0;
-      } else {
-        std::memcpy(&(parts[i].*member), value, sizeof(T));
-        check(parts[i].*member);
-      }
-    }
-    ++index;
-  }
-
- private:
-  [[nodiscard]] const std::byte* at() const { return place(index); }
-  /// A number from 0 to that of the last name.
-  template <class Choice>
-  void choice(Choice& value, Choice last, const char* why) {
-    const auto code = std::to_integer<unsigned>(*at());
-    if (code > static_cast<unsigned>(last)) fail(why);
-    value = static_cast<Choice>(code);
-    ++index;
-  }
-  template <class T>
-  void check(const T& value) {
-    if constexpr (std::is_floating_point_v<T>) {
-      if (!std::isfinite(value)) failUnfinite();
-    }
-  }
-  void failUnfinite() {
-    std::string& whose = input ? fault : unfinite;
-    if (whose.empty()) whose = fmt::format("{}[{{row}}] is not finite", layout.columns[index].path);
-  }
-  void fail(const char* why) {
-    if (fault.empty()) fault = fmt::format("{}[{{row}}] {}", layout.columns[index].path, why);
+  void constant(const char* name, const std::string& value) { use(name, value); }
+  template <class T, std::size_t N>
+  void choice(const char* name, const T& value, const std::array<const char*, N>& names) {
+    use(name, std::string(names[static_cast<std::size_t>(value)]));
   }
 };
+template <class Use>
+void forEachAttribute(const AttemptHeader& header, Use use) {
+  AttributeValues<Use> values{std::move(use)};
+  visitAttributes(header, values);
+}
 
 }  // namespace calot::recorder

@@ -218,6 +218,9 @@ void checkShape(const std::filesystem::path& path, const hdf5::Id& file, std::ui
   if (root.valid()) ShapeCheck(path, fileBytes).group(root.get(), "/", 0);
 }
 
+namespace {
+
+/// hashlittle() of lookup3 (R. Jenkins, 2006), initial value 0: the checksum of HDF5's metadata.
 std::uint32_t lookup3(std::span<const unsigned char> bytes) {
   std::uint32_t a = 0xdeadbeefU + static_cast<std::uint32_t>(bytes.size()), b = a, c = a;
   if (bytes.empty()) return c;
@@ -251,6 +254,8 @@ std::uint32_t lookup3(std::span<const unsigned char> bytes) {
   return c;
 }
 
+/// Clears the flag of an active writer in the superblock (version 2 or 3, 8-byte offsets) of a file's image.
+/// @return false if it is no such superblock.
 bool markClosed(std::span<unsigned char> image) {
   constexpr std::size_t version = 8, sizeOfOffsets = 9, flags = 11, checksum = 44;
   if (image.size() < checksum + 4 || image[version] < 2 || image[version] > 3 || image[sizeOfOffsets] != 8)
@@ -259,6 +264,18 @@ bool markClosed(std::span<unsigned char> image) {
   const std::uint32_t sum = lookup3(image.first(checksum));
   std::memcpy(&image[checksum], &sum, sizeof sum);
   return true;
+}
+
+}  // namespace
+
+std::string closedImage(hdf5::Id& file) {
+  if (H5Fflush(file.get(), H5F_SCOPE_LOCAL) < 0) return "";
+  const ssize_t size = H5Fget_file_image(file.get(), nullptr, 0);
+  if (size <= 0) return "";
+  std::string image(static_cast<std::size_t>(size), '\0');
+  const bool done = H5Fget_file_image(file.get(), image.data(), image.size()) == size && file.reset() &&
+                    markClosed({reinterpret_cast<unsigned char*>(image.data()), image.size()});
+  return done ? image : "";
 }
 
 }  // namespace calot::recorder

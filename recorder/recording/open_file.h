@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <span>
+#include <string>
 
 #include "recorder/recording/hdf5.h"
 #include "recorder/recording/reader.h"
@@ -39,11 +39,7 @@ inline constexpr std::uint64_t maxChunkBytes = std::uint64_t{4} << 20U;
 /// @throws Error damaged naming the object
 void checkShape(const std::filesystem::path& path, const hdf5::Id& file, std::uint64_t fileBytes);
 
-/// hashlittle() of lookup3 (R. Jenkins, 2006), initial value 0: the checksum of HDF5's metadata.
-std::uint32_t lookup3(std::span<const unsigned char> bytes);
-
-/// Clears the flag of an active writer in the superblock (version 2 or 3, 8-byte offsets) of a file's image.
-/// @return false if it is no such superblock.
-bool markClosed(std::span<unsigned char> image);
+/// Closes a file that was built in memory. @return its bytes, as of a file that nobody writes; empty where that fails
+std::string closedImage(hdf5::Id& file);
 
 }  // namespace calot::recorder

@@ -132,6 +132,9 @@ const RecordedStep& Recording::step(std::uint64_t n) {
   return impl.current;
 }
 
+const Layout& Recording::layout() const { return *impl_->layout; }
+const std::vector<std::byte>& Recording::flushRows(std::size_t column) const { return impl_->block->column[column]; }
+
 std::optional<std::size_t> Recording::keyframeAtOrBefore(std::uint64_t step) const {
   const std::vector<std::uint64_t>& steps = keyframeSteps();
   const auto after = std::upper_bound(steps.begin(), steps.end(), step);

@@ -17,6 +17,8 @@
 
 namespace calot::recorder {
 
+struct Layout;
+
 /// A State's digest in the short form that recordings from format version 2 on hold (schemas/recording.md, "Steps").
 struct BriefDigest {
   std::uint64_t state = 0;           ///< XXH3-64 of the digests of components
@@ -113,6 +115,12 @@ class Recording {
   /// next call.
   /// @pre n < stepCount()
   const RecordedStep& step(std::uint64_t n);
+
+  /// Its columns, and the bytes of all rows of one of them (Layout::columns) in the flush of the step that was read
+  /// last.
+  /// @pre the column is one of ticks, steps or events
+  [[nodiscard]] const Layout& layout() const;
+  [[nodiscard]] const std::vector<std::byte>& flushRows(std::size_t column) const;
 
   /// Steps after which there is a keyframe, rising.
   [[nodiscard]] const std::vector<std::uint64_t>& keyframeSteps() const;

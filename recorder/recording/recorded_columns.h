@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Data sets of a recording, for readers of whole columns such as the Python module.
+// Data sets of a recording as whole columns, for the Python module, and as CSV files.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -29,10 +31,6 @@ struct RecordedColumns {
   std::vector<std::byte> events;      ///< packed as schemas/recording.md says: 45 bytes each
 };
 
-/// Bytes of an event, and of a device's raw sample, as they are packed.
-inline constexpr std::size_t packedEventBytes = 45;
-inline constexpr std::size_t packedRawSampleBytes = 99;
-
 /// Events in their packed form.
 std::vector<std::byte> packedEvents(const std::vector<Event>& events);
 
@@ -41,5 +39,14 @@ RecordedColumns recordedColumns(Recording& recording);
 
 /// A hand's raw samples, packed: 99 bytes each. @throws Error as Recording::rawSamples() does
 std::vector<std::byte> packedRawSamples(Recording& recording, Hand hand);
+
+/// Writes a recording as CSV files into a folder: a file for each group of data sets (ticks_left.csv, camera.csv,
+/// steps.csv, observables_organs.csv ...), events.csv and attempt.csv. A row a tick or step; units stand in the header
+/// in round brackets; numbers have 17 significant digits (9 for those stored in 4 bytes), so that reading them gives
+/// the same bits. The files get their names only when all are written.
+/// @param force replace files that are there. @param progress called with steps done, or empty.
+/// @return the files' paths. @throws Error invalid (files are there and force is not set), damaged, failure.
+std::vector<std::filesystem::path> exportCsv(Recording& recording, const std::filesystem::path& folder, bool force,
+                                             const std::function<void(std::uint64_t)>& progress = {});
 
 }  // namespace calot::recorder

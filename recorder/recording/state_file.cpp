@@ -25,7 +25,8 @@ void writeAttribute(hid_t at, const char* name, std::uint64_t value) {
 }
 
 template <class T>
-bool writeArray(hid_t at, const char* name, const std::vector<T>& values, hid_t fileType, hid_t memoryType) {
+bool writeArray(hid_t at, const char* name, const std::vector<T>& values) {
+  const hdf5::Id type = hdf5::elementType(storedAs<T>());
   const hsize_t size = values.size();
   const hdf5::Id space = hdf5::space(H5Screate_simple(1, &size, nullptr));
   const hdf5::Id properties = hdf5::properties(H5Pcreate(H5P_DATASET_CREATE));
@@ -35,14 +36,13 @@ bool writeArray(hid_t at, const char* name, const std::vector<T>& values, hid_t 
     H5Pset_fletcher32(properties.get());
   }
   const hdf5::Id set =
-      hdf5::dataset(H5Dcreate2(at, name, fileType, space.get(), H5P_DEFAULT, properties.get(), H5P_DEFAULT));
+      hdf5::dataset(H5Dcreate2(at, name, type.get(), space.get(), H5P_DEFAULT, properties.get(), H5P_DEFAULT));
   return set.valid() &&
-         (size == 0 || H5Dwrite(set.get(), memoryType, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) >= 0);
+         (size == 0 || H5Dwrite(set.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) >= 0);
 }
 
 template <class T>
-void readArray(const std::filesystem::path& file, const std::string& place, hid_t set, hid_t memoryType,
-               std::vector<T>& out) {
+void readArray(const std::filesystem::path& file, const std::string& place, hid_t set, std::vector<T>& out) {
   const hdf5::Id space = hdf5::space(H5Dget_space(set));
   hsize_t size = 0;
   if (H5Sget_simple_extent_ndims(space.get()) != 1 || H5Sget_simple_extent_dims(space.get(), &size, nullptr) < 0 ||
@@ -50,7 +50,8 @@ void readArray(const std::filesystem::path& file, const std::string& place, hid_
     throw hdf5::damaged(file, place, "is no list of numbers");
   }
   out.resize(size);
-  if (size > 0 && H5Dread(set, memoryType, H5S_ALL, H5S_ALL, H5P_DEFAULT, out.data()) < 0) {
+  const hdf5::Id type = hdf5::elementType(storedAs<T>());
+  if (size > 0 && H5Dread(set, type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, out.data()) < 0) {
     throw hdf5::damaged(file, place, hdf5::reason());
   }
 }
@@ -64,6 +65,15 @@ std::uint64_t readAttribute(const std::filesystem::path& file, hid_t at, const c
     throw hdf5::damaged(file, name, "this attribute is missing: is this a state that `calot state` wrote?");
   }
   return value;
+}
+
+/// The first name in a group.
+std::string onlyMember(const std::filesystem::path& file, const std::string& place, const hdf5::Id& group) {
+  char name[256] = {};
+  if (!group.valid() ||
+      H5Lget_name_by_idx(group.get(), ".", H5_INDEX_NAME, H5_ITER_INC, 0, name, sizeof name, H5P_DEFAULT) < 0)
+    throw hdf5::damaged(file, place, "is missing, or holds no field");
+  return name;
 }
 
 /// Reads everything; runs in the child.
@@ -81,26 +91,18 @@ StateFile readHere(const std::filesystem::path& path) {
   for (std::uint64_t f = 0; f < count; ++f) {
     const std::string group = fmt::format("/{:05}", f);
     const hdf5::Id open = hdf5::group(H5Gopen2(file.get(), group.c_str(), H5P_DEFAULT));
-    char name[256] = {};
-    if (!open.valid() ||
-        H5Lget_name_by_idx(open.get(), ".", H5_INDEX_NAME, H5_ITER_INC, 0, name, sizeof name, H5P_DEFAULT) < 0) {
-      throw hdf5::damaged(path, group, "is missing");
-    }
-    const hdf5::Id component = hdf5::group(H5Gopen2(open.get(), name, H5P_DEFAULT));
-    char field[256] = {};
-    if (!component.valid() ||
-        H5Lget_name_by_idx(component.get(), ".", H5_INDEX_NAME, H5_ITER_INC, 0, field, sizeof field, H5P_DEFAULT) < 0) {
-      throw hdf5::damaged(path, group, "holds no field");
-    }
+    const std::string name = onlyMember(path, group, open);
+    const hdf5::Id component = hdf5::group(H5Gopen2(open.get(), name.c_str(), H5P_DEFAULT));
+    const std::string field = onlyMember(path, group, component);
     const std::string place = group + "/" + name + "/" + field;
-    const hdf5::Id set = hdf5::dataset(H5Dopen2(component.get(), field, H5P_DEFAULT));
+    const hdf5::Id set = hdf5::dataset(H5Dopen2(component.get(), field.c_str(), H5P_DEFAULT));
     if (!set.valid()) throw hdf5::damaged(path, place, hdf5::reason());
     const hdf5::Id type = hdf5::type(H5Dget_type(set.get()));
-    NamedNumbers numbers{std::string(name) + "/" + field, {}};
+    StateField numbers{name + "/" + field, {}};
     if (H5Tget_class(type.get()) == H5T_FLOAT) {
-      readArray(path, place, set.get(), H5T_NATIVE_DOUBLE, numbers.second.emplace<0>());
+      readArray(path, place, set.get(), numbers.values.emplace<0>());
     } else if (H5Tget_class(type.get()) == H5T_INTEGER) {
-      readArray(path, place, set.get(), H5T_NATIVE_UINT64, numbers.second.emplace<1>());
+      readArray(path, place, set.get(), numbers.values.emplace<1>());
     } else {
       throw hdf5::damaged(path, place, "holds no numbers");
     }
@@ -112,7 +114,7 @@ StateFile readHere(const std::filesystem::path& path) {
 }  // namespace
 
 void writeStateFile(const std::filesystem::path& file, std::uint64_t step, std::uint32_t simulationVersion,
-                    const std::vector<NamedNumbers>& fields, bool force) {
+                    const std::vector<StateField>& fields, bool force) {
   refuseOutput(file, force);
   std::string image;
   {
@@ -121,8 +123,7 @@ void writeStateFile(const std::filesystem::path& file, std::uint64_t step, std::
       if (!good)
         throw Error(ErrorKind::failure, Where{file.string()}, fmt::format("cannot be made ({})", hdf5::reason()));
     };
-    const hdf5::Id access = hdf5::properties(H5Pcreate(H5P_FILE_ACCESS));
-    H5Pset_libver_bounds(access.get(), H5F_LIBVER_V110, H5F_LIBVER_V110);
+    const hdf5::Id access = hdf5::fileAccess(0);
     // In memory until it is whole: HDF5 does not survive every disk that fills up.
     H5Pset_fapl_core(access.get(), std::size_t{1} << 20U, false);
     hdf5::Id out = hdf5::file(H5Fcreate(file.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get()));
@@ -134,24 +135,16 @@ void writeStateFile(const std::filesystem::path& file, std::uint64_t step, std::
     const hdf5::Id links = hdf5::properties(H5Pcreate(H5P_LINK_CREATE));
     H5Pset_create_intermediate_group(links.get(), 1);
     for (std::size_t f = 0; f < fields.size(); ++f) {
-      const std::string& name = fields[f].first;
+      const std::string& name = fields[f].name;
       const std::size_t slash = name.find('/');
       const std::string group = fmt::format("/{:05}/{}", f, name.substr(0, slash));
       const hdf5::Id at = hdf5::group(H5Gcreate2(out.get(), group.c_str(), links.get(), H5P_DEFAULT, H5P_DEFAULT));
       const std::string field = name.substr(slash + 1);
-      need(
-          at.valid() &&
-          (fields[f].second.index() == 0
-               ? writeArray(at.get(), field.c_str(), std::get<0>(fields[f].second), H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE)
-               : writeArray(at.get(), field.c_str(), std::get<1>(fields[f].second), H5T_STD_U64LE, H5T_NATIVE_UINT64)));
+      need(at.valid() && std::visit([&](const auto& values) { return writeArray(at.get(), field.c_str(), values); },
+                                    fields[f].values));
     }
-    need(H5Fflush(out.get(), H5F_SCOPE_LOCAL) >= 0);
-    const ssize_t size = H5Fget_file_image(out.get(), nullptr, 0);
-    need(size > 0);
-    image.resize(static_cast<std::size_t>(size));
-    need(H5Fget_file_image(out.get(), image.data(), image.size()) == size && out.reset());
-    // The image was taken while the file was open.
-    need(markClosed({reinterpret_cast<unsigned char*>(image.data()), image.size()}));
+    image = closedImage(out);
+    need(!image.empty());
   }
   writeText(file, image, force);
 }

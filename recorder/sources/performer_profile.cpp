@@ -3,100 +3,145 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <set>
 
 #include "recorder/base/errors.h"
 #include "recorder/base/file_bytes.h"
 #include "recorder/base/nearest_word.h"
-#include "recorder/sources/json_values.h"
+#include "recorder/base/record_reader.h"
 #include "sim/math/floating_point.h"
 
 namespace calot::recorder {
 namespace fs = std::filesystem;
-namespace {
 
-/// The parts of a profile and their values.
-std::vector<std::pair<const char*, JsonValues>> partsOf(PerformerProfile& p) {
-  const auto bounded = [](const char* key, double lower, double upper, auto& value) {
-    return JsonValue{{key, true, lower, upper}, &value};
-  };
+std::vector<Field> PerformerProfile::Motor::fields() {
+  using S = Motor;
   return {
-      {"motor",
-       {bounded("strokeSpeed", 0.001, 1, p.motor.strokeSpeed),
-        bounded("contactSpeed", 0.001, 0.5, p.motor.contactSpeed),
-        bounded("shortestStroke", 0.05, 5, p.motor.minStroke), bounded("endpointNoise", 0, 0.3, p.motor.endpointNoise),
-        bounded("tremorAmplitude", 0, 0.002, p.motor.tremorAmplitude),
-        bounded("tremorLower", 2, 20, p.motor.tremorLower), bounded("tremorUpper", 2, 20, p.motor.tremorUpper),
-        bounded("wanderAmplitude", 0, 0.005, p.motor.wanderAmplitude),
-        bounded("rollSpread", 0, 1.5, p.motor.rollSpread), bounded("workSpeed", 0.001, 0.5, p.motor.workSpeed),
-        bounded("overshootShare", 0, 1, p.motor.overshootShare), bounded("overshoot", 0, 0.5, p.motor.overshoot)}},
-      {"perception",
-       {bounded("reactionTime", 0, 3, p.perception.reactionTime),
-        bounded("reactionSpread", 0, 1, p.perception.reactionSpread),
-        bounded("lateralError", 0, 0.01, p.perception.lateralError),
-        bounded("depthError", 0, 0.02, p.perception.depthError),
-        bounded("finestError", 0, 0.005, p.perception.finestError)}},
-      {"decision",
-       {bounded("touches", 1, 50, p.decision.touches), bounded("pressDepth", 0, 0.02, p.decision.pressDepth),
-        bounded("pressSpread", 0, 0.01, p.decision.pressSpread), bounded("dwell", 0, 30, p.decision.dwell),
-        bounded("pause", 0, 30, p.decision.pause), bounded("pauseSpread", 0, 10, p.decision.pauseSpread),
-        bounded("corrections", 0, 10, p.decision.corrections), bounded("pullBack", 0.005, 0.1, p.decision.pullBack),
-        JsonValue{{"bimanual"}, &p.decision.bimanual}}},
-      {"operation",
-       {bounded("hesitationShare", 0, 1, p.operation.hesitationShare),
-        bounded("hesitation", 0, 10, p.operation.hesitation), bounded("pedalLag", 0, 2, p.operation.pedalLag),
-        bounded("keepOff", 0, 0.005, p.operation.keepOff), bounded("layer", 0.0001, 0.005, p.operation.layer),
-        bounded("cleared", 0.1, 1, p.operation.cleared), bounded("bareShare", 0, 1, p.operation.bareShare),
-        bounded("strokes", 0, 200, p.operation.strokes), bounded("burnSpeed", 0.0005, 0.1, p.operation.burnSpeed),
-        bounded("pull", 0, 0.05, p.operation.pull), bounded("stretch", 0.001, 0.05, p.operation.stretch),
-        bounded("slipShare", 0, 1, p.operation.slipShare), bounded("anticipation", 0, 1, p.operation.anticipation),
-        bounded("series", 1, 20, p.operation.series), bounded("window", 0, 200, p.operation.window),
-        bounded("patience", 10, 3600, p.operation.patience)}},
-      {"scope",
-       {bounded("reaction", 0.05, 5, p.scope.reaction), bounded("deadZone", 0, 1, p.scope.deadZone),
-        bounded("horizonError", 0, 0.5, p.scope.horizonError)}}};
+      object("motor", "Motor control of a hand"),
+      {"strokeSpeed", at<S, &S::strokeSpeed>, "m/s", within(0.001, 1),
+       "Mean speed of a free stroke, whose greatest is 1.875 times that"},
+      {"contactSpeed", at<S, &S::contactSpeed>, "m/s", within(0.001, 0.5), "Mean speed of a stroke near tissue"},
+      {"shortestStroke", at<S, &S::minStroke>, "s", within(0.05, 5), "Shortest duration of a stroke"},
+      {"endpointNoise", at<S, &S::endpointNoise>, "1", within(0, 0.3),
+       "Standard deviation of a stroke's end on each axis, per length of the stroke"},
+      {"tremorAmplitude", at<S, &S::tremorAmplitude>, "m", within(0, 0.002),
+       "Tremor at the tip, root mean square of each axis"},
+      {"tremorLower", at<S, &S::tremorLower>, "Hz", within(2, 20), "Lower end of the tremor's band"},
+      {"tremorUpper", at<S, &S::tremorUpper>, "Hz", within(2, 20), "Upper end of the tremor's band"},
+      {"wanderAmplitude", at<S, &S::wanderAmplitude>, "m", within(0, 0.005),
+       "Slow movement (0.1 to 0.8 Hz) at the tip, root mean square of each axis"},
+      {"rollSpread", at<S, &S::rollSpread>, "rad", within(0, 1.5), "Standard deviation of the roll at a target"},
+      {"workSpeed", at<S, &S::workSpeed>, "m/s", within(0.001, 0.5), "Mean speed of the energised hook in tissue"},
+      {"overshootShare", at<S, &S::overshootShare>, "1", within(0, 1), "Share of strokes that go too far"},
+      {"overshoot", at<S, &S::overshoot>, "1", within(0, 0.5), "Overshoot, per length of the stroke"},
+  };
 }
 
-const ObjectRule profileRule{"",
-                             {{"format"},
-                              {"formatVersion", true, 1, 1},
-                              {"name"},
-                              {"version"},
-                              {"summary"},
-                              {"motor"},
-                              {"perception"},
-                              {"decision"},
-                              {"operation"},
-                              {"scope", false}}};
+std::vector<Field> PerformerProfile::Perception::fields() {
+  using S = Perception;
+  return {
+      object("perception", "Perception"),
+      {"reactionTime", at<S, &S::reactionTime>, "s", within(0, 3),
+       "Mean reaction time before each stroke that a look corrects"},
+      {"reactionSpread", at<S, &S::reactionSpread>, "s", within(0, 1), "Standard deviation of the reaction time"},
+      {"lateralError", at<S, &S::lateralError>, "m", within(0, 0.01),
+       "Standard deviation of a target's perceived position across the view"},
+      {"depthError", at<S, &S::depthError>, "m", within(0, 0.02),
+       "Standard deviation of a target's perceived position along the view"},
+      {"finestError", at<S, &S::finestError>, "m", within(0, 0.005),
+       "Error on each axis that repeated observation does not reduce"},
+  };
+}
 
-}  // namespace
+std::vector<Field> PerformerProfile::Decision::fields() {
+  using S = Decision;
+  return {
+      object("decision", "Decisions in the task"),
+      {"touches", at<S, &S::touches>, "", within(1, 50), "Targets for each hand"},
+      {"pressDepth", at<S, &S::pressDepth>, "m", within(0, 0.02),
+       "Mean depth to which the tip is pressed below the surface in the reference configuration"},
+      {"pressSpread", at<S, &S::pressSpread>, "m", within(0, 0.01), "Standard deviation of that depth"},
+      {"dwell", at<S, &S::dwell>, "s", within(0, 30), "Time for which the tip stays pressed in"},
+      {"pause", at<S, &S::pause>, "s", within(0, 30), "Mean pause before each target"},
+      {"pauseSpread", at<S, &S::pauseSpread>, "s", within(0, 10), "Standard deviation of the pause"},
+      {"corrections", at<S, &S::corrections>, "", within(0, 10),
+       "Further strokes before the press, each after a look that halves the seen error"},
+      {"pullBack", at<S, &S::pullBack>, "m", within(0.005, 0.1),
+       "Distance from a target, towards the port, at which its approach begins"},
+      {"bimanual", at<S, &S::bimanual>, "Both hands at once; otherwise alternating"},
+  };
+}
 
-std::vector<ObjectRule> performerRules() {
-  PerformerProfile profile;
-  std::vector<ObjectRule> rules{profileRule};
-  for (const auto& [name, values] : partsOf(profile)) rules.push_back(ruleOf(name, values));
-  return rules;
+std::vector<Field> PerformerProfile::Operation::fields() {
+  using S = Operation;
+  return {
+      object("operation", "Clearing, dividing and freeing of tissue"),
+      {"hesitationShare", at<S, &S::hesitationShare>, "1", within(0, 1), "Share of decisions that a pause precedes"},
+      {"hesitation", at<S, &S::hesitation>, "s", within(0, 10), "Mean duration of that pause"},
+      {"pedalLag", at<S, &S::pedalLag>, "s", within(0, 2),
+       "Mean delay of releasing the pedal after the end of the hook's stroke"},
+      {"keepOff", at<S, &S::keepOff>, "m", within(0, 0.005), "Intended distance between the hook's metal and a vessel"},
+      {"layer", at<S, &S::layer>, "m", within(0.0001, 0.005), "Fat taken off by one stroke"},
+      {"cleared", at<S, &S::cleared>, "1", within(0.1, 1),
+       "Share of a vessel's length, from 22 % on, that is to be cleared"},
+      {"bareShare", at<S, &S::bareShare>, "1", within(0, 1),
+       "Share of a vessel's stations that must be bare before it counts as cleared"},
+      {"strokes", at<S, &S::strokes>, "", within(0, 200), "Largest number of strokes to clear one vessel"},
+      {"burnSpeed", at<S, &S::burnSpeed>, "m/s", within(0.0005, 0.1),
+       "Mean speed of the energised hook through connective tissue"},
+      {"pull", at<S, &S::pull>, "m", within(0, 0.05), "Pull on the specimen by the hand that holds it"},
+      {"stretch", at<S, &S::stretch>, "m", within(0.001, 0.05),
+       "Length of a strand of the bed that looks too taut, so that the holding hand eases off"},
+      {"slipShare", at<S, &S::slipShare>, "1", within(0, 1), "Share of looks at which the hold is released by mistake"},
+      {"anticipation", at<S, &S::anticipation>, "1", within(0, 1),
+       "Share of the reaction time by which it looks before a stroke is over"},
+      {"series", at<S, &S::series>, "", within(1, 20), "Strokes through fat made by one picture"},
+      {"window", at<S, &S::window>, "", within(0, 200),
+       "Largest number of strokes to clear the triangle between the vessels"},
+      {"patience", at<S, &S::patience>, "s", within(10, 3600), "Time after which the attempt is given up"},
+  };
+}
+
+std::vector<Field> ScopeSkill::fields() {
+  using S = ScopeSkill;
+  return {
+      object("scope", "The assistant who holds the endoscope, where it moves"),
+      {"reaction", at<S, &S::reaction>, "s", within(0.05, 5), "Time from one look at the picture to the next"},
+      {"deadZone", at<S, &S::deadZone>, "1", within(0, 1),
+       "Distance that the work may leave the picture's centre, in halves of the picture's height"},
+      {"horizonError", at<S, &S::horizonError>, "rad", within(0, 0.5),
+       "Root mean square of the camera head's rotation from level"},
+  };
+}
+
+std::vector<Field> PerformerProfile::fields() {
+  using S = PerformerProfile;
+  return {
+      object(
+          "",
+          "Profile of a synthetic operator: motor control, perception, decisions. It never holds a checkpoint's value"),
+      fileFormat("calot-performer"),
+      fileFormatVersion(),
+      {"name", at<S, &S::name>, TextRule{64}, "The profile's name; logged in every recording"},
+      {"version", at<S, &S::version>, TextRule{32}, "Changes with every change of a value; logged in every recording"},
+      {"summary", at<S, &S::summary>, TextRule{500}, "One sentence for people"},
+      {"motor", at<S, &S::motor>, "Motor control of a hand"},
+      {"perception", at<S, &S::perception>, "Perception"},
+      {"decision", at<S, &S::decision>, "Decisions in the task"},
+      {"operation", at<S, &S::operation>, "Clearing, dividing and freeing of tissue"},
+      optional("scope", at<S, &S::scope>, "The assistant who holds the endoscope, where it moves"),
+  };
 }
 
 PerformerProfile loadPerformer(const fs::path& file) {
   const FloatingPointScope environment;
   const std::string name = file.filename().string();
   const nlohmann::json json = parseStrictJson(readFileBytes(file, name, std::size_t{4} << 20U), name);
-  const JsonObject object = JsonPlace(json, name).object(profileRule);
-  if (object.at("format").text(64) != "calot-performer") object.at("format").fail("\"calot-performer\" is wanted");
-  std::uint32_t formatVersion = 0;
-  object.read("formatVersion", formatVersion);
+  const JsonPlace root(json, name);
   PerformerProfile profile;
-  object.read("name", profile.name, 64);
-  object.read("version", profile.version, 32);
-  object.read("summary", profile.summary, 500);
-
-  for (const auto& [part, values] : partsOf(profile)) {
-    if (object.has(part)) readValues(object.at(part), values);
-  }
+  readRecord(root, profile);
   if (profile.motor.tremorUpper < profile.motor.tremorLower)
-    JsonPlace(json, name, "/motor/tremorUpper").fail("below \"tremorLower\"");
+    root.at("motor").at("tremorUpper").fail("below \"tremorLower\"");
   return profile;
 }
 

@@ -155,52 +155,82 @@ namespace {
 
 constexpr std::size_t maxMapBytes = 1U << 20U;
 constexpr std::size_t maxMotionBytes = std::size_t{1} << 30U;
-constexpr std::size_t maxName = 200;
 constexpr double maxMotion = 1e6;  // s
 constexpr double unitLength = 1e-2;
 constexpr double root = 0.70710678118654752440;  // of 1/2
 
-const ObjectRule rootRule{"",
-                          {{"format"},
-                           {"formatVersion", true, 1, 1},
-                           {"device", false},
-                           {"frame"},
-                           {"length"},
-                           {"delimiter", false},
-                           {"rate", false, 1, 100000},
-                           {"time", false},
-                           {"left", false},
-                           {"right", false}}};
-const ObjectRule timeRule{"time", {{"column"}, {"unit"}}};
-const ObjectRule handRule{"hand", {{"position"}, {"quaternion", false}, {"matrix", false}, {"axis", false}}};
+constexpr TextRule columnName{200}, word{60, "[!-~]+", "a word without blanks is wanted"};
+
+const FieldWords lengths{{"m", 0}, {"cm", 1}, {"mm", 2}}, times{{"s", 0}, {"ms", 1}, {"us", 2}, {"ns", 3}},
+    axes{{"z", 0}, {"-z", 1}, {"x", 2}, {"-x", 3}, {"y", 4}, {"-y", 5}};
+
+std::vector<Field> timeFields() {
+  using S = ColumnMap;
+  return {
+      object("time", "Column of times, read to the picosecond; each is after the one before"),
+      {"column", at<S, &S::time>, columnName, "Name of the column"},
+      {"unit", unstored<bool>, times, "Unit of the times"},
+  };
+}
+
+}  // namespace
+
+std::vector<Field> ColumnMap::HandColumns::fields() {
+  using S = HandColumns;
+  return {
+      object("hand", "Columns of one hand's instrument"),
+      Field("position", at<S, &S::position>, columnName, "x, y, z of the tip").items(3, 3),
+      optional("quaternion", at<S, &S::orientation>, columnName,
+               "w, x, y, z of the orientation of the instrument in the frame")
+          .items(4, 4),
+      optional("matrix", at<S, &S::orientation>, columnName,
+               "The same as a rotation matrix, row by row; either this or quaternion, or neither")
+          .items(9, 9),
+      optional("axis", unstored<bool>, axes, "The instrument's axis towards its tip, in its own frame; z if absent"),
+  };
+}
+
+std::vector<Field> ColumnMap::fields() {
+  using S = ColumnMap;
+  return {
+      object("",
+             "Columns of a CSV file of instrument motion, their units and their frame. "
+             "The file's first line names its columns"),
+      fileFormat("calot-columns"),
+      fileFormatVersion(),
+      optional("device", at<S, &S::device>, word,
+               "Class of tracker, a word without blanks: attempts of different classes are not compared"),
+      {"frame", at<S, &S::frame>, word,
+       "Frame of positions and orientations, a word without blanks: world, robot-base, camera; attempts of different "
+       "frames are not compared"},
+      {"length", unstored<bool>, lengths, "Unit of the positions"},
+      optional("delimiter", at<S, &S::delimiter>, FieldWords{{",", ','}, {";", ';'}, {"tab", '\t'}},
+               "Character between cells"),
+      optional("rate", at<S, &S::rate>, "Hz", within(1, 100000),
+               "Rate of rows, where there is no column of times. Either this or time"),
+      optional("time", keyGroup<S, timeFields>, "Column of times"),
+      optional("left", at<S, &S::hand, 0>, "Left hand"),
+      optional("right", at<S, &S::hand, 1>, "Right hand; at least one hand is wanted"),
+  };
+}
+
+namespace {
 
 /// Motions of one length are equal in ranks whenever they began, which a difference of two times in binary is not.
 double toPicosecond(double seconds) { return std::round(seconds * 1e12) / 1e12; }
 
-std::vector<std::string> namesOf(const JsonPlace& place, std::size_t count) {
-  std::vector<std::string> names;
-  for (const JsonPlace& name : place.list(count, count)) names.push_back(name.text(maxName));
-  return names;
-}
-
-ColumnMap::HandColumns handOf(const JsonPlace& place) {
-  const JsonObject o = place.object(handRule);
-  ColumnMap::HandColumns hand;
-  const std::vector<std::string> position = namesOf(o.at("position"), 3);
-  hand.position = {position[0], position[1], position[2]};
-  if (o.has("quaternion") && o.has("matrix")) o.fail("has a quaternion and a matrix; one of them is wanted");
-  if (o.has("quaternion")) hand.orientation = namesOf(o.at("quaternion"), 4);
-  if (o.has("matrix")) hand.orientation = namesOf(o.at("matrix"), 9);
-  if (o.has("axis")) {
-    if (hand.orientation.empty()) o.at("axis").fail("an axis without an orientation");
-    hand.axis = o.at("axis").word<Quat>({{"z", Quat::Identity()},
-                                         {"-z", Quat(0.0, 1.0, 0.0, 0.0)},
-                                         {"x", Quat(root, 0.0, root, 0.0)},
-                                         {"-x", Quat(root, 0.0, -root, 0.0)},
-                                         {"y", Quat(root, -root, 0.0, 0.0)},
-                                         {"-y", Quat(root, root, 0.0, 0.0)}});
-  }
-  return hand;
+void checkHand(const JsonPlace& place, ColumnMap::HandColumns& hand) {
+  if (place.has("quaternion") && place.has("matrix"))
+    place.fail("has a quaternion and a matrix; one of them is wanted");
+  if (!place.has("axis")) return;
+  if (hand.orientation.empty()) place.at("axis").fail("an axis without an orientation");
+  const Quat rotations[] = {Quat::Identity(),
+                            Quat(0.0, 1.0, 0.0, 0.0),
+                            Quat(root, 0.0, root, 0.0),
+                            Quat(root, 0.0, -root, 0.0),
+                            Quat(root, -root, 0.0, 0.0),
+                            Quat(root, root, 0.0, 0.0)};
+  hand.axis = rotations[place.at("axis").word(axes)];
 }
 
 /// Wanted columns in the order in which they are asked for.
@@ -247,11 +277,6 @@ class RowReader {
 
 }  // namespace
 
-const std::vector<ObjectRule>& columnMapRules() {
-  static const std::vector<ObjectRule> rules{rootRule, timeRule, handRule};
-  return rules;
-}
-
 ColumnMap readColumnMap(const std::filesystem::path& file) {
   const std::string name = file.filename().string();
   return parseColumnMap(readFileBytes(file, name, maxMapBytes), name);
@@ -259,32 +284,18 @@ ColumnMap readColumnMap(const std::filesystem::path& file) {
 
 ColumnMap parseColumnMap(std::span<const std::byte> bytes, const std::string& file) {
   const nlohmann::json json = parseStrictJson(bytes, file);
-  const JsonObject o = JsonPlace(json, file).object(rootRule);
-  (void)o.at("format").word<int>({{"calot-columns", 0}});
-  std::uint32_t version = 0;
-  o.read("formatVersion", version);
+  const JsonPlace place(json, file);
+  constexpr double metres[] = {1.0, 0.01, 0.001}, seconds[] = {1.0, 1e-3, 1e-6, 1e-9};
   ColumnMap map;
-  o.read("device", map.device, 60);
-  o.read("frame", map.frame, 60);
-  for (const auto& [key, text] : {std::pair{"device", &map.device}, std::pair{"frame", &map.frame}}) {
-    if (!o.has(key)) continue;
-    for (const char c : *text) {
-      if (c <= ' ' || c > '~') o.at(key).fail("a word without blanks is wanted");
-    }
-  }
-  map.metres = o.at("length").word<double>({{"m", 1.0}, {"cm", 0.01}, {"mm", 0.001}});
-  if (o.has("delimiter")) map.delimiter = o.at("delimiter").word<char>({{",", ','}, {";", ';'}, {"tab", '\t'}});
-  if (o.has("rate") == o.has("time")) o.fail("either \"rate\" (rows a second) or \"time\" (a column) is wanted");
-  o.read("rate", map.rate);
-  if (o.has("time")) {
-    const JsonObject time = o.at("time").object(timeRule);
-    time.read("column", map.time, maxName);
-    map.seconds = time.at("unit").word<double>({{"s", 1.0}, {"ms", 1e-3}, {"us", 1e-6}, {"ns", 1e-9}});
-  }
+  readRecord(place, map);
+  map.metres = metres[place.at("length").word(lengths)];
+  if (place.has("rate") == place.has("time"))
+    place.fail("either \"rate\" (rows a second) or \"time\" (a column) is wanted");
+  if (place.has("time")) map.seconds = seconds[place.at("time").at("unit").word(times)];
   for (std::size_t h = 0; h < map.hand.size(); ++h) {
-    if (o.has(handNames[h])) map.hand[h] = handOf(o.at(handNames[h]));
+    if (map.hand[h]) checkHand(place.at(handNames[h]), *map.hand[h]);
   }
-  if (!map.hand[0] && !map.hand[1]) o.fail("neither \"left\" nor \"right\": a hand is wanted");
+  if (!map.hand[0] && !map.hand[1]) place.fail("neither \"left\" nor \"right\": a hand is wanted");
   return map;
 }
 

@@ -17,8 +17,8 @@
 #include <string>
 #include <vector>
 
-#include "recorder/base/json_reader.h"
 #include "sim/math/linear.h"
+#include "sim/math/record.h"
 #include "sim/scene/samples.h"
 
 namespace calot::recorder {
@@ -74,6 +74,8 @@ struct ColumnMap {
     std::array<std::string, 3> position;   ///< x y z
     std::vector<std::string> orientation;  ///< none; 4: quaternion w x y z; 9: rotation matrix row by row
     Quat axis = Quat::Identity();          ///< rotates z onto the instrument's axis in its own frame, towards the tip
+
+    static std::vector<Field> fields();
   };
   std::string device;  ///< class of tracker, or empty
   std::string frame;
@@ -83,10 +85,9 @@ struct ColumnMap {
   std::string time;      ///< column
   double seconds = 1.0;  ///< of a unit of time
   std::array<std::optional<HandColumns>, handCount> hand;
-};
 
-/// The objects of a column map, for the reader and for the test that compares them with the published schema.
-const std::vector<ObjectRule>& columnMapRules();
+  static std::vector<Field> fields();
+};
 
 /// @throws Error (damaged) naming file and place.
 ColumnMap readColumnMap(const std::filesystem::path& file);
@@ -94,7 +95,7 @@ ColumnMap parseColumnMap(std::span<const std::byte> bytes, const std::string& fi
 
 /// Reads a CSV file by its map.
 /// @throws Error (damaged) naming the file's base name and the line: as readCsvNumbers(); times that do not increase,
-/// or go beyond 1e6 s;/// positions beyond 5 m; orientations that are none (quaternions of a length off 1 by more than
+/// or go beyond 1e6 s; positions beyond 5 m; orientations that are none (quaternions of a length off 1 by more than
 /// 1e-2, matrices off a rotation by more than 1e-3); one row alone.
 TrackedMotion readCsvMotion(const std::filesystem::path& file, const ColumnMap& map);
 TrackedMotion parseCsvMotion(std::span<const std::byte> bytes, const std::string& file, const ColumnMap& map);

@@ -209,6 +209,9 @@ class Force(ProgramTest):
         self.assertEqual((suite.get("name"), suite.get("tests"), suite.get("failures"), suite.get("errors")), ("calot golden check", "1", "0", "0"))
         self.assertEqual([case.get("name") for case in suite], [first["file"]])
         self.refused(2, "golden", "check", "--folder", golden, "--junit", self.path("g.xml"), names=("--force",))
+        self.path("g.xml").write_text("")
+        self.assertEqual(calot("golden", "check", "--folder", golden, "--junit", self.path("g.xml"), "--force").code, 0)
+        self.assertEqual(xml.parse(self.path("g.xml")).getroot().get("tests"), "1")
 
 
 class Screen:

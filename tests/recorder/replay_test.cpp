@@ -150,36 +150,6 @@ TEST_F(Replay, ATickThatNamesAnUnknownContactSetIsRefused) {
   EXPECT_THROW(session.tick(tick, std::array<std::int64_t, 2>{-1, -2}), std::out_of_range);
 }
 
-TEST_F(Replay, JunitSaysWhatHappened) {
-  std::vector<ReplayReport> reports(4);
-  reports[0].verdict = ReplayVerdict::exact;
-  reports[0].path = "a.h5";
-  reports[1].verdict = ReplayVerdict::diverged;
-  reports[1].path = "b<&>.h5";
-  reports[1].message = "diverged at step 7: \"hand.left\" realPosition";
-  reports[2].verdict = ReplayVerdict::damaged;
-  reports[3].verdict = ReplayVerdict::undecided;
-  reports[3].message = "of simulation version 999";
-  writeJunit(folder_ / "j.xml", reports);
-  std::stringstream text;
-  text << std::ifstream(folder_ / "j.xml").rdbuf();
-  const std::string xml = text.str();
-  EXPECT_NE(xml.find("tests=\"4\" failures=\"1\" errors=\"2\" skipped=\"0\""), std::string::npos) << xml;
-  EXPECT_NE(xml.find("b&lt;&amp;&gt;.h5"), std::string::npos);
-  EXPECT_NE(xml.find("<failure message=\"diverged\">diverged at step 7: &quot;hand.left&quot; realPosition</failure>"),
-            std::string::npos);
-  EXPECT_NE(xml.find("<error message=\"of another simulation version\">of simulation version 999</error>"),
-            std::string::npos);
-
-  // What is there stays, unless it is to be replaced; skipped tests are for those who ask for them.
-  EXPECT_THROW(writeJunit(folder_ / "j.xml", reports), Error);
-  writeJunit(folder_ / "j.xml", reports, {.suite = "mine", .skipUndecided = true, .force = true});
-  text.str("");
-  text << std::ifstream(folder_ / "j.xml").rdbuf();
-  EXPECT_NE(text.str().find("<testsuite name=\"mine\" tests=\"4\" failures=\"1\" errors=\"1\" skipped=\"1\""),
-            std::string::npos);
-}
-
 TEST(StateFields, TheFirstDifferenceIsNamed) {
   const std::vector<StateField> a{{"x/a", std::vector<std::uint64_t>{1, 2}}, {"x/b", std::vector<double>{0.5, -0.0}}};
   std::vector<StateField> b = a;

@@ -41,20 +41,14 @@ struct ForceMeasure {
 };
 
 struct HandForce {
-  const AttemptContext& context;
   ForceMeasure measure;
 
-  [[nodiscard]] Measured figure(const AttemptEnd& end, std::size_t hand) const {
-    return measure.of(*end.force, static_cast<int>(hand));
-  }
-};
-
-struct PhaseHandForce {
-  const AttemptContext& context;
-  ForceMeasure measure;
-
-  [[nodiscard]] Measured figure(const AttemptEnd& end, std::size_t subject) const {
-    return measure.of(end.phaseForce->of(subject / handCount), static_cast<int>(subject % handCount));
+  /// Of a hand, or of a hand in a phase.
+  [[nodiscard]] Measured figure(const AttemptEnd& end, std::size_t subject,
+                                const CheckpointDefinition& declared) const {
+    const bool inPhase = declared.aggregation == Aggregation::handAndPhase;
+    return measure.of(inPhase ? end.phaseForce->of(subject / handCount) : *end.force,
+                      static_cast<int>(subject % handCount));
   }
 };
 
@@ -138,9 +132,9 @@ std::vector<CheckpointEntry> forceRows() {
                       .definition = "step length * sum over steps of F(o), F as in structure-force-p99"},
        .results = 2,
        .accumulate = accumulating<StructureForce>(true)}};
-  rows.push_back(phaseRow(rows[0], 110, "ticks", accumulating<PhaseHandForce>(maximum)));
-  rows.push_back(phaseRow(rows[1], 120, "ticks", accumulating<PhaseHandForce>(p99)));
-  rows.push_back(phaseRow(rows[3], 130, "ticks", accumulating<PhaseHandForce>(dose)));
+  rows.push_back(phaseRow(rows[0], 110, "ticks", accumulating<HandForce>(maximum)));
+  rows.push_back(phaseRow(rows[1], 120, "ticks", accumulating<HandForce>(p99)));
+  rows.push_back(phaseRow(rows[3], 130, "ticks", accumulating<HandForce>(dose)));
   return rows;
 }
 

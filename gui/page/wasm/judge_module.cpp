@@ -12,7 +12,6 @@
 #include "gui/page/wasm/thrown.h"
 #include "gui/words/event_words.h"
 #include "recorder/engine/wire.h"
-#include "recorder/engine/wire_forms.h"
 #include "recorder/formats/scene_assets.h"
 #include "sim/judgement/judge.h"
 #include "sim/scene/version.h"

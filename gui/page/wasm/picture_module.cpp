@@ -6,25 +6,47 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "gui/page/wasm/thrown.h"
-#include "gui/page/wasm/web_context.h"
 #include "gui/render/draw_list.h"
+#include "gui/render/gl_objects.h"
+#include "gui/render/graphics.h"
 #include "gui/render/scene_painter.h"
 #include "gui/render/smoke.h"
 #include "gui/render/view_check.h"
 #include "recorder/engine/wire.h"
-#include "recorder/engine/wire_forms.h"
 #include "sim/scene/scene_view.h"
+
+extern "C" {
+#define CALOT_GL_IMPORT(Name) __attribute__((import_module("gl"), import_name(#Name))) decltype(gl##Name) gl##Name;
+CALOT_GL_FUNCTIONS(CALOT_GL_IMPORT)
+#undef CALOT_GL_IMPORT
+}
 
 namespace {
 
 using namespace calot;
 
+/// A context whose functions are the host's: WebGL 2, under the names that OpenGL has for them.
+class WebContext final : public gui::GraphicsContext {
+ public:
+  void makeCurrent() override {}
+  [[nodiscard]] Function function(const char* name) const override {
+    const std::string_view wanted = name;
+#define CALOT_GL_FIND(Name) \
+  if (wanted == "gl" #Name) return reinterpret_cast<Function>(&gl##Name);
+    CALOT_GL_FUNCTIONS(CALOT_GL_FIND)
+#undef CALOT_GL_FIND
+    return nullptr;
+  }
+  [[nodiscard]] const char* way() const override { return "WebGL"; }
+};
+
 struct Pictures {
-  std::unique_ptr<gui::GraphicsContext> context = page::createWebContext();
-  gui::ScenePainter painter{*context};
+  WebContext context;
+  gui::ScenePainter painter{context};
   std::array<gui::DrawListMaker, 2> lists;  ///< the endoscope's, and another camera's: both remember surfaces
   SceneView view;
   Vec3 down = SceneView().down;  ///< of the scene, which no view of an engine tells

@@ -16,56 +16,92 @@
 #include "recorder/base/dates.h"
 #include "recorder/base/errors.h"
 #include "recorder/base/file_bytes.h"
+#include "recorder/base/record_reader.h"
+#include "recorder/base/record_writer.h"
 #include "recorder/sources/devices/mouse_device.h"
-#include "recorder/sources/json_values.h"
 #include "recorder/sources/pointing.h"
 
 namespace calot::recorder {
+
 namespace {
 
-using Json = nlohmann::ordered_json;
-constexpr std::size_t maxBytes = 1U << 20U;
 constexpr double large = 1e6;
 
-const ObjectRule rootRule{"",
-                          {{"format"},
-                           {"formatVersion", true, 1, 1},
-                           {"device"},
-                           {"identity"},
-                           {"date"},
-                           {"validDays", true, 1, 3650},
-                           {"passed"},
-                           {"shortcomings"},
-                           {"hands"},
-                           {"latency"},
-                           {"force"},
-                           {"limits"},
-                           {"camera", false},
-                           {"declaredPixel", false, 0, 1, true, false}}};
-const ObjectRule handsRule{"hands", {{"left", false}, {"right", false}}};
-JsonValues valuesOf(HandCalibration& h) {
-  return {{{"tipOffset", false, -2, 2}, &h.tipOffset},
-          {{"pivotResidual", false, 0, large}, &h.pivotResidual},
-          {{"scale", false, 0, 1000, true, false}, &h.scale},
-          {{"scaleSpread", false, 0, large}, &h.scaleSpread},
-          {{"axesResidual", false, 0, 4}, &h.axesResidual},
-          {{"rate", true, 0, large}, &h.rate},
-          {{"jitter", true, 0, large}, &h.jitter},
-          {{"longInterval", true, 0, large}, &h.longInterval},
-          {{"invalidShare", true, 0, 1}, &h.invalidShare},
-          {{"axes", false, -1, 1}, &h.axes},
-          {{"noise", true, 0, large}, &h.noise}};
+std::vector<Field> handsFields() {
+  using S = Calibration;
+  return {
+      object("hands", "Hands that were measured"),
+      optional("left", at<S, &S::hand, 0>, "Left hand"),
+      optional("right", at<S, &S::hand, 1>, "Right hand"),
+  };
 }
 
-JsonValues valuesOf(CalibrationLimits& l) {
-  return {{{"pivotResidual", true, 0, large}, &l.pivotResidual},
-          {{"scaleSpread", true, 0, large}, &l.scaleSpread},
-          {{"axesResidual", true, 0, 4}, &l.axesResidual},
-          {{"noise", true, 0, large}, &l.noise},
-          {{"rate", true, 0, large}, &l.rate},
-          {{"longInterval", true, 0, large}, &l.longInterval},
-          {{"invalidShare", true, 0, 1}, &l.invalidShare}};
+}  // namespace
+
+std::vector<Field> HandCalibration::fields() {
+  using S = HandCalibration;
+  return {
+      object("hand", "One hand's tool; what could not be measured with this device is absent"),
+      optional("tipOffset", at<S, &S::tipOffset>, "m", within(-2, 2), "Tip of the tool in its sensor's frame"),
+      optional("pivotResidual", at<S, &S::pivotResidual>, "m", within(0, large),
+               "Root mean square distance of the tip from its dimple"),
+      optional("scale", at<S, &S::scale>, "1", above(0, 1000), "True length per measured length"),
+      optional("scaleSpread", at<S, &S::scaleSpread>, "1", within(0, large),
+               "Largest relative deviation of one stroke's scale from it"),
+      optional("axesResidual", at<S, &S::axesResidual>, "rad", within(0, 4),
+               "Largest angle between a stroke and its axis"),
+      {"rate", at<S, &S::rate>, "1/s", within(0, large), "Rate of samples"},
+      {"jitter", at<S, &S::jitter>, "s", within(0, large), "Standard deviation of the intervals between samples"},
+      {"longInterval", at<S, &S::longInterval>, "s", within(0, large),
+       "99th percentile of the intervals, nearest rank"},
+      {"invalidShare", at<S, &S::invalidShare>, "1", within(0, 1), "Share of samples without a pose"},
+      optional("axes", at<S, &S::axes>, "Unit quaternion w, x, y, z: the device's coordinates to right, down, away"),
+      {"noise", at<S, &S::noise>, "m", within(0, large), "Root mean square at rest, each axis of the device"},
+  };
 }
+
+std::vector<Field> CalibrationLimits::fields() {
+  using S = CalibrationLimits;
+  return {
+      object("limits", "Limits: largest values, and the smallest rate"),
+      {"pivotResidual", at<S, &S::pivotResidual>, "m", within(0, large), "Residual of the tip"},
+      {"scaleSpread", at<S, &S::scaleSpread>, "1", within(0, large), "Spread of the scale"},
+      {"axesResidual", at<S, &S::axesResidual>, "rad", within(0, 4), "Residual of the axes"},
+      {"noise", at<S, &S::noise>, "m", within(0, large), "Noise of each axis"},
+      {"rate", at<S, &S::rate>, "1/s", within(0, large), "Rate of samples"},
+      {"longInterval", at<S, &S::longInterval>, "s", within(0, large), "99th percentile of the intervals"},
+      {"invalidShare", at<S, &S::invalidShare>, "1", within(0, 1), "Share of samples without a pose"},
+  };
+}
+
+std::vector<Field> Calibration::fields() {
+  using S = Calibration;
+  static constexpr TextRule date{32, "[0-9]{4}-[0-9]{2}-[0-9]{2}T[0-9]{2}:[0-9]{2}:[0-9]{2}Z",
+                                 "is no date like 2026-01-31T23:59:59Z"};
+  return {
+      object("",
+             "Measurements of a device, their date and their verdict. The compact text is "
+             "copied into every recording that was made with it"),
+      fileFormat("calot-calibration"),
+      fileFormatVersion(),
+      {"device", at<S, &S::device>, TextRule{64}, "Class of device: camera, gamepad, openigtlink, scripted, null"},
+      {"identity", at<S, &S::identity>, TextRule{256}, "The device; a calibration is used with no other"},
+      {"date", at<S, &S::date>, date, "Time of the measurement: ISO 8601 with Z, to the second"},
+      {"validDays", at<S, &S::validDays>, "d", within(1, 3650), "Validity from its date on"},
+      {"passed", unstored<bool>, "All values meet the limits; must agree with them"},
+      Field("shortcomings", unstored<std::vector<std::string>>, TextRule{200}, "Violated limits, one phrase each")
+          .items(0, 64),
+      {"hands", keyGroup<S, handsFields>, "Hands that were measured"},
+      {"latency", at<S, &S::latency>, TextRule{64}, "A time with its unit, or the reason why there is none"},
+      {"force", at<S, &S::force>, TextRule{64}, "An error with its unit, or the reason why there is none"},
+      {"limits", at<S, &S::limits>, "Limits that the values must meet"},
+      optional("camera", at<S, &S::camera>, "Cameras that watch printed handles: lenses, positions, trocars"),
+      optional("declaredPixel", at<S, &S::declaredPixel>, "m", above(0, 1),
+               "Motion of the hand per pixel of a mouse, as declared; nothing was measured then"),
+  };
+}
+
+namespace {
 
 std::int64_t secondsOf(const std::string& date) {
   const auto number = [&](std::size_t at, std::size_t length) { return std::stoi(date.substr(at, length)); };
@@ -122,46 +158,20 @@ std::vector<std::string> shortcomings(const Calibration& calibration) {
   return out;
 }
 
-std::string calibrationText(Calibration c, bool compact) {
+std::string calibrationText(const Calibration& c, bool compact) {
   const std::vector<std::string> faults = shortcomings(c);
-  Json out{{"format", "calot-calibration"}, {"formatVersion", 1},    {"device", c.device},
-           {"identity", c.identity},        {"date", c.date},        {"validDays", c.validDays},
-           {"passed", faults.empty()},      {"shortcomings", faults}};
-  Json hands = Json::object();
-  for (std::size_t i = 0; i < handCount; ++i) {
-    if (c.hand[i]) hands[handNames[i]] = jsonOf(valuesOf(*c.hand[i]));
-  }
-  out["hands"] = hands;
-  out["latency"] = c.latency;
-  out["force"] = c.force;
-  out["limits"] = jsonOf(valuesOf(c.limits));
-  if (c.camera) out["camera"] = rigJson(*c.camera);
-  if (c.declaredPixel) out["declaredPixel"] = *c.declaredPixel;
+  nlohmann::ordered_json out = writeRecord(c);
+  out["passed"] = faults.empty();
+  out["shortcomings"] = faults;
   return compact ? out.dump() : out.dump(2) + "\n";
 }
 
 Calibration parseCalibration(std::span<const std::byte> bytes, const std::string& file) {
   const nlohmann::json document = parseStrictJson(bytes, file);
-  const JsonObject root = JsonPlace(document, file).object(rootRule);
-  if (root.at("format").text(64) != "calot-calibration") root.at("format").fail("is not \"calot-calibration\"");
-  std::uint32_t version = 0;
-  root.read("formatVersion", version);
+  const JsonPlace root(document, file);
   Calibration c;
-  root.read("device", c.device, 64);
-  root.read("identity", c.identity, 256);
-  root.read("date", c.date, 32);
+  readRecord(root, c);
   if (!isDate(c.date)) root.at("date").fail("is no date like 2026-01-31T23:59:59Z");
-  root.read("validDays", c.validDays);
-  root.read("latency", c.latency, 64);
-  root.read("force", c.force, 64);
-  for (const JsonPlace& place : root.at("shortcomings").list(0, 64)) (void)place.text(200);
-  const JsonObject hands = root.at("hands").object(handsRule);
-  for (std::size_t i = 0; i < handCount; ++i) {
-    if (hands.has(handNames[i])) readValues(hands.at(handNames[i]), valuesOf(c.hand[i].emplace()));
-  }
-  readValues(root.at("limits"), valuesOf(c.limits));
-  if (root.has("camera")) c.camera = rigOf(root.at("camera"));
-  if (root.has("declaredPixel")) root.read("declaredPixel", c.declaredPixel.emplace());
   if (root.at("passed").boolean() != shortcomings(c).empty())
     root.at("passed").fail("does not agree with the values and the limits");
   return c;
@@ -169,7 +179,7 @@ Calibration parseCalibration(std::span<const std::byte> bytes, const std::string
 
 Calibration readCalibration(const std::filesystem::path& file) {
   const std::string name = file.filename().string();
-  return parseCalibration(readFileBytes(file, name, maxBytes), name);
+  return parseCalibration(readFileBytes(file, name, 1U << 20U), name);
 }
 
 void checkCalibration(const Calibration& c, const DeviceInfo& device, Mode mode, const std::string& now,

@@ -31,6 +31,8 @@ struct HandCalibration {
   double jitter = 0.0;                  ///< standard deviation of the intervals (s)
   double longInterval = 0.0;            ///< their 99th percentile, nearest rank (s)
   double invalidShare = 0.0;            ///< of all samples
+
+  static std::vector<Field> fields();
 };
 
 /// Limits that a calibration must meet; stored in it, since limits change.
@@ -42,6 +44,8 @@ struct CalibrationLimits {
   double rate = 20.0;         ///< samples a second, at least
   double longInterval = 0.1;  ///< s
   double invalidShare = 0.02;
+
+  static std::vector<Field> fields();
 };
 
 struct Calibration {
@@ -56,6 +60,8 @@ struct Calibration {
   std::optional<CameraRig> camera;  ///< of cameras that watch printed handles
   /// Mouse: motion of the hand per pixel (m), as declared; not measured.
   std::optional<double> declaredPixel;
+
+  static std::vector<Field> fields();
 };
 
 /// Violated limits, one phrase each; empty: passed. Rate, noise, intervals and invalid share must be present for at

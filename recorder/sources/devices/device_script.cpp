@@ -9,7 +9,7 @@
 
 #include "recorder/base/errors.h"
 #include "recorder/base/file_bytes.h"
-#include "recorder/base/json_reader.h"
+#include "recorder/base/record_reader.h"
 #include "recorder/sources/tracked_motion.h"
 
 namespace calot::recorder {
@@ -23,17 +23,38 @@ constexpr double unitTolerance = 1e-3;  // of a quaternion's norm
 constexpr std::size_t sampleNumbers = 12;
 constexpr double nanosecondsPerSecond = 1e9;
 
-const ObjectRule rootRule{"",
-                          {{"format"},
-                           {"formatVersion", true, 1, 1},
-                           {"name"},
-                           {"rate", false, 0, 10000},
-                           {"largestForce", false, 0, 100},
-                           {"samples"},
-                           {"unplug", false},
-                           {"phases", false}}};
-const ObjectRule unplugRule{"unplug", {{"at", true, 0, longest}, {"for", true, 0, longest}}};
-const ObjectRule phaseRule{"phase", {{"name"}, {"from", true, 0, longest}, {"to", true, 0, longest}}};
+/// An unplugging, whose end is its length, or a phase, as files state them.
+struct Interval {
+  std::string name;
+  double from = 0.0, to = 0.0;  ///< s
+
+  static std::vector<Field> unplugFields() {
+    using S = Interval;
+    return {object("unplug", "Interval without the device"),
+            {"at", at<S, &S::from>, "s", within(0, longest), "Beginning"},
+            {"for", at<S, &S::to>, "s", within(0, longest), "Length"}};
+  }
+  static std::vector<Field> phaseFields() {
+    using S = Interval;
+    return {object("phase", "Labelled interval"),
+            {"name", at<S, &S::name>, TextRule{64}, "Label"},
+            {"from", at<S, &S::from>, "s", within(0, longest), "Beginning"},
+            {"to", at<S, &S::to>, "s", within(0, longest), "End"}};
+  }
+};
+
+std::vector<Field> scriptFields() {
+  using S = DeviceScript;
+  return {object("", "Samples of a scripted device"),
+          fileFormat("calot-device-script"),
+          fileFormatVersion(),
+          {"name", at<S, &S::name>, TextRule{64}, "Device that made it, or that it stands for"},
+          optional("rate", at<S, &S::rate>, "1/s", within(0, 10000), "Nominal rate"),
+          optional("largestForce", at<S, &S::maxForce>, "N", within(0, 100), "Force of its motors"),
+          {"samples", unchecked, "Samples"},
+          optional("unplug", unchecked, "Intervals without the device"),
+          optional("phases", unchecked, "Labelled intervals")};
+}
 
 std::int64_t nanoseconds(double seconds) {
   return static_cast<std::int64_t>(std::floor(seconds * nanosecondsPerSecond + 0.5));
@@ -43,10 +64,8 @@ double seconds(std::int64_t time) { return static_cast<double>(time) / nanosecon
 
 DeviceSample sampleAt(const JsonPlace& place, std::array<std::uint64_t, handCount>& sequence) {
   const std::vector<JsonPlace> item = place.list(sampleNumbers, sampleNumbers);
-  const auto number = [&](std::size_t i, double lower, double upper) {
-    return item[i].number({"", true, lower, upper});
-  };
-  const auto integer = [&](std::size_t i, double upper) { return item[i].integer({"", true, 0, upper}); };
+  const auto number = [&](std::size_t i, double lower, double upper) { return item[i].number(within(lower, upper)); };
+  const auto integer = [&](std::size_t i, double upper) { return item[i].integer(within(0, upper)); };
   DeviceSample s;
   s.hostTime = s.deviceTime = nanoseconds(number(0, 0, longest));
   s.hand = static_cast<Hand>(integer(1, handCount - 1));
@@ -65,14 +84,9 @@ DeviceSample sampleAt(const JsonPlace& place, std::array<std::uint64_t, handCoun
 
 DeviceScript parseJson(std::span<const std::byte> bytes, const std::string& file) {
   const nlohmann::json document = parseStrictJson(bytes, file);
-  const JsonObject root = JsonPlace(document, file).object(rootRule);
-  if (root.at("format").text(64) != "calot-device-script") root.at("format").fail("is not \"calot-device-script\"");
-  std::uint32_t version = 0;
-  root.read("formatVersion", version);
+  const JsonPlace root(document, file);
   DeviceScript script;
-  root.read("name", script.name, 64);
-  root.read("rate", script.rate);
-  root.read("largestForce", script.maxForce);
+  readRecord(root, recordOf<DeviceScript, scriptFields>(), &script);
   std::array<std::uint64_t, handCount> sequence{};
   for (const JsonPlace& place : root.at("samples").list(1, maxSamples)) {
     script.samples.push_back(sampleAt(place, sequence));
@@ -82,25 +96,17 @@ DeviceScript parseJson(std::span<const std::byte> bytes, const std::string& file
   }
   if (root.has("unplug")) {
     for (const JsonPlace& place : root.at("unplug").list(0, 1000)) {
-      const JsonObject o = place.object(unplugRule);
-      double at = 0.0, length = 0.0;
-      o.read("at", at);
-      o.read("for", length);
-      script.unpluggings.push_back({nanoseconds(at), nanoseconds(length)});
+      Interval gone;
+      readRecord(place, recordOf<Interval, Interval::unplugFields>(), &gone);
+      script.unpluggings.push_back({nanoseconds(gone.from), nanoseconds(gone.to)});
     }
   }
   if (root.has("phases")) {
     for (const JsonPlace& place : root.at("phases").list(0, 100)) {
-      const JsonObject o = place.object(phaseRule);
-      DeviceScript::Phase phase;
-      o.read("name", phase.name, 64);
-      double from = 0.0, to = 0.0;
-      o.read("from", from);
-      o.read("to", to);
-      if (!(from < to)) o.fail("\"to\" is not after \"from\"");
-      phase.from = nanoseconds(from);
-      phase.to = nanoseconds(to);
-      script.phases.push_back(phase);
+      Interval phase;
+      readRecord(place, recordOf<Interval, Interval::phaseFields>(), &phase);
+      if (!(phase.from < phase.to)) place.fail("\"to\" is not after \"from\"");
+      script.phases.push_back({phase.name, nanoseconds(phase.from), nanoseconds(phase.to)});
     }
   }
   return script;

@@ -14,7 +14,6 @@
 
 namespace calot::recorder {
 namespace {
-constexpr double largestJaw = 1.2;  // rad
 }
 
 DeviceMapping::DeviceMapping(const HandDescription& hand, const CameraSample& camera,
@@ -48,7 +47,7 @@ InstrumentSample DeviceMapping::map(const DeviceSample& sample) const {
   out.position = anchor_ + scale_ * (axes_ * (tip - tip0_));
   const Quat turn = axes_ * (sample.orientation * turn0_.conjugate()) * axes_.conjugate();
   out.orientation = alignedToShaft(turn * orientation_, shaftDirection(hand_.port, out.position));
-  out.jaw = std::min(notNegative(sample.gripper), largestJaw);
+  out.jaw = std::min(notNegative(sample.gripper), widestJaw);
   out.buttons = static_cast<std::uint8_t>(sample.buttons & ~clutchButton);
   return out;
 }

@@ -11,14 +11,14 @@
 #include <utility>
 
 #include "recorder/base/errors.h"
+#include "recorder/sources/pointing.h"
 #include "sim/math/elementary.h"
 #include "sim/math/linear.h"
 
 namespace calot::recorder {
 namespace {
 
-constexpr double maxStep = 0.05;   // s; after a longer gap the pointer does not leap
-constexpr double widestJaw = 1.2;  // rad
+constexpr double maxStep = 0.05;  // s; after a longer gap the pointer does not leap
 constexpr std::size_t maxName = 64;
 
 }  // namespace

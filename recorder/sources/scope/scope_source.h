@@ -5,10 +5,12 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "recorder/sources/scope/endoscope.h"
 #include "recorder/sources/source.h"
 #include "recorder/sources/unsteadiness.h"
+#include "sim/math/record.h"
 
 namespace calot::recorder {
 
@@ -48,6 +50,8 @@ struct ScopeSkill {
   double reaction = 0.35;      ///< from one look at the picture to the next (s)
   double deadZone = 0.4;       ///< how far the work may leave the picture's centre (halves of the picture's height)
   double horizonError = 0.03;  ///< root mean square of the camera head's rotation from level (rad)
+
+  static std::vector<Field> fields();
 };
 
 /// An assistant who follows the instruments: it looks at the picture every `reaction` seconds, and where the work has

@@ -13,9 +13,60 @@
 #include "sim/scene/model.h"
 #include "sim/scene/scene_view.h"
 #include "sim/scene/state.h"
+#include "sim/tissue/description_fields.h"
 #include "sim/tissue/structure.h"
 
 namespace calot {
+
+std::vector<Field> FatAttachmentDescription::fields() {
+  using S = FatAttachmentDescription;
+  return {
+      object("fatAttachment", "Springs between fat and a near organ or vessel"),
+      {"to", at<S, &S::to>, sceneName, "Name of that organ or vessel"},
+      {"distance", at<S, &S::distance>, "m", above(0, 0.05),
+       "Fat no farther from its surface, in the reference configuration, is tied to it"},
+      {"stiffness", at<S, &S::stiffness>, "N/m^4", above(0, 1e12), "Stiffness of a unit volume of that fat"},
+      {"damping", at<S, &S::damping>, "N s/m^4", within(0, 1e10), "Damping of a unit volume of that fat"},
+  };
+}
+
+namespace {
+
+std::vector<Field> triangleFields() {
+  using S = FatDescription;
+  return {
+      object("fatTriangle", "Fat to be cleared, in the reference configuration: that over or under a triangle"),
+      Field("corners", at<S, &S::triangle>, "m", sceneCoordinate, "Its corners, not on one line").items(3, 3),
+      {"depth", at<S, &S::triangleDepth>, "m", above(0, 0.1), "Largest distance from its plane"},
+  };
+}
+
+}  // namespace
+
+std::vector<Field> FatDescription::fields() {
+  using S = FatDescription;
+  return {
+      object("fat", "Fat: a potential field over coarse cubes (docs/explanation/carving.md)"),
+      {"name", at<S, &S::name>, sceneName, "Name, unique among organs, vessels and fat"},
+      {"appearance", at<S, &S::appearance>, sceneName, "Look that a renderer gives it"},
+      roleField(at<S, &S::role>, {StructureRole::triangleFat}),
+      {"mesh", at<S, &S::surface>, "Closed surface in W, in the reference configuration"},
+      {"cellSize", at<S, &S::cellSize>, "m", within(0.0001, 0.01),
+       "Cell of the potential field; from 4 to 496 along each side of the surface's box, at most 16 "
+       "million in it"},
+      optional("cellsPerCube", at<S, &S::cellsPerCube>, "", within(1, 8), "Cells along the edge of a mechanical cube"),
+      {"material", at<S, &S::material>, "Material"},
+      optional("friction", at<S, &S::friction>, "", within(0, 2), "Coulomb coefficient of an instrument on it"),
+      Field("attachments", at<S, &S::attachments>, "Organs and vessels that it is tied to, each once")
+          .items(0, maxStructures),
+      optional("triangle", keyGroup<S, triangleFields>, "Part of it that is to be cleared"),
+  };
+}
+
+Field FatTissue::sceneKey() {
+  return optional("fat", at<SceneDescription, &SceneDescription::fat>, "Fat that the energised hook carves")
+      .items(0, 4);
+}
 
 namespace {
 

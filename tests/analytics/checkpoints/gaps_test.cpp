@@ -7,10 +7,9 @@
 #include <functional>
 #include <random>
 
+#include "analytics/checkpoints/checkpoint.h"
 #include "analytics/checkpoints/collector.h"
 #include "analytics/checkpoints/motion.h"
-#include "analytics/checkpoints/motion_track.h"
-#include "analytics/checkpoints/registry.h"
 #include "analytics/statistics/descriptive.h"
 
 namespace calot::analytics {

@@ -120,7 +120,7 @@ TEST(Bootstrap, degenerate) {
   // The deviation of two values vanishes in half of the resamples, which here counts as no answer.
   const auto inverse = [](std::span<const double> v) {
     const auto s = standardDeviation(v);
-    return s && *s > 0.0 ? Expected<double>(1.0 / *s) : Expected<double>::none("no spread");
+    return s && *s > 0.0 ? Expected<double>(1.0 / *s) : NoResult{"no spread"};
   };
   EXPECT_NE(bootstrap(Values{1, 2}, inverse).reason().find("resamples have no answer (no spread)"), std::string::npos);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What is left out of a picture may not be missed in it.
-#include "gui/render/sight.h"
+#include "gui/render/draw_list.h"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "gui/trainer/course.h"
+#include "gui/trainer/scenes_page.h"
 
 #include <gtest/gtest.h>
 
 #include <fstream>
 
 #include "recorder/base/errors.h"
-#include "tests/analytics/assessment/support/schema_agreement.h"
+#include "tests/analytics/assessment/support/texts.h"
 #include "tests/recorder/support/small_scene.h"
 
 namespace calot::gui {
@@ -21,8 +21,6 @@ TEST(Course, LeadsFromTheFirstTouchToTheWholeOperation) {
   EXPECT_EQ(course.tasks.back().scene, "cholecystectomy");
   for (const CourseTask& task : course.tasks) EXPECT_FALSE(scenePicture(task.scene, assets).empty()) << task.scene;
 }
-
-TEST(Course, ReaderAndSchemaAgree) { analytics::support::expectAgreement(courseRules(), "schemas/course.schema.json"); }
 
 TEST(Course, OrdersTheScenes) {
   std::vector<std::string> faults;

@@ -7,7 +7,7 @@
 #include <QLocale>
 #include <set>
 
-#include "gui/trainer/key_bindings.h"
+#include "gui/trainer/operation_view.h"
 #include "sim/instruments/instruments.h"
 
 namespace calot::gui {

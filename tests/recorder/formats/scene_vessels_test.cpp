@@ -100,18 +100,6 @@ TEST(SceneVessels, organsVesselsAndFatTogetherHaveALimit) {
             "scenes/small.json: /: 17 structures (organs, vessels and bodies of fat); at most 16 are allowed");
 }
 
-TEST(SceneVessels, defaultsAreTheSchemas) {
-  std::ifstream in(std::string(CALOT_SOURCE_DIR) + "/schemas/scene.schema.json");
-  const nlohmann::json d = nlohmann::json::parse(in).at("$defs");
-  const nlohmann::json& vessel = d.at("vessel").at("properties");
-  EXPECT_EQ(VesselDescription().elements, vessel.at("elements").at("default").get<std::uint32_t>());
-  EXPECT_EQ(VesselDescription().ultimateStrain, vessel.at("ultimateStrain").at("default").get<double>());
-  EXPECT_EQ(VesselDescription().friction, vessel.at("friction").at("default").get<double>());
-  const nlohmann::json& fat = d.at("fat").at("properties");
-  EXPECT_EQ(FatDescription().cellsPerCube, fat.at("cellsPerCube").at("default").get<std::uint32_t>());
-  EXPECT_EQ(FatDescription().friction, fat.at("friction").at("default").get<double>());
-}
-
 TEST(SceneVessels, flippedBitsNeverCrashAndFaultsStayOneLine) {
   const nlohmann::json scene = sceneWithVessels();
   const std::string whole = nlohmann::json{{"vessels", scene["vessels"]}, {"fat", scene["fat"]}}.dump();

@@ -12,7 +12,7 @@
 
 #include "recorder/base/errors.h"
 #include "recorder/recording/keyframe_code.h"
-#include "recorder/recording/keyframe_schedule.h"
+#include "recorder/recording/layout.h"
 #include "recorder/recording/reader.h"
 #include "recorder/recording/recording_facts.h"
 #include "recorder/recording/recover.h"

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <string>
 
-#include "apps/calot-organs/fat_shape.h"
 #include "apps/calot-organs/organ_shapes.h"
 #include "recorder/base/file_bytes.h"
 #include "recorder/formats/obj.h"

@@ -4,47 +4,86 @@
 
 #include <fmt/format.h>
 
-#include "recorder/base/identity.h"
-#include "recorder/sources/json_values.h"
+#include "sim/math/record.h"
 
 namespace calot::recorder {
 namespace {
 
 constexpr double mostPixels = 100000.0;
-const ObjectRule rigRule{"camera", {{"printScale", true, 0.1, 10}, {"cameras"}, {"trocars"}, {"limits"}}};
-const ObjectRule trocarsRule{"trocars", {{"left", false}, {"right", false}}};
+constexpr const char* sideNames[handCount] = {"left", "right"};
 
-JsonValues valuesOf(RigCamera& camera) {
-  CameraLens& lens = camera.lens;
-  return {{{"width", true, 16, mostPixels}, &lens.width},
-          {{"height", true, 16, mostPixels}, &lens.height},
-          {{"focal", true, 1, 1e6}, std::span(lens.focal.data(), 2)},
-          {{"centre", true, -mostPixels, mostPixels}, std::span(lens.centre.data(), 2)},
-          {{"distortion", true, -10, 10}, std::span(lens.distortion)},
-          {{"readout", true, 0, 1}, &lens.readout},
-          {{"views", true, 0, 10000}, &lens.views},
-          {{"coverage", true, 0, 1}, &lens.coverage},
-          {{"residual", true, 0, mostPixels}, &lens.residual},
-          {{"focalUncertainty", true, 0, 1e6}, &lens.focalUncertainty},
-          {{"position", true, -10, 10}, &camera.fromDevice.position},
-          {{"orientation", true, -1, 1}, &camera.fromDevice.orientation},
-          {{"pairResidual", true, 0, mostPixels}, &camera.pairResidual}};
-}
-
-JsonValues valuesOf(Trocar& trocar) {
-  return {{{"point", true, -10, 10}, &trocar.point}, {{"residual", true, 0, 10}, &trocar.residual}};
-}
-
-JsonValues valuesOf(RigLimits& l) {
-  return {{{"lensResidual", true, 0, mostPixels}, &l.lensResidual},
-          {{"focalUncertainty", true, 0, 1e6}, &l.focalUncertainty},
-          {{"coverage", true, 0, 1}, &l.coverage},
-          {{"views", true, 0, 10000}, &l.views},
-          {{"trocarResidual", true, 0, 10}, &l.trocarResidual},
-          {{"scaleError", true, 0, 10}, &l.scaleError}};
+std::vector<Field> trocarsFields() {
+  using S = CameraRig;
+  return {
+      object("trocars", "Trocars that were measured"),
+      optional("left", at<S, &S::trocar, 0>, "Left hand's"),
+      optional("right", at<S, &S::trocar, 1>, "Right hand's"),
+  };
 }
 
 }  // namespace
+
+std::vector<Field> RigCamera::fields() {
+  using S = RigCamera;
+  using Lens = CameraLens;
+  return {
+      object("oneCamera", "Lens (Brown's model) and pose of a camera"),
+      {"width", at<S, &S::lens, &Lens::width>, "pixels", within(16, mostPixels), "Width of the image"},
+      {"height", at<S, &S::lens, &Lens::height>, "pixels", within(16, mostPixels), "Height of the image"},
+      {"focal", at<S, &S::lens, &Lens::focal>, "pixels", within(1, 1e6), "Focal length across and down"},
+      {"centre", at<S, &S::lens, &Lens::centre>, "pixels", within(-mostPixels, mostPixels),
+       "Principal point, from the upper left corner"},
+      {"distortion", at<S, &S::lens, &Lens::distortion>, "", within(-10, 10), "k1, k2 radial; p1, p2 tangential"},
+      {"readout", at<S, &S::lens, &Lens::readout>, "s", within(0, 1),
+       "From the first row's exposure to the last one's"},
+      {"views", at<S, &S::lens, &Lens::views>, "", within(0, 10000), "Views of the board"},
+      {"coverage", at<S, &S::lens, &Lens::coverage>, "1", within(0, 1),
+       "Share of the image in which the board was seen"},
+      {"residual", at<S, &S::lens, &Lens::residual>, "pixels", within(0, mostPixels),
+       "Root mean square reprojection error"},
+      {"focalUncertainty", at<S, &S::lens, &Lens::focalUncertainty>, "1", within(0, 1e6),
+       "Relative standard deviation of the focal length"},
+      {"position", at<S, &S::fromDevice, &Pose::position>, "m", within(-10, 10),
+       "Position of the first camera in this one's frame"},
+      {"orientation", at<S, &S::fromDevice, &Pose::orientation>,
+       "Unit quaternion w, x, y, z: the first camera's coordinates to this one's"},
+      {"pairResidual", at<S, &S::pairResidual>, "pixels", within(0, mostPixels),
+       "Root mean square reprojection error with the first camera's views"},
+  };
+}
+
+std::vector<Field> Trocar::fields() {
+  using S = Trocar;
+  return {
+      object("trocar", "Point through which the shaft passes"),
+      {"point", at<S, &S::point>, "m", within(-10, 10), "Its position in the device's frame"},
+      {"residual", at<S, &S::residual>, "m", within(0, 10), "Root mean square distance of the shaft from it"},
+  };
+}
+
+std::vector<Field> RigLimits::fields() {
+  using S = RigLimits;
+  return {
+      object("cameraLimits", "Largest values; of coverage and views the smallest"),
+      {"lensResidual", at<S, &S::lensResidual>, "pixels", within(0, mostPixels), "Reprojection error, also of a pair"},
+      {"focalUncertainty", at<S, &S::focalUncertainty>, "1", within(0, 1e6), "Relative, of the focal length"},
+      {"coverage", at<S, &S::coverage>, "1", within(0, 1), "Share of the image"},
+      {"views", at<S, &S::views>, "", within(0, 10000), "Views of the board"},
+      {"trocarResidual", at<S, &S::trocarResidual>, "m", within(0, 10), "Distance of the shaft from its trocar"},
+      {"scaleError", at<S, &S::scaleError>, "1", within(0, 10), "Difference of the strokes' scale from 1"},
+  };
+}
+
+std::vector<Field> CameraRig::fields() {
+  using S = CameraRig;
+  return {
+      object("camera", "Cameras; the device's frame is the first one's: x right, y down, z away"),
+      {"printScale", at<S, &S::printScale>, "1", within(0.1, 10), "Length on the printed sheets per length meant"},
+      Field("cameras", at<S, &S::cameras>, "One or two").items(1, 2),
+      {"trocars", keyGroup<S, trocarsFields>, "Trocars that were measured"},
+      {"limits", at<S, &S::limits>, "Limits that the values must meet"},
+  };
+}
 
 std::vector<std::string> rigShortcomings(const CameraRig& rig) {
   std::vector<std::string> out;
@@ -68,35 +107,10 @@ std::vector<std::string> rigShortcomings(const CameraRig& rig) {
   }
   for (std::size_t h = 0; h < handCount; ++h) {
     if (rig.trocar[h] && !(rig.trocar[h]->residual <= limit.trocarResidual))
-      out.push_back(fmt::format("{} trocar: the shaft misses it by {:.1f} mm, at most {:.1f}", handNames[h],
+      out.push_back(fmt::format("{} trocar: the shaft misses it by {:.1f} mm, at most {:.1f}", sideNames[h],
                                 1e3 * rig.trocar[h]->residual, 1e3 * limit.trocarResidual));
   }
   return out;
-}
-
-nlohmann::ordered_json rigJson(CameraRig rig) {
-  auto cameras = nlohmann::ordered_json::array(), trocars = nlohmann::ordered_json::object();
-  for (RigCamera& camera : rig.cameras) cameras.push_back(jsonOf(valuesOf(camera)));
-  for (std::size_t h = 0; h < handCount; ++h) {
-    if (rig.trocar[h]) trocars[handNames[h]] = jsonOf(valuesOf(*rig.trocar[h]));
-  }
-  return {{"printScale", rig.printScale},
-          {"cameras", cameras},
-          {"trocars", trocars},
-          {"limits", jsonOf(valuesOf(rig.limits))}};
-}
-
-CameraRig rigOf(const JsonPlace& place) {
-  const JsonObject o = place.object(rigRule);
-  CameraRig rig;
-  o.read("printScale", rig.printScale);
-  for (const JsonPlace& camera : o.at("cameras").list(1, 2)) readValues(camera, valuesOf(rig.cameras.emplace_back()));
-  const JsonObject trocars = o.at("trocars").object(trocarsRule);
-  for (std::size_t h = 0; h < handCount; ++h) {
-    if (trocars.has(handNames[h])) readValues(trocars.at(handNames[h]), valuesOf(rig.trocar[h].emplace()));
-  }
-  readValues(o.at("limits"), valuesOf(rig.limits));
-  return rig;
 }
 
 namespace {

@@ -24,14 +24,6 @@ std::unique_ptr<recorder::SampleSource> ScriptInput::open(const SceneDescription
   return source;
 }
 
-void ScriptInput::setOut(recorder::SampleSource& source, const SceneDescription& /*scene*/, const TickSamples& start) {
-  source.device()->setOutFrom(start);
-}
-
-void ScriptInput::record(recorder::SampleSource& source, recorder::RecordingWriter& writer, std::uint64_t firstTick) {
-  writer.takeRawSamples(source.device()->rawSamples(), firstTick);
-}
-
 recorder::DeviceScript swayingScript(double seconds) {
   recorder::DeviceScript script;
   script.name = "sway";
