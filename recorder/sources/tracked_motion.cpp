@@ -11,6 +11,7 @@
 #include "recorder/base/csv.h"
 #include "recorder/base/errors.h"
 #include "recorder/base/file_bytes.h"
+#include "recorder/base/record_reader.h"
 #include "recorder/sources/pointing.h"
 
 namespace calot::recorder {
