@@ -13,8 +13,7 @@
 #include "sim/math/linear.h"
 
 namespace calot::recorder {
-namespace {
-}
+namespace {}
 
 DeviceMapping::DeviceMapping(const HandDescription& hand, const CameraSample& camera,
                              const HandCalibration* calibration, const HandCalibration* shared)

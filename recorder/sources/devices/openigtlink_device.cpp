@@ -81,16 +81,14 @@ void OpenIgtLinkDevice::take(const Item& item, DeviceInput& out) {
       return;
     }
     if (item.name != tool) continue;
-    DeviceSample sample;
-    sample.hand = static_cast<Hand>(h);
-    sample.sequence = sequence_[h]++;
-    sample.hostTime = clock_();
-    sample.deviceTime = item.time;
-    sample.valid = item.kind == Item::Kind::pose && item.rotation;
-    sample.position = item.position;
-    sample.orientation = item.orientation;
-    sample.gripper = gripper_[h];
-    out.samples.push_back(sample);
+    out.samples.push_back({.deviceTime = item.time,
+                           .hostTime = clock_(),
+                           .sequence = sequence_[h]++,
+                           .hand = static_cast<Hand>(h),
+                           .position = item.position,
+                           .orientation = item.orientation,
+                           .gripper = gripper_[h],
+                           .valid = item.kind == Item::Kind::pose && item.rotation});
     if (item.kind == Item::Kind::pose && !item.rotation)
       tellOnce(DeviceEvent::Kind::malformed,
                fmt::format("{}: a pose that is not finite, too far, or no rotation", item.name), out);

@@ -28,14 +28,12 @@ void Pointer::move(const Vec3& way, double reach) { position = Vec3(position + w
 void Pointer::openJaw(double angle) { jaw = std::min(notNegative(jaw + angle), widestJaw); }
 
 DeviceSample Pointer::sample(Hand hand, std::int64_t now) {
-  DeviceSample out;
-  out.hostTime = now;
-  out.sequence = sequence++;
-  out.hand = hand;
-  out.position = position;
-  out.orientation = Quat(cosine(0.5 * roll), 0.0, 0.0, sine(0.5 * roll));
-  out.gripper = jaw;
-  return out;
+  return {.hostTime = now,
+          .sequence = sequence++,
+          .hand = hand,
+          .position = position,
+          .orientation = Quat(cosine(0.5 * roll), 0.0, 0.0, sine(0.5 * roll)),
+          .gripper = jaw};
 }
 
 double drawn(double& asked, double most) {

@@ -93,15 +93,14 @@ void ForceDevice::take(const forcewire::Pose& pose, DeviceInput& out) {
   }
   out.samples.push_back(sample);
 
-  HandleMeasurement m;
-  m.position = sample.position;
-  m.orientation = sample.orientation;
-  m.deviceTime = pose.deviceTime;
-  m.number = pose.number;
-  m.valid = sample.valid;
-  if (sample.valid) m.shown = pose.shown;
-  m.clutched = (sample.buttons & clutchButton) != 0;
-  const Wrench wrench = measured(h, m, now);
+  const HandleMeasurement measurement{.position = sample.position,
+                                      .orientation = sample.orientation,
+                                      .deviceTime = pose.deviceTime,
+                                      .number = pose.number,
+                                      .shown = sample.valid ? pose.shown : Wrench{},
+                                      .valid = sample.valid,
+                                      .clutched = (sample.buttons & clutchButton) != 0};
+  const Wrench wrench = measured(h, measurement, now);
   stream_.send(forcewire::encode(forcewire::WrenchFrame{pose.hand, output_[h]->number(), pose.deviceTime, wrench}));
 }
 
