@@ -12,6 +12,7 @@
 #include "recorder/base/csv.h"
 #include "recorder/base/errors.h"
 #include "recorder/base/file_bytes.h"
+#include "recorder/base/record_reader.h"
 #include "recorder/sources/pointing.h"
 
 namespace calot::recorder {
@@ -24,6 +25,21 @@ constexpr std::size_t maxBytes = std::size_t{1} << 30U;
 constexpr std::size_t maxRows = 1000000;
 
 bool isBlank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
+
+/// @param fail throws with this fault @param hint on what may be wrong
+template <class Fail>
+void checkPosition(const Vec3& position, const char* hint, const Fail& fail) {
+  if (!(position.cwiseAbs().maxCoeff() <= maxPosition))
+    fail(fmt::format("a position farther than {} m{}", maxPosition, hint));
+}
+
+template <class Fail>
+Quat checkedRotation(const Mat3& matrix, const Fail& fail) {
+  const double off = rotationDefect(matrix);  // rounding in the format of kinematics is below 1e-4
+  if (!(off <= rotationTolerance))
+    fail(fmt::format("no rotation matrix (off by {:.2g}; {:.2g} is allowed)", off, rotationTolerance));
+  return quaternionOf(matrix);
+}
 
 class LineReader {
  public:
@@ -53,20 +69,12 @@ class LineReader {
   [[nodiscard]] KinematicsPose pose(const std::array<double, columns>& v, std::size_t first) const {
     KinematicsPose pose;
     pose.position = Vec3(v[first], v[first + 1], v[first + 2]);
-    if (!(pose.position.cwiseAbs().maxCoeff() <= maxPosition)) {
-      fail(fmt::format("columns {} to {}: a position farther than {} m; positions are in metres", first + 1, first + 3,
-                       maxPosition));
-    }
-    Mat3 rotation;
-    for (int r = 0; r < 3; ++r) {
-      for (int c = 0; c < 3; ++c) rotation(r, c) = v[first + 3 + static_cast<std::size_t>(3 * r + c)];
-    }
-    const double off = rotationDefect(rotation);  // the format's own rounding is below 1e-4
-    if (!(off <= rotationTolerance)) {
-      fail(fmt::format("columns {} to {}: no rotation matrix (off by {:.2g}; {:.2g} is allowed)", first + 4, first + 12,
-                       off, rotationTolerance));
-    }
-    pose.orientation = quaternionOf(rotation);
+    const auto failAt = [&](std::size_t from, std::size_t to) {
+      return [=, this](const std::string& fault) { fail(fmt::format("columns {} to {}: {}", from, to, fault)); };
+    };
+    checkPosition(pose.position, "; positions are in metres", failAt(first + 1, first + 3));
+    using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+    pose.orientation = checkedRotation(Eigen::Map<const RowMajor>(v.data() + first + 3), failAt(first + 4, first + 12));
     pose.gripper = v[first + 18];
     return pose;
   }
@@ -247,9 +255,7 @@ class RowReader {
 
   [[nodiscard]] Vec3 position(std::size_t first, std::size_t row, double metres) const {
     const Vec3 p(metres * at(first, row), metres * at(first + 1, row), metres * at(first + 2, row));
-    if (!(p.cwiseAbs().maxCoeff() <= maxPosition)) {
-      fail(row, fmt::format("a position farther than {} m: the map's unit of length may be wrong", maxPosition));
-    }
+    checkPosition(p, ": the map's unit of length may be wrong", [&](const std::string& fault) { fail(row, fault); });
     return p;
   }
 
@@ -263,10 +269,7 @@ class RowReader {
     }
     Mat3 rotation;
     for (int i = 0; i < 9; ++i) rotation(i / 3, i % 3) = at(first + static_cast<std::size_t>(i), row);
-    const double off = rotationDefect(rotation);
-    if (!(off <= rotationTolerance))
-      fail(row, fmt::format("no rotation matrix (off by {:.2g}; {:.2g} is allowed)", off, rotationTolerance));
-    return quaternionOf(rotation);
+    return checkedRotation(rotation, [&](const std::string& fault) { fail(row, fault); });
   }
 
  private:
