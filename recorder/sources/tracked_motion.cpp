@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-#include "recorder/base/record_reader.h"
 #include "recorder/sources/tracked_motion.h"
+#include "recorder/base/record_reader.h"
 
 #include <fmt/format.h>
 #include <charconv>
