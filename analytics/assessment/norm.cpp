@@ -91,7 +91,7 @@ NormCheckpoint markOf(const CheckpointDefinition& definition, const NormFigure& 
     mark.upper = cut->upper;
     return mark;
   }
-  const ContrastingGroupsOptions options{mark.logScale, 0.95, 9999, norm.seed};
+  const ContrastingGroupsOptions options{{.seed = norm.seed}, mark.logScale};
   const Expected<ContrastingGroups> cut = contrastingGroups(
       competent, others, definition.direction == Direction::lower ? Better::lower : Better::higher, options);
   if (!cut) {
@@ -108,12 +108,12 @@ NormCheckpoint markOf(const CheckpointDefinition& definition, const NormFigure& 
   return mark;
 }
 
-/// Whether a figure is in the norm: those of phases, which repeat the whole attempt's, where they are asked for.
+/// True if a figure belongs to the norm; figures of phases, which repeat the whole attempt's, only on request.
 bool isAskedFor(const CheckpointDefinition& definition, const std::string& subject, const NormRequest& request) {
   return !isOfPhases(definition) || request.who.includePhases || isNamed(request.checkpoints, definition.name, subject);
 }
 
-/// Which figures members have that judge, in the registry's order; their values, once a member.
+/// Figures of the members that judge, in the registry's order; one value per member.
 std::vector<NormFigure> collectValues(Norm& norm, const std::vector<AttemptValue>& values, const NormRequest& request,
                                       const std::string& name) {
   std::vector<NormFigure> figures;
@@ -227,9 +227,9 @@ Norm makeNorm(const std::vector<AttemptRow>& attempts, const std::vector<Attempt
                 "norm: a name has 1 to 64 letters, digits, points, hyphens and underscores, and no others");
   if (request.who.protocol && request.who.protocol->protocol.attemptRule == AttemptRule::mean)
     throw Error(ErrorKind::refused, Where{request.who.protocol->protocol.file},
-                "its attempt rule is the mean, and a mean of attempts is no attempt that others are held against");
+                "its attempt rule is the mean, and a mean of attempts is not an attempt that others are held against");
   if (request.who.attemptRule == AttemptRule::mean)
-    throw Error(ErrorKind::invalid, "norm: a mean of attempts is no attempt", {Remedy::takeFirst});
+    throw Error(ErrorKind::invalid, "norm: a mean of attempts is not an attempt", {Remedy::takeFirst});
   StudyOptions who = request.who;
   std::vector<AttemptRow> candidates = attempts;
   Norm norm;

@@ -110,7 +110,7 @@ Motion motionOf(const recorder::TrackedMotion& tracked, std::size_t hand, double
       samples.grid.extend(time, rows.position[i], rows.orientation[i]);
     }
   }
-  const GapRule rule(samples.rate.interval());
+  const GapRule rule{samples.rate.interval()};
   samples.longestRate = rule.longestEven();
   samples.coverage.mounted = {{0.0, tracked.time.back()}};
   for (std::size_t i = 1; i < tracked.time.size(); ++i) {
@@ -146,7 +146,7 @@ std::vector<CheckpointValue> valuesFromSamples(const recorder::TrackedMotion& tr
 
 namespace {
 
-/// Intervals over so many of the tracker's own hold a sample whose pose was equal to the one before, and so unseen.
+/// A longer interval, in the tracker's own, hides a sample whose pose equalled the previous one.
 constexpr double unseenIntervals = 1.5;
 
 }  // namespace
@@ -166,7 +166,7 @@ bool MotionTrack::isDue() const {
 /// The newest sample's pose stood for longer than a source holds one.
 bool MotionTrack::rested() const { return seconds(vouched_ - sample_) > straightBridge; }
 
-/// What the newest sample's pose vouches for beyond 0.1 s is rest, up to the end.
+/// Extends the grid to the end: the newest sample vouches for rest beyond 0.1 s.
 void MotionTrack::closeRest(SampleGrid& grid) const {
   if (!grid.runs().empty() && rested()) grid.extend(static_cast<double>(vouched_), position_, orientation_);
 }
@@ -249,7 +249,7 @@ MotionCoverage MotionTrack::coverage(double interval) const {
     coverage.mounted.push_back({seconds(mountedAt_), seconds(end)});
     if (instrument_ == InstrumentKind::none || vouched_ < tick_) pauses.push_back(pauseUntil(end));
   }
-  const GapRule rule(interval);
+  const GapRule rule{interval};
   for (const Pause& pause : pauses) {
     const double pauseSeconds = seconds(pause.to - pause.from);
     if (pause.atStart) {

@@ -30,7 +30,7 @@ CrossedValues crossedValues(const DesignData& data, const DesignFigure& figure, 
   return values;
 }
 
-/// Which levels the variance components are of, and the people who have all of them.
+/// Levels of the variance components, and the people who have all of them.
 struct CrossedTable {
   RatingTable table;
   std::size_t incomplete = 0;  ///< people left out
@@ -193,7 +193,7 @@ void analyseReliability(const DesignData& data, const DesignChoices&, DesignRepo
                  {"residual", "", [](const ValueTree& row) { return shareText(row, "residual_variance"); }},
                  {"G [95 %]", "", [](const ValueTree& row) { return coefficientText(row, "g"); }},
                  {"Phi [95 %]", "", [](const ValueTree& row) { return coefficientText(row, "phi"); }}}),
-        tableOf("Decision study: G / Phi of the mean of so many", components, decisions)}) {
+        tableOf("Decision study: G / Phi of the mean of N", components, decisions)}) {
     if (!table.rows.empty()) report.tables.push_back(std::move(table));
   }
   report.notes.emplace_back(

@@ -42,8 +42,8 @@ std::optional<nlohmann::ordered_json> rowIn(const std::string& line) {
 
 std::string journalHead() { return checkedLine({{"format", "calot-intake"}, {"format_version", 1}}); }
 
-/// Paths are bytes, JSON is UTF-8: a path that is none stands in hexadecimal.
-std::string hexOf(const std::string& text) {
+/// Paths are bytes, JSON is UTF-8: a path that is not UTF-8 stands in hexadecimal.
+std::string inHex(const std::string& text) {
   std::string hex;
   for (const char c : text) hex += fmt::format("{:02x}", static_cast<unsigned char>(c));
   return hex;
@@ -67,7 +67,7 @@ bool isUtf8(const std::string& text) {
 
 std::string lineOf(const std::string& file, const JournalEntry& e) {
   const bool plain = isUtf8(file);
-  return checkedLine({{plain ? "file" : "file_hex", plain ? file : hexOf(file)},
+  return checkedLine({{plain ? "file" : "file_hex", plain ? file : inHex(file)},
                       {"bytes", e.state.bytes},
                       {"modified_ns", std::to_string(e.state.modified)},
                       {"inode", std::to_string(e.state.inode)},
@@ -170,7 +170,8 @@ void IntakeJournal::load() {
     return;
   }
   // A file that does not begin so may be anything: it is not emptied.
-  if (line != head) throw Error(ErrorKind::damaged, Where{path_.string()}, "is no journal of Calot; name another file");
+  if (line != head)
+    throw Error(ErrorKind::damaged, Where{path_.string()}, "is not a journal of Calot; name another file");
   std::uint64_t good = head.size();
   while (std::getline(in, line) && !in.eof()) {  // one without its end was cut off
     try {

@@ -184,7 +184,7 @@ struct CalibrateOptions {
   DeviceOptions device;
   std::string from, stream, output;
   double strokeMillimetres = 100.0;
-  // Of cameras alone.
+  // Options of cameras.
   std::vector<std::string> board;
   std::string phases, pictures;
   double rulerMillimetres = recorder::rulerLength, readoutMilliseconds = 0.0;
@@ -300,7 +300,7 @@ void calibrateCamera(const CalibrateOptions& o) {
   return finishCalibration(o, stream, std::move(calibration));
 }
 
-/// Of a mouse: the trainer's own, or one that is taken from the system.
+/// Declares a mouse: the trainer's own, or one that is taken from the system.
 void declareCalibration(const CalibrateOptions& o) {
   if (!o.from.empty() || !o.stream.empty())
     throw Error(ErrorKind::invalid, "calibrate: --from and --keep-stream measure; --pixel declares");

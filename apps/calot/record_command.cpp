@@ -109,7 +109,7 @@ struct RecordOptions {
 };
 
 void record(const RecordOptions& o) {
-  if (!std::isfinite(o.seconds)) throw Error(ErrorKind::invalid, "--seconds: a number is wanted");
+  if (!std::isfinite(o.seconds)) throw Error(ErrorKind::invalid, "--seconds: a number is expected");
   stopOnSignals();
   recorder::refuseOutput(o.output, o.force);
   std::optional<recorder::StationKey> key = stationKeyOf(o.stationKey);
@@ -181,7 +181,7 @@ class LastPose final : public recorder::Observer {
 };
 
 void branch(const BranchOptions& o) {
-  if (!std::isfinite(o.seconds)) throw Error(ErrorKind::invalid, "--seconds: a number is wanted");
+  if (!std::isfinite(o.seconds)) throw Error(ErrorKind::invalid, "--seconds: a number is expected");
   stopOnSignals();
   const double at = parseTime(o.at);
   std::optional<recorder::StationKey> key = stationKeyOf(o.stationKey);

@@ -31,7 +31,8 @@ void addCohortOptions(CLI::App& command, StudySource& options, CLI::Option& tabl
   command.add_option("--cohort-name", options.cohortName,
                      "Only attempts of the participants of this cohort (calot cohort name)");
   addChoice(command, "--group-by", options.groupBy,
-            "What makes the groups: the participants' group or the performers' profile", {"performer", "group"});
+            "Property that makes the groups: the participants' group or the performers' profile",
+            {"performer", "group"});
   command.add_flag("--include-synthetic", options.cohort.includeSynthetic,
                    "Take in what performers made (watermarked)");
   command.add_flag("--include-practice", options.cohort.includePractice, "Take in attempts in practice mode");
@@ -182,7 +183,7 @@ Design chosenDesign(const DesignOptions& o, const StudySource& source) {
 void addDesignOptions(CLI::App& command, DesignOptions& o) {
   std::vector<std::string> names;
   for (const analytics::DesignEntry& e : analytics::designs()) names.emplace_back(e.name);
-  command.add_option("--design", o.design, "What is asked of the data; see below (default: two-groups)")
+  command.add_option("--design", o.design, "Question to the data; see below (default: two-groups)")
       ->check(oneOf(names));
   command.add_option("--strata", o.choices.strata,
                      "Strata of the designs strata and repeated: of a cohort site or arm, of a table a column");
@@ -194,7 +195,7 @@ void addDesignOptions(CLI::App& command, DesignOptions& o) {
                      "the criterion");
   addNumber(command, "--in-a-row", o.choices.run, "Attempts in a row that must meet the criterion (learning)", 1, 1000);
   command.add_option("--finished-column", o.choices.finishedColumn,
-                     "Of a table: whether the attempt was finished, 1 or 0 (time-to-criterion)");
+                     "Column of a table: 1 if the attempt was finished, else 0 (time-to-criterion)");
   command
       .add_option("--error-ratio", o.choices.errorRatio,
                   "Error variance of the second method over that of the first (agreement)")
@@ -230,7 +231,8 @@ Design designOf(const DesignOptions& o, const StudySource& source) {
   if (design == Design::timeToCriterion && !source.table.empty() && o.choices.finishedColumn.empty())
     failDesign("--design time-to-criterion of a table needs --finished-column");
   if (!o.choices.criterion && o.choices.run != 1) failDesign("--in-a-row needs --criterion");
-  if (o.choices.criterion && !std::isfinite(*o.choices.criterion)) failDesign("--criterion: a finite number is wanted");
+  if (o.choices.criterion && !std::isfinite(*o.choices.criterion))
+    failDesign("--criterion: a finite number is expected");
   if (source.table.empty() && !o.choices.strata.empty() && o.choices.strata != "site" && o.choices.strata != "arm")
     failDesign("--strata of a cohort: site or arm");
   if (!source.table.empty() && source.elsewhere.occasionColumns.empty() && design == Design::agreement &&
@@ -272,7 +274,7 @@ void noteExports(const StudyCommandOptions& options, const std::vector<std::stri
       if (!file.empty()) analytics::recordExport(options.source.database, kind, file, attempts);
     }
   } catch (const Error& e) {
-    std::cerr << "calot: warning: what was written is not noted for withdrawals: " << messageOf(e) << '\n';
+    std::cerr << "calot: warning: the export could not be registered for later withdrawal: " << messageOf(e) << '\n';
   }
 }
 

@@ -34,14 +34,14 @@ QSize windowSize(const LookOptions& look) {
   const std::optional<gui::PictureSize> size = gui::readSize(look.size);
   if (!size || std::min(size->width, size->height) < least || std::max(size->width, size->height) > most)
     throw Error(ErrorKind::invalid,
-                "--size " + recorder::shown(look.size) + ": WIDTHxHEIGHT is wanted, of 640 to 8192 pixels");
+                "--size " + recorder::shown(look.size) + ": WIDTHxHEIGHT is expected, of 640 to 8192 pixels");
   return {size->width, size->height};
 }
 
 void requireFolder(const std::string& folder, const std::string& what) {
   std::error_code ignored;
   if (!std::filesystem::is_directory(folder, ignored))
-    throw Error(ErrorKind::invalid, Where{folder}, fmt::format("is no folder; {} go into one that exists", what));
+    throw Error(ErrorKind::invalid, Where{folder}, fmt::format("is not a folder; {} go into one that exists", what));
   // Rights alone do not tell: a file system may take no files, or be for reading only.
   std::string trial = folder + "/.calot-XXXXXX";
   const int file = ::mkstemp(trial.data());
@@ -82,8 +82,9 @@ std::string positiveSeconds(const std::string& text) {
   char* end = nullptr;
   const double seconds = std::strtod(text.c_str(), &end);
   const bool whole = end != text.c_str() && *end == '\0';
-  return whole && std::isfinite(seconds) && seconds > 0.0 ? std::string()
-                                                          : fmt::format("'{}' is no number of seconds above 0", text);
+  return whole && std::isfinite(seconds) && seconds > 0.0
+             ? std::string()
+             : fmt::format("'{}' is not a number of seconds above 0", text);
 }
 
 }  // namespace calot::apps

@@ -61,7 +61,7 @@ inline QPushButton* button(const char* text, const char* name) {
   return made;
 }
 
-/// A choice as wide as so many letters, however long its entries are.
+/// A choice as wide as this number of letters, however long its entries are.
 inline QComboBox* choice(const char* name, int letters) {
   auto* const made = named(name, new QComboBox);
   made->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);

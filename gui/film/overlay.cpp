@@ -23,7 +23,7 @@ namespace {
 
 const char* const fontFile = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";  // where Debian puts it
 
-/// Characters of UTF-8; what is none becomes a question mark.
+/// Characters of UTF-8; an invalid byte becomes a question mark.
 std::vector<char32_t> charactersOf(const std::string& text) {
   std::vector<char32_t> characters;
   for (std::size_t i = 0; i < text.size();) {

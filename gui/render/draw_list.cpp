@@ -110,7 +110,7 @@ Sight sightOf(int width, int height, double verticalFieldOfView, bool field) {
   sight.up = std::tan(0.5 * verticalFieldOfView);
   sight.aside = sight.up * w / h;
   if (!field) return sight;
-  // What lies around the field is black, and costs nothing. Wide pictures cut it above and below.
+  // The picture outside the field is black, and costs nothing. Wide pictures cut it above and below.
   const double rim = 0.5 * std::min(w, h) * (width == height ? 0.985 : 1.12);
   constexpr double feather = 1.5;
   constexpr double beyond = 8.0;  // pixels, so that passes of half the size have neighbours at the rim

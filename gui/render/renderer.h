@@ -45,7 +45,7 @@ class Renderer {
   ///   (width / 2 + f x / z, height / 2 + f y / z),  f = (height / 2) / tan(verticalFieldOfView / 2).
   /// @throws calot::Error: invalid if the size is outside the limits above; damaged if the view has a number that is
   /// not finite, a triangle that names no vertex, a sheet that names no strand, a strand without condition or with an
-  /// alpha outside [0, 1], a puff that is none, or a field of view outside (0.05, 3.0) rad; failure if there is no
+  /// alpha outside [0, 1], an invalid puff, or a field of view outside (0.05, 3.0) rad; failure if there is no
   /// memory.
   /// @param smoke what a view knows nothing of (SmokeTrail); drawn over the rest
   [[nodiscard]] Image render(const SceneView& view, int width, int height, const RenderSettings& settings = {},

@@ -65,7 +65,7 @@ std::string ScenePainter::implementation() const {
 }
 
 void ScenePainter::drawPart(const DrawPart& part) const {
-  // Of a closed body only the near side is seen; of the cavity, from outside, only the far wall. Other surfaces may be
+  // A closed body shows only its near side; the cavity, from outside, only its far wall. Other surfaces may be
   // open: both sides are drawn.
   if (part.oneSided) gl_.Enable(GL_CULL_FACE);
   surfaces_.draw(part.firstIndex, part.indexCount);

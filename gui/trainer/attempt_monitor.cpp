@@ -154,7 +154,7 @@ AttemptFigures AttemptMonitor::figures() const {
 
 void MotionClock::asked(std::uint64_t step, Time now) {
   Entry& entry = entries_[step % kept];
-  // Who reads meanwhile finds no step here.
+  // A concurrent reader finds no step here.
   entry.step.store(~std::uint64_t{0}, std::memory_order_seq_cst);
   entry.ticks.store(now.time_since_epoch().count(), std::memory_order_seq_cst);
   entry.step.store(step, std::memory_order_seq_cst);

@@ -34,7 +34,7 @@ struct Mistake {
   bool critical = false;  ///< fails an assessment
   std::string text;       ///< one line: "cystic duct: clip half on"
 
-  /// Where the branch leaves (s): goBackBy earlier, or the end of the first step.
+  /// Fork of the branch (s): goBackBy earlier, or the end of the first step.
   [[nodiscard]] double branchTime(double stepSeconds) const;
 };
 

@@ -33,7 +33,7 @@ QString figureWords(const FigureReport& figure) {
   return text;
 }
 
-/// Where the recording is stored, or why it is not.
+/// Path of the stored recording, or the reason why it is not stored.
 QString putIntoCohort(const std::filesystem::path& file, const std::filesystem::path& cohort, unsigned threads,
                       LongWork::Control& control) {
   analytics::AssessSettings settings;

@@ -186,7 +186,7 @@ void TrainingSession::work() {
       problem = problemText(error);
     }
     const std::lock_guard lock(mutex_);
-    // Where something else is wanted already, nothing has come to an end.
+    // If something else is requested already, nothing has ended.
     if (!command_ || command_->quit) status_.stage = Stage::ended;
     if (!problem.empty()) status_.problem = problem;
   }
@@ -331,7 +331,7 @@ void TrainingSession::awaitPicture(recorder::Session& session) {
   }
 }
 
-/// Who went back looks first and acts then. What the hands do meanwhile is forgotten.
+/// A person who went back looks first and acts then. Motion of the hands meanwhile is discarded.
 void TrainingSession::countDown(recorder::SampleSource& source) {
   using Clock = std::chrono::steady_clock;
   constexpr std::chrono::milliseconds glance(10);

@@ -26,7 +26,7 @@
 
 namespace calot::gui {
 
-/// Who acts in the trainer: opens a source for each attempt and ties it to its run. Called by the session's thread
+/// Input of the trainer: opens a source for each attempt and ties it to its run. Called by the session's thread
 /// alone. What open() gave is what the other functions are given.
 class AttemptInput {
  public:

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -18,6 +19,9 @@
 namespace calot::recorder {
 
 namespace {
+
+/// How long an engine may take over one answer. A step takes milliseconds, the largest scene seconds.
+constexpr std::chrono::seconds enginePatience{120};
 
 /// Golden recordings hold no results; engines send them all the same.
 AttemptHeader withResults(AttemptHeader header) {
@@ -42,15 +46,16 @@ std::string ResultReader::fault(const std::vector<wire::Column>& declared) const
   }
   if (ours == declared) return "";
   const auto differing = std::mismatch(ours.begin(), ours.end(), declared.begin(), declared.end());
-  return differing.first == ours.end() ? fmt::format("{} is no result of the recording", differing.second->path)
-                                       : fmt::format("{} is no result of the engine", differing.first->path);
+  return differing.first == ours.end() ? fmt::format("{} is not a result of the recording", differing.second->path)
+                                       : fmt::format("{} is not a result of the engine", differing.first->path);
 }
 
-std::string ResultReader::read(std::span<const std::byte> row, StepResult& result, RecordedProcedure& procedure) const {
+std::string ResultReader::read(std::uint64_t step, std::span<const std::byte> row, StepResult& result,
+                               RecordedProcedure& procedure) const {
   if (row.size() != offset_.back())
     return fmt::format("results have {} bytes instead of {}", row.size(), offset_.back());
   const auto place = [&](std::size_t column) { return row.data() + offset_[column - layout_.results]; };
-  RowVisitor<decltype(place)> visit{layout_, place, layout_.results, false, {}};
+  RowVisitor<decltype(place)> visit{layout_, place, step, layout_.results, false, {}};
   visitResult(result, visit);
   if (layout_.procedure) visitProcedure(procedure, visit);
   return visit.fault;
@@ -62,7 +67,7 @@ template <class Request>
 void EngineProcess::send(const Request& request) {
   request_.clear();
   appendMessage(request, request_);
-  // Where it has ended, receive() says so, after what it said before.
+  // If it has ended, receive() reports it, after its earlier answers.
   static_cast<void>(child_.channel().send(request_));
 }
 
@@ -77,7 +82,7 @@ std::span<const std::byte> EngineProcess::receive(std::uint32_t kind, std::uint3
     if (fault.code == wire::FaultCode::contactSet) throw std::out_of_range(fault.message);
     fail(fault.message);
   }
-  if (kind == wire::IsHello::kind) fail("is no engine");
+  if (kind == wire::IsHello::kind) fail("is not an engine");
   if (got == nullptr) fail(fmt::format("the engine answered with a message of kind {}, not {}", parsed.kind, kind));
   return payload_;
 }
@@ -93,15 +98,15 @@ template <class Answer, class Request>
 Answer EngineProcess::ask(const Request& request) {
   Answer answer;
   if (!decode(ask(request, Answer::kind), answer))
-    fail(fmt::format("the engine's answer {} has not the bytes that it must have", Answer::kind));
+    fail(fmt::format("the engine's answer {} does not have the expected number of bytes", Answer::kind));
   return answer;
 }
 
 EngineProcess::EngineProcess(const std::vector<std::string>& command, std::uint32_t simulationVersion)
     : program_(command.back()), child_(command), where_{program_} {
   const auto answer = ask<wire::IsHello>(wire::Hello{});
-  if (answer.magic != wire::magic || answer.protocol != wire::protocol) fail("is no engine");
-  if (answer.confined > static_cast<std::uint8_t>(Confinement::byHost)) fail("is no engine");
+  if (answer.magic != wire::magic || answer.protocol != wire::protocol) fail("is not an engine");
+  if (answer.confined > static_cast<std::uint8_t>(Confinement::byHost)) fail("is not an engine");
   if (answer.simulation != simulationVersion)
     fail(fmt::format("is an engine of simulation version {}, not {}", answer.simulation, simulationVersion));
   identity_ = {answer.simulation, answer.result, answer.software, static_cast<Confinement>(answer.confined)};
@@ -152,7 +157,8 @@ bool EngineProcess::restore(const Keyframe& keyframe, const std::optional<NamedS
 
 void EngineProcess::announce(const StepInput& input) {
   stepRequest_.lateness = input.lateness;
-  wire::toWire(input.samples, input.logged, stepRequest_.ticks);
+  stepRequest_.ticks.resize(input.samples.size());
+  for (std::size_t i = 0; i < input.samples.size(); ++i) stepRequest_.ticks[i] = {input.samples[i], input.logged[i]};
   send(stepRequest_);
   ++announced_;
 }
@@ -173,7 +179,8 @@ EngineStep EngineProcess::step(const StepInput& input) {
   }
   digest_.component = answer.components;
   digest_.field = answer.digested;
-  if (const std::string fault = results_->read(answer.results, result_, procedure_); !fault.empty()) fail(fault);
+  if (const std::string fault = results_->read(answer.step, answer.results, result_, procedure_); !fault.empty())
+    fail(fault);
   result_.step = answer.step;
   result_.events.clear();
   for (const wire::Event& event : answer.events) result_.events.push_back(wire::fromWire(event));

@@ -76,7 +76,7 @@ std::vector<Field> CalibrationLimits::fields() {
 
 std::vector<Field> Calibration::fields() {
   using S = Calibration;
-  static constexpr TextRule date{32, "[0-9]{4}-[0-9]{2}-[0-9]{2}T[0-9]{2}:[0-9]{2}:[0-9]{2}Z",
+  static constexpr TextRule date{32, "^[0-9]{4}-[0-9]{2}-[0-9]{2}T[0-9]{2}:[0-9]{2}:[0-9]{2}Z$",
                                  "is no date like 2026-01-31T23:59:59Z"};
   return {
       object("",
