@@ -26,6 +26,13 @@ inline QLabel* plainLabel(const char* name, bool wrap = true) {
   return label;
 }
 
+/// The same, whose words can be selected and copied.
+inline QLabel* selectableLabel(const char* name) {
+  auto* const label = plainLabel(name);
+  label->setTextInteractionFlags(Qt::TextSelectableByMouse | Qt::TextSelectableByKeyboard);
+  return label;
+}
+
 inline void embolden(QWidget* widget) {
   QFont bold = widget->font();
   bold.setBold(true);
