@@ -183,51 +183,38 @@ SceneDescription perturbed(const SceneDescription& scene, std::size_t run) {
 
 namespace {
 
-using Use = std::function<void(double&)>;
-
-void useNumbers(const Record& record, void* object, std::string_view path, const Use& use);
-
-/// Does a part of a path name this item of a list, or every one?
-bool isNamed(std::string_view part, const Access& item, void* object) {
-  if (part == "*") return true;
-  const std::vector<Field>& fields = item.record().fields;
-  const auto name =
-      std::find_if(fields.begin(), fields.end(), [](const Field& f) { return f.name == std::string("name"); });
-  return name != fields.end() && *static_cast<const std::string*>(name->value.get(object)) == part;
+/// The text of a record's field "name"; empty where it has none.
+std::string nameOfItem(const Record& record, void* object) {
+  for (const Field& field : record.fields) {
+    if (field.name == std::string_view("name")) return *static_cast<std::string*>(field.value.get(object));
+  }
+  return {};
 }
 
-void useNumbers(const Access& access, void* value, std::string_view path, const Use& use) {
-  if (access.type == Access::Type::numbers) {
-    use(*static_cast<double*>(value));
-  } else if (access.type == Access::Type::record) {
-    useNumbers(access.record(), value, path, use);
+/// Multiplies what a path of fields, of names of a list's items, or of * for each leads to.
+/// @returns whether there is such a number other than 0
+bool multiplyAt(const Access& access, void* value, std::string_view path, double factor) {
+  const std::size_t end = std::min(path.find('.'), path.size());
+  const std::string_view name = path.substr(0, end), rest = path.substr(std::min(end + 1, path.size()));
+  bool found = false;
+  if (access.type == Access::Type::numbers && access.count == 0) {
+    double& number = *static_cast<double*>(value);
+    found = number != 0.0;
+    number *= factor;
   } else if (access.type == Access::Type::list) {
-    const std::string_view part = path.substr(0, path.find('.'));
     for (std::size_t i = 0; i < access.items(value); ++i) {
       void* const item = access.itemAt(value, i);
-      if (isNamed(part, *access.item, item)) useNumbers(*access.item, item, path.substr(part.size() + 1), use);
+      if (name == "*" || name == nameOfItem(access.item->record(), item))
+        found = multiplyAt(*access.item, item, rest, factor) || found;
+    }
+  } else if (access.type == Access::Type::record) {
+    for (const Field& field : access.record().fields) {
+      const bool isThere = field.value.get != nullptr && (field.value.has == nullptr || field.value.has(value));
+      if (isThere && (name == "*" || name == field.name))
+        found = multiplyAt(field.value, field.value.get(value), rest, factor) || found;
     }
   }
-}
-
-/// Visits the numbers that a path of keys of a scene file leads to; "*" is every key, or every item.
-void useNumbers(const Record& record, void* object, std::string_view path, const Use& use) {
-  const std::string_view key = path.substr(0, path.find('.'));
-  const std::string_view rest = path.substr(std::min(key.size() + 1, path.size()));
-  for (const Field& field : record.fields) {
-    if ((key == "*" || key == field.name) && field.value.get != nullptr)
-      useNumbers(field.value, field.value.get(object), rest, use);
-  }
-}
-
-/// Multiplies the numbers of a path. @returns false where none differs from 0
-bool multiplyAll(SceneDescription& scene, std::string_view path, double factor) {
-  bool changed = false;
-  useNumbers(recordOf<SceneDescription>(), &scene, path, [&](double& number) {
-    changed = changed || number != 0.0;
-    number *= factor;
-  });
-  return changed;
+  return found;
 }
 
 constexpr std::string_view compressibility = "organs.*.material.poissonRatio (0.5 - nu)",
@@ -246,7 +233,7 @@ bool SceneConstant::multiply(SceneDescription& scene, double factor) const {
   if (name == bedStrength) {
     for (ConnectiveDescription& bed : scene.connective) bed.fractureEnergy *= factor * factor;
   }
-  return multiplyAll(scene, name, factor);
+  return multiplyAt({.type = Access::Type::record, .record = &recordOf<SceneDescription>}, &scene, name, factor);
 }
 
 const std::vector<SceneConstant>& sceneConstants() {

@@ -53,6 +53,26 @@ TEST(Design, TellsElevenFactorsApart) {
   }
 }
 
+TEST(Design, ConstantsLeadToTheNumbersThatTheyName) {
+  SceneDescription scene;
+  for (const char* name : {"liver", "gallbladder"}) scene.organs.emplace_back().name = name;
+  for (OrganDescription& organ : scene.organs) organ.burnThrough = 2.0;
+  scene.vessels.emplace_back().burnThrough = 1.0;
+  ConnectiveDescription& bed = scene.connective.emplace_back();
+  for (double* constant : {&bed.stiffness, &bed.damping, &bed.strength, &bed.fadeTime}) *constant = 1.0;
+  scene.fat.emplace_back().attachments.emplace_back().stiffness = 3.0;
+  scene.retraction.emplace_back();
+  const SceneDescription before = scene;
+  for (const SceneConstant& constant : sceneConstants()) EXPECT_TRUE(constant.multiply(scene, 2.0)) << constant.name;
+  EXPECT_EQ(scene.organs[1].material.youngModulus, 2.0 * before.organs[1].material.youngModulus);
+  EXPECT_EQ(scene.connective[0].fractureEnergy, 4.0 * before.connective[0].fractureEnergy);
+  EXPECT_EQ(scene.fat[0].attachments[0].stiffness, 6.0);
+  EXPECT_EQ(scene.hands[1].slipForce, 2.0 * before.hands[1].slipForce);
+  EXPECT_EQ(scene.cautery.spot, 2.0 * before.cautery.spot);
+  scene.vessels.clear();
+  EXPECT_FALSE(findSceneConstant("vessels.*.wall")->multiply(scene, 2.0)) << "a scene without vessels";
+}
+
 TEST(Design, NamesConstantsOnceEach) {
   std::vector<std::string> names;
   for (const AssumedFactor& factor : assumedFactors()) {
