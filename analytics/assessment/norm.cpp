@@ -262,7 +262,7 @@ Norm makeNorm(const std::vector<AttemptRow>& attempts, const std::vector<Attempt
   norm.seed = request.seed;
   norm.synthetic = study.synthetic;
   if (study.keys.size() != 1)
-    throw Error(ErrorKind::refused, Where{name}, "a norm is of one comparability key", {Remedy::chooseKey});
+    throw Error(ErrorKind::refused, Where{name}, "a norm needs attempts of one comparability key", {Remedy::chooseKey});
   norm.comparabilityKey = study.keys[0];
   for (const AttemptRow& a : candidates) {
     const auto group = study.groupOf.find(a.uuid);
