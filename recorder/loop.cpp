@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <bit>
 #include <optional>
 #include <utility>
 
@@ -11,6 +10,7 @@
 #include "recorder/live/haptic_thread.h"
 #include "recorder/live/wrapped_sources.h"
 #include "recorder/recording/reader.h"
+#include "sim/math/fields.h"
 
 namespace calot::recorder {
 
@@ -18,25 +18,16 @@ namespace {
 
 double seconds(Nanoseconds t) { return std::chrono::duration<double>(t).count(); }
 
-/// Conditions that end an attempt before a step, apart from its source.
-class Gate {
- public:
-  Gate(const Model& model, const RunSettings& settings)
-      : stepSeconds_(model.stepSeconds()), timeLimit_(model.scene().timeLimit), settings_(settings) {}
+bool isStopped(const RunSettings& settings) { return settings.stop != nullptr && settings.stop->load(); }
 
-  /// @returns running where step n may begin
-  [[nodiscard]] Outcome ask(std::uint64_t step) const {
-    const double time = static_cast<double>(step) * stepSeconds_;
-    if (timeLimit_ > 0.0 && time >= timeLimit_) return Outcome::timeLimit;
-    if ((settings_.seconds > 0.0 && time >= settings_.seconds) || stopped()) return Outcome::stopped;
-    return Outcome::running;
-  }
-  [[nodiscard]] bool stopped() const { return settings_.stop != nullptr && settings_.stop->load(); }
-
- private:
-  double stepSeconds_, timeLimit_;
-  const RunSettings& settings_;
-};
+/// How an attempt ends before step n, apart from its source; running: it does not.
+Outcome outcomeBefore(std::uint64_t step, const Model& model, const RunSettings& settings) {
+  const double time = static_cast<double>(step) * model.stepSeconds();
+  const double timeLimit = model.scene().timeLimit;
+  if (timeLimit > 0.0 && time >= timeLimit) return Outcome::timeLimit;
+  if ((settings.seconds > 0.0 && time >= settings.seconds) || isStopped(settings)) return Outcome::stopped;
+  return Outcome::running;
+}
 
 float lateness(Nanoseconds due) { return static_cast<float>(std::max(0.0, seconds(monotonicNow() - due))); }
 
@@ -44,7 +35,6 @@ float lateness(Nanoseconds due) { return static_cast<float>(std::max(0.0, second
 void runInline(Session& session, SampleSource& source, const RunSettings& settings, const StepWatch& watch,
                RunReport& report) {
   const std::uint32_t ticksPerStep = session.model().scene().ticksPerStep;
-  const Gate gate(session.model(), settings);
   std::vector<TickSamples> samples(ticksPerStep);
   std::vector<TickOutcome> ticks(ticksPerStep);
   PacedClock clock(monotonicNow());
@@ -52,8 +42,9 @@ void runInline(Session& session, SampleSource& source, const RunSettings& settin
   std::uint64_t tick = 0;
   while (true) {
     const SourceStatus status = waitWhilePaused(
-        source, [&gate] { return gate.stopped(); }, clock, pauses);
-    report.outcome = status == SourceStatus::failed ? Outcome::technicalFailure : gate.ask(session.steps());
+        source, [&] { return isStopped(settings); }, clock, pauses);
+    report.outcome = status == SourceStatus::failed ? Outcome::technicalFailure
+                                                    : outcomeBefore(session.steps(), session.model(), settings);
     if (report.outcome != Outcome::running) break;
     bool open = true;
     for (std::uint32_t i = 0; i < ticksPerStep; ++i, ++tick) {
@@ -85,29 +76,28 @@ void runInline(Session& session, SampleSource& source, const RunSettings& settin
   report.paused = pauses.seconds;
 }
 
-bool sameForce(const HandTick& a, const HandTick& b) {
-  const auto same = [](const Vec3& x, const Vec3& y) {
-    for (int i = 0; i < 3; ++i) {
-      if (std::bit_cast<std::uint64_t>(x[i]) != std::bit_cast<std::uint64_t>(y[i])) return false;
-    }
-    return true;
-  };
-  return same(a.force, b.force) && same(a.torque, b.torque);
+/// Bit for bit.
+bool sameForces(const TickOutcome& a, const TickOutcome& b) {
+  const auto same = [](const Vec3& x, const Vec3& y) { return std::ranges::equal(bytesOf(x), bytesOf(y)); };
+  for (std::size_t h = 0; h < handCount; ++h) {
+    if (!same(a.hand[h].force, b.hand[h].force) || !same(a.hand[h].torque, b.hand[h].torque)) return false;
+  }
+  return true;
 }
 
 /// Ticks on the haptic thread, steps on this one.
 void runLive(Session& session, SampleSource& source, const RunSettings& settings, const StepWatch& watch,
              RunReport& report) {
   const std::uint32_t ticksPerStep = session.model().scene().ticksPerStep;
-  const Gate gate(session.model(), settings);
   const std::uint64_t before = session.steps();
   std::atomic<bool> ranAway{false};  // the haptic thread asks before each step
   session.precompute();
   std::vector<TickSamples> samples(ticksPerStep);
   std::vector<TickOutcome> ticks(ticksPerStep);
   HapticThread haptics(session.model(), source, session.haptics(), session.contactSets(),
-                       {[&gate, &ranAway, before](std::uint64_t step) {
-                          return ranAway.load() ? Outcome::technicalFailure : gate.ask(before + step);
+                       {[&](std::uint64_t step) {
+                          return ranAway.load() ? Outcome::technicalFailure
+                                                : outcomeBefore(before + step, session.model(), settings);
                         },
                         settings.feedback, settings.stop});
   session.onContactSets([&haptics](const ContactSets& sets) { haptics.stepDone(sets); });
@@ -121,9 +111,7 @@ void runLive(Session& session, SampleSource& source, const RunSettings& settings
     for (std::uint32_t i = 0; i < ticksPerStep; ++i) {
       const TickOutcome again =
           session.tick(samples[i], NamedSets{ticks[i].hand[0].contactSet, ticks[i].hand[1].contactSet});
-      bool same = true;
-      for (std::size_t h = 0; h < handCount; ++h) same = same && sameForce(ticks[i].hand[h], again.hand[h]);
-      if (!same) ++report.disagreements;
+      if (!sameForces(ticks[i], again)) ++report.disagreements;
     }
     session.step(samples, ticks, late);  // with the forces that the hands felt
     if (settings.progress) settings.progress(session.steps());
@@ -196,7 +184,7 @@ Outcome StepwiseAttempt::step(const HandCommands& wanted) {
     throw Error(ErrorKind::invalid, "the attempt is over: reset begins another one");
   hands_.next(wanted, samples_);
   session_.run({samples_, {}, 0.0F});
-  outcome_ = watch_.ranAway() ? Outcome::technicalFailure : Gate(model(), {}).ask(steps());
+  outcome_ = watch_.ranAway() ? Outcome::technicalFailure : outcomeBefore(steps(), model(), {});
   return outcome_;
 }
 

@@ -111,7 +111,6 @@ void judge(Recording& recording, const ChainVerdict& chain, const ReplaySettings
   report.simulationVersion = header.simulationVersion;
   for (std::size_t i = 0; i < 32; ++i) report.chainHead[i] = static_cast<std::byte>(recording.status().back().chain[i]);
   report.chainIntact = chain.intact;
-  report.chainFault = chain.what;
   report.signature = recording.signature();
   const bool otherVersion = header.simulationVersion != simulationVersion;
   // A damaged recording may be compared with any engine: none can prove it.

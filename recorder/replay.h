@@ -56,7 +56,6 @@ struct ReplayReport {
   std::array<std::byte, 32> chainHead{};
   StepMisses misses;  ///< of the steps that were computed again
   bool chainIntact = false;
-  std::string chainFault;                      ///< where the chain breaks, or empty
   std::optional<RecordedSignature> signature;  ///< as recorded; it fits where the chain is intact
   std::optional<Divergence> divergence;
   std::optional<bool> reproducible;  ///< a second run differed at the same place in the same way

@@ -91,7 +91,7 @@ NormCheckpoint markOf(const CheckpointDefinition& definition, const NormFigure& 
     mark.upper = cut->upper;
     return mark;
   }
-  const ContrastingGroupsOptions options{mark.logScale, 0.95, 9999, norm.seed};
+  const ContrastingGroupsOptions options{{.seed = norm.seed}, mark.logScale};
   const Expected<ContrastingGroups> cut = contrastingGroups(
       competent, others, definition.direction == Direction::lower ? Better::lower : Better::higher, options);
   if (!cut) {

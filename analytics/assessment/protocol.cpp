@@ -67,7 +67,7 @@ std::vector<Field> Population::fields() {
 
 std::vector<Field> DirectedHypothesis::fields() {
   using S = DirectedHypothesis;
-  static constexpr TextRule sha256{64, "[0-9a-f]{64}", "64 hexadecimal digits in small letters are expected"};
+  static constexpr TextRule sha256{64, "^[0-9a-f]{64}$", "64 hexadecimal digits in small letters are expected"};
   return {
       object("hypothesis", "Hypothesis on one of a checkpoint, an external metric and an outcome"),
       optional("checkpoint", at<S, &S::checkpoint>, anyName, "Name, as calot checkpoints lists it"),

@@ -18,7 +18,7 @@
 #include "analytics/checkpoints/definition.h"
 #include "recorder/base/identity.h"
 #include "recorder/engine/observer.h"
-#include "recorder/sources/scope/picture_geometry.h"
+#include "recorder/sources/scope/endoscope.h"
 #include "sim/judgement/judge.h"
 #include "sim/scene/description.h"
 

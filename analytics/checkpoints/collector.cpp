@@ -110,7 +110,7 @@ Motion motionOf(const recorder::TrackedMotion& tracked, std::size_t hand, double
       samples.grid.extend(time, rows.position[i], rows.orientation[i]);
     }
   }
-  const GapRule rule(samples.rate.interval());
+  const GapRule rule{samples.rate.interval()};
   samples.longestRate = rule.longestEven();
   samples.coverage.mounted = {{0.0, tracked.time.back()}};
   for (std::size_t i = 1; i < tracked.time.size(); ++i) {
@@ -249,7 +249,7 @@ MotionCoverage MotionTrack::coverage(double interval) const {
     coverage.mounted.push_back({seconds(mountedAt_), seconds(end)});
     if (instrument_ == InstrumentKind::none || vouched_ < tick_) pauses.push_back(pauseUntil(end));
   }
-  const GapRule rule(interval);
+  const GapRule rule{interval};
   for (const Pause& pause : pauses) {
     const double pauseSeconds = seconds(pause.to - pause.from);
     if (pause.atStart) {

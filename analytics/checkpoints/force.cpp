@@ -14,14 +14,15 @@ void ForceTrack::add(const recorder::StepRecord& record) {
         newest.ticks = 0;
         continue;
       }
-      mounted_[h] = true;
+      HandForces& hand = hand_[h];
+      hand.mounted = true;
       const Vec3& f = record.ticks[t].hand[h].force;
       const double magnitude = lengthOf(f);
-      largest_[h] = std::max(largest_[h], magnitude);
-      sum_[h] += magnitude;
-      if (magnitude >= leastForce) felt_[h].push_back(magnitude);
+      hand.largest = std::max(hand.largest, magnitude);
+      hand.sum += magnitude;
+      if (magnitude >= leastForce) hand.felt.push_back(magnitude);
       if (newest.ticks >= 2 && lengthOf(newest.force[1]) >= leastForce)
-        rates_[h].push_back(lengthOf(f - newest.force[0]) / (2.0 * tickSeconds_));
+        hand.rates.push_back(lengthOf(f - newest.force[0]) / (2.0 * tickSeconds_));
       newest.force = {newest.force[1], f};
       newest.ticks = std::min(newest.ticks + 1, 2);
     }

@@ -254,7 +254,7 @@ Motion filteredMotion(MotionSamples samples, double cutoff) {
   motion.rate = samples.rate.hertz(samples.longestRate);
   motion.cutoff = cutoff;
   const double unitsPerSecond = samples.grid.unitsPerSecond();
-  std::vector<GridRun> runs = bridged(std::move(samples.grid).takeRuns(), GapRule(motion.interval), unitsPerSecond);
+  std::vector<GridRun> runs = bridged(std::move(samples.grid).takeRuns(), GapRule{motion.interval}, unitsPerSecond);
   const ZeroPhaseFilter filter(cutoff, motionRate);
   TimeSpans lost = std::move(samples.coverage.lost);
   for (std::size_t i = 0; i < runs.size(); ++i) {
@@ -319,7 +319,7 @@ Vec3 hermite(const Vec3& from, const Vec3& to, const Tangents& tangents, double 
 void join(GridRun& before, GridRun&& after, const GapRule& rule, double unitsPerSecond) {
   const double seconds = between(before, after, unitsPerSecond);
   const bool straight = rule.isStraight(seconds);
-  const Tangents tangents = straight ? Tangents{} : tangentsOf(before, after, seconds, rule.interval());
+  const Tangents tangents = straight ? Tangents{} : tangentsOf(before, after, seconds, rule.interval);
   const TimedPose from = before.end, &to = after.begin;
   const auto end = after.first;
   for (auto k = before.first + static_cast<std::int64_t>(before.position.size()); k < end; ++k) {

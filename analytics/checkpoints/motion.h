@@ -183,24 +183,18 @@ inline constexpr double gapIntervals = 2.5;
 inline constexpr double maxBridge = 1.0;
 
 /// How a time between two samples is taken, by the tracker's own interval.
-class GapRule {
- public:
-  /// @param interval SampleRate::interval() (s); 0: not known
-  explicit GapRule(double interval) : interval_(interval) {}
+struct GapRule {
+  double interval;  ///< SampleRate::interval() (s); 0: not known
 
   /// Longest time between two samples that is no gap (s).
-  [[nodiscard]] double longestEven() const { return gapIntervals * interval_; }
+  [[nodiscard]] double longestEven() const { return gapIntervals * interval; }
   [[nodiscard]] bool isGap(double seconds) const { return seconds > longestEven(); }
   /// Part of a gap that no sample covers, each covering one interval.
-  [[nodiscard]] double lost(double seconds) const { return seconds - interval_; }
+  [[nodiscard]] double lost(double seconds) const { return seconds - interval; }
   /// Joined by a straight line.
   [[nodiscard]] bool isStraight(double seconds) const { return seconds <= straightBridge || !isGap(seconds); }
   /// Joined, by a straight line or a curve.
   [[nodiscard]] bool isBridged(double seconds) const { return isStraight(seconds) || lost(seconds) <= maxBridge; }
-  [[nodiscard]] double interval() const { return interval_; }
-
- private:
-  double interval_;
 };
 
 /// Joins runs to those that they continue, where the rule bridges the time between them. Straight: as SampleGrid.

@@ -207,12 +207,6 @@ void scrub(const std::string& path) {
   removeBackups(path);
 }
 
-std::vector<std::string> placesNaming(const std::string& path, const std::vector<std::string>& words) {
-  return CohortConnection(path, CohortDatabase::Access::read).read([&](SQLite::Database& db) {
-    return columnsNaming(db, words);
-  });
-}
-
 std::vector<std::string> placesLeft(const std::string& path, const Withdrawal& w,
                                     const std::vector<std::string>& words) {
   return CohortConnection(path, CohortDatabase::Access::read).read([&](SQLite::Database& from) {

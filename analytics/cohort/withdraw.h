@@ -46,10 +46,8 @@ std::string withdraw(const std::string& path, const Withdrawal& withdrawal);
 /// Overwrites what earlier deletions left in the file and in its log, and removes the backups of migrations.
 void scrub(const std::string& path);
 
-/// Columns ("table.column") that still contain one of the words as a whole word.
-std::vector<std::string> placesNaming(const std::string& path, const std::vector<std::string>& words);
-
-/// Those of them that withdraw() will leave, tried on a copy in memory.
+/// Columns ("table.column") that will contain one of the words as a whole word after withdraw(), tried on a copy in
+/// memory; of a participant that is not known, those that do now.
 std::vector<std::string> placesLeft(const std::string& path, const Withdrawal& withdrawal,
                                     const std::vector<std::string>& words);
 

@@ -220,7 +220,7 @@ void analyseCorrelation(const DesignData& data, const DesignChoices& choices, De
       [&](const DesignFigure& figure) {
         const FigurePairs pairs = pairsOf(figure, against);
         const Expected<Spearman> test = spearman(pairs.first, pairs.second);
-        if (!test) return Expected<ValueTree>::none(test.reason());
+        if (!test) return Expected<ValueTree>(NoResult{test.reason()});
         return Expected<ValueTree>(ValueTree{{"n", pairs.first.size()},
                                              {"rho", test->rho},
                                              {"interval", spearmanInterval(test->rho, pairs.first.size())},

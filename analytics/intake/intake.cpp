@@ -61,14 +61,6 @@ IntakeSettings checked(IntakeSettings settings) {
   return settings;
 }
 
-IntakeItem fault(std::string file, TakenIn how, Error error) {
-  IntakeItem item;
-  item.file = std::move(file);
-  item.how = how;
-  item.fault = std::move(error);
-  return item;
-}
-
 }  // namespace
 
 Intake::Intake(IntakeSettings settings) : settings_(checked(std::move(settings))), journal_(settings_.journal) {}
@@ -122,9 +114,12 @@ IntakeRest Intake::look(const std::function<void(const IntakeItem&)>& tell, cons
     try {
       item = take(candidate, rest, stop);
     } catch (const Error& e) {
-      item = fault(candidate.file, e.kind() == ErrorKind::refused ? TakenIn::refused : TakenIn::failed, e);
+      const TakenIn how = e.kind() == ErrorKind::refused ? TakenIn::refused : TakenIn::failed;
+      item = {.file = candidate.file, .how = how, .fault = e};
     } catch (const std::exception& e) {
-      item = fault(candidate.file, TakenIn::failed, Error(ErrorKind::failure, Where{candidate.file}, e.what()));
+      item = {.file = candidate.file,
+              .how = TakenIn::failed,
+              .fault = Error(ErrorKind::failure, Where{candidate.file}, e.what())};
     }
     if (!item) continue;
     if (item->how == TakenIn::failed) item->retryIn = backOff(candidate.tries + 1);
@@ -140,20 +135,15 @@ std::optional<IntakeItem> Intake::take(const Candidate& c, IntakeRest& rest, con
     identity = recorder::identify(c.file);
   } catch (const Error& e) {
     if (e.kind() != ErrorKind::damaged) throw;
-    if (c.unchanged >= settings_.settle) return fault(c.file, TakenIn::damaged, e);
+    if (c.unchanged >= settings_.settle) return IntakeItem{.file = c.file, .how = TakenIn::damaged, .fault = e};
   }
   if ((identity.attempt.empty() || !identity.complete) && c.unchanged < settings_.settle) {
     ++rest.growing;
     return std::nullopt;
   }
   CohortDatabase database(settings_.cohort, CohortDatabase::Access::create);
-  if (isVerified(database, identity)) {
-    IntakeItem item;
-    item.file = c.file;
-    item.how = TakenIn::known;
-    item.attempt = identity.attempt;
-    return item;
-  }
+  if (isVerified(database, identity))
+    return IntakeItem{.file = c.file, .how = TakenIn::known, .attempt = identity.attempt};
   JudgedRecording judged;
   try {
     AssessSettings assess{.threads = settings_.threads};
@@ -169,26 +159,16 @@ std::optional<IntakeItem> Intake::take(const Candidate& c, IntakeRest& rest, con
     ++rest.growing;
     return std::nullopt;
   }
-  IntakeItem item;
-  item.file = c.file;
-  item.attempt = identity.attempt;
-  item.judged = std::move(judged);
+  IntakeItem item{.file = c.file, .judged = std::move(judged), .attempt = identity.attempt};
   if (!item.judged.record) {
     item.how = TakenIn::damaged;
     item.fault = Error(ErrorKind::damaged, Where{c.file}, item.judged.report.message, item.judged.report.remedies);
     return item;
   }
-  switch (database.storeAttempt(*item.judged.record, item.judged.values)) {
-    case Imported::added:
-      item.how = TakenIn::added;
-      break;
-    case Imported::extended:
-      item.how = TakenIn::extended;
-      break;
-    case Imported::unchanged:
-      item.how = TakenIn::unchanged;
-      break;
-  }
+  const Imported imported = database.storeAttempt(*item.judged.record, item.judged.values);
+  item.how = imported == Imported::added      ? TakenIn::added
+             : imported == Imported::extended ? TakenIn::extended
+                                              : TakenIn::unchanged;
   return item;
 }
 

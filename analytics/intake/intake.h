@@ -43,12 +43,12 @@ enum class TakenIn : std::uint8_t {
 
 /// Result for one file.
 struct IntakeItem {
-  std::string file;
+  std::string file = {};
   TakenIn how = TakenIn::added;
-  JudgedRecording judged;      ///< report alone where nothing was stored; empty where it was not re-simulated
-  std::string attempt;         ///< uuid, as far as it is known
-  std::optional<Error> fault;  ///< why it was not stored
-  std::int64_t retryIn = 0;    ///< s, where it failed
+  JudgedRecording judged = {};      ///< report alone where nothing was stored; empty where it was not re-simulated
+  std::string attempt = {};         ///< uuid, as far as it is known
+  std::optional<Error> fault = {};  ///< why it was not stored
+  std::int64_t retryIn = 0;         ///< s, where it failed
 };
 
 /// Remaining work after a pass over the folders.

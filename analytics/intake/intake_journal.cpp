@@ -43,7 +43,7 @@ std::optional<nlohmann::ordered_json> rowIn(const std::string& line) {
 std::string journalHead() { return checkedLine({{"format", "calot-intake"}, {"format_version", 1}}); }
 
 /// Paths are bytes, JSON is UTF-8: a path that is not UTF-8 stands in hexadecimal.
-std::string hexOf(const std::string& text) {
+std::string inHex(const std::string& text) {
   std::string hex;
   for (const char c : text) hex += fmt::format("{:02x}", static_cast<unsigned char>(c));
   return hex;
@@ -67,7 +67,7 @@ bool isUtf8(const std::string& text) {
 
 std::string lineOf(const std::string& file, const JournalEntry& e) {
   const bool plain = isUtf8(file);
-  return checkedLine({{plain ? "file" : "file_hex", plain ? file : hexOf(file)},
+  return checkedLine({{plain ? "file" : "file_hex", plain ? file : inHex(file)},
                       {"bytes", e.state.bytes},
                       {"modified_ns", std::to_string(e.state.modified)},
                       {"inode", std::to_string(e.state.inode)},

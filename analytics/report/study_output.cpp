@@ -12,7 +12,7 @@
 
 #include "analytics/report/plots.h"
 #include "analytics/report/rating_tables.h"
-#include "analytics/report/study_coverage.h"
+#include "analytics/report/study_rows.h"
 #include "analytics/statistics/descriptive.h"
 #include "recorder/base/errors.h"
 #include "recorder/base/text_output.h"

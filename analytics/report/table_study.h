@@ -58,6 +58,20 @@ std::vector<Outcome> outcomesOf(const CsvTable& table, const TableStudyOptions& 
 std::vector<Record> recordsOf(const CsvTable& table, const TableStudyOptions& options,
                               const std::vector<Outcome>& outcomes);
 
+/// Columns that a study or a design of a table needs. @throws Error (invalid)
+void checkColumns(const TableStudyOptions& options, bool needsGroup);
+
+/// How many rows each group has, and how many have none.
+struct RowsByGroup {
+  std::map<std::string, std::uint64_t> present;
+  std::uint64_t ungrouped = 0;
+  std::string left;  ///< " (2 rows have none)", or empty
+};
+RowsByGroup rowsByGroup(const std::vector<Record>& records);
+
+/// Adds the reasons for which rows went out.
+void addReasons(std::vector<FlowRow>& flow, const std::vector<FlowRow>& counted);
+
 /// @throws Error (invalid) where an occasion is named that no row has.
 void askForOccasion(const CsvTable& table, const std::vector<Record>& records, const std::string& occasion);
 

@@ -9,7 +9,6 @@
 #include "analytics/statistics/descriptive.h"
 #include "analytics/statistics/distributions.h"
 #include "analytics/statistics/regression.h"
-#include "analytics/statistics/resampling.h"
 
 namespace calot::analytics {
 namespace {
@@ -75,12 +74,8 @@ Expected<ContrastingGroups> contrastingGroups(std::span<const double> experts, s
   };
   result.falsePositives = judged(n, true);
   result.falseNegatives = judged(e, false);
-  BootstrapOptions resampling;
-  resampling.resamples = options.resamples;
-  resampling.seed = options.seed;
-  resampling.level = options.level;
   const auto b = bootstrap(
-      e, n, [&](std::span<const double> x, std::span<const double> y) { return cutOf(x, y, better); }, resampling);
+      e, n, [&](std::span<const double> x, std::span<const double> y) { return cutOf(x, y, better); }, options);
   result.seed = options.seed;
   if (b) {
     result.interval = Interval{back(b->interval.lower), back(b->interval.upper), options.level, b->interval.method};

@@ -8,6 +8,7 @@
 
 #include "analytics/statistics/expected.h"
 #include "analytics/statistics/reliability.h"
+#include "analytics/statistics/resampling.h"
 
 namespace calot::analytics {
 
@@ -24,11 +25,8 @@ struct NormalCurve {
 /// other all the way, for equal means, or for a deviation that is not positive.
 Expected<double> crossing(const NormalCurve& first, const NormalCurve& second);
 
-struct ContrastingGroupsOptions {
+struct ContrastingGroupsOptions : BootstrapOptions {
   bool logScale = false;  ///< curves of the logarithms (times); the cut is transformed back
-  double level = 0.95;
-  std::size_t resamples = 9999;
-  std::uint64_t seed = 1;
 };
 
 struct Misjudged {

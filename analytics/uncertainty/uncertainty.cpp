@@ -18,6 +18,7 @@
 #include "recorder/formats/scene_file.h"
 #include "recorder/live/worker_pool.h"
 #include "recorder/recording/reader.h"
+#include "sim/math/record.h"
 #include "sim/scene/version.h"
 
 namespace calot::analytics {
@@ -182,38 +183,51 @@ SceneDescription perturbed(const SceneDescription& scene, std::size_t run) {
 
 namespace {
 
-template <class T>
-concept HasFields = requires {
-  &T::template fields<T, int>;
-};
-template <class T>
-concept IsList = requires {
-  typename T::value_type;
-}
-&&HasFields<typename T::value_type>;
+using Use = std::function<void(double&)>;
 
-/// Multiplies what a path of names leads to. @returns whether there is such a number other than 0
-template <class T>
-bool multiplyAt(T& part, std::string_view path, double factor) {
-  const std::size_t end = std::min(path.find('.'), path.size());
-  const std::string_view name = path.substr(0, end), rest = path.substr(std::min(end + 1, path.size()));
-  bool found = false;
-  if constexpr (std::is_same_v<T, double>) {
-    found = part != 0.0;
-    part *= factor;
-  } else if constexpr (IsList<T>) {
-    for (auto& one : part) {
-      bool meant = name == "*";
-      if constexpr (requires { one.name; }) meant = meant || name == one.name;
-      if (meant) found = multiplyAt(one, rest, factor) || found;
+void useNumbers(const Record& record, void* object, std::string_view path, const Use& use);
+
+/// Does a part of a path name this item of a list, or every one?
+bool isNamed(std::string_view part, const Access& item, void* object) {
+  if (part == "*") return true;
+  const std::vector<Field>& fields = item.record().fields;
+  const auto name =
+      std::find_if(fields.begin(), fields.end(), [](const Field& f) { return f.name == std::string("name"); });
+  return name != fields.end() && *static_cast<const std::string*>(name->value.get(object)) == part;
+}
+
+void useNumbers(const Access& access, void* value, std::string_view path, const Use& use) {
+  if (access.type == Access::Type::numbers) {
+    use(*static_cast<double*>(value));
+  } else if (access.type == Access::Type::record) {
+    useNumbers(access.record(), value, path, use);
+  } else if (access.type == Access::Type::list) {
+    const std::string_view part = path.substr(0, path.find('.'));
+    for (std::size_t i = 0; i < access.items(value); ++i) {
+      void* const item = access.itemAt(value, i);
+      if (isNamed(part, *access.item, item)) useNumbers(*access.item, item, path.substr(part.size() + 1), use);
     }
-  } else if constexpr (HasFields<T>) {
-    const auto visit = [&](const char* field, auto& member) {
-      if (name == field) found = multiplyAt(member, rest, factor);
-    };
-    T::fields(part, visit);
   }
-  return found;
+}
+
+/// Visits the numbers that a path of keys of a scene file leads to; "*" is every key, or every item.
+void useNumbers(const Record& record, void* object, std::string_view path, const Use& use) {
+  const std::string_view key = path.substr(0, path.find('.'));
+  const std::string_view rest = path.substr(std::min(key.size() + 1, path.size()));
+  for (const Field& field : record.fields) {
+    if ((key == "*" || key == field.name) && field.value.get != nullptr)
+      useNumbers(field.value, field.value.get(object), rest, use);
+  }
+}
+
+/// Multiplies the numbers of a path. @returns false where none differs from 0
+bool multiplyAll(SceneDescription& scene, std::string_view path, double factor) {
+  bool changed = false;
+  useNumbers(recordOf<SceneDescription>(), &scene, path, [&](double& number) {
+    changed = changed || number != 0.0;
+    number *= factor;
+  });
+  return changed;
 }
 
 constexpr std::string_view compressibility = "organs.*.material.poissonRatio (0.5 - nu)",
@@ -232,7 +246,7 @@ bool SceneConstant::multiply(SceneDescription& scene, double factor) const {
   if (name == bedStrength) {
     for (ConnectiveDescription& bed : scene.connective) bed.fractureEnergy *= factor * factor;
   }
-  return multiplyAt(scene, name, factor);
+  return multiplyAll(scene, name, factor);
 }
 
 const std::vector<SceneConstant>& sceneConstants() {

@@ -10,7 +10,7 @@
 
 #include "apps/calot/command.h"
 #include "apps/calot/source_options.h"
-#include "gui/film/lettering.h"
+#include "gui/film/overlay.h"
 #include "gui/render/image.h"
 #include "recorder/base/errors.h"
 #include "recorder/base/text_output.h"

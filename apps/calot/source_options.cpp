@@ -14,7 +14,6 @@
 #include "recorder/sources/kinematics_source.h"
 #include "recorder/sources/performer.h"
 #include "recorder/sources/performer_profile.h"
-#include "recorder/sources/scope/scope_assistant.h"
 #include "recorder/sources/scope/scope_source.h"
 #ifdef CALOT_BULLET
 #include "sim/bullet/bullet_tree.h"

@@ -21,7 +21,7 @@
 #include "recorder/sources/devices/device_source.h"
 #include "recorder/sources/devices/open_device.h"
 #include "recorder/sources/devices/window_input.h"
-#include "recorder/sources/scope/scope_assistant.h"
+#include "recorder/sources/scope/scope_source.h"
 #include "recorder/sources/source.h"
 #include "sim/contact/broad_phase.h"
 #include "sim/scene/description.h"

@@ -2,7 +2,6 @@
 // Decides what a replay shows next, apart from the thread that carries it out.
 #pragma once
 
-#include <chrono>
 #include <condition_variable>
 #include <cstdint>
 #include <filesystem>

@@ -198,6 +198,7 @@ int AttemptsPage::rowOf(const QString& uuid) const {
 }
 
 void AttemptsPage::select(const QString& uuid) {
+  if (selected() != nullptr && selected()->uuid == uuid.toStdString()) return;
   if (rowOf(uuid) < 0) {
     search_->clear();
     verdict_->setCurrentIndex(0);

@@ -6,7 +6,6 @@
 #include <QSortFilterProxyModel>
 
 #include "gui/dashboard/checkpoint_table_model.h"
-#include "gui/dashboard/cohort_document.h"
 #include "gui/dashboard/page_parts.h"
 
 namespace calot::gui {

@@ -5,7 +5,6 @@
 #include <chrono>
 #include <optional>
 
-#include "gui/dashboard/cohort_document.h"
 #include "gui/dashboard/page_parts.h"
 #include "gui/dashboard/recording_view.h"
 

@@ -9,7 +9,7 @@
 
 #include "gui/render/graphics.h"
 #include "gui/render/image.h"
-#include "gui/render/smoke.h"
+#include "gui/render/translucent.h"
 #include "sim/scene/scene_view.h"
 
 namespace calot::gui {
@@ -51,9 +51,7 @@ class Renderer {
   [[nodiscard]] Image render(const SceneView& view, int width, int height, const RenderSettings& settings = {},
                              std::span<const Puff> smoke = {});
   [[nodiscard]] Image render(const SceneView& view, int width, int height, Quality quality) {
-    RenderSettings settings;
-    settings.quality = quality;
-    return render(view, width, height, settings);
+    return render(view, width, height, RenderSettings{.quality = quality});
   }
   /// Description of the renderer: "OSMesa, llvmpipe (LLVM 15.0.6, 256 bits)".
   [[nodiscard]] const std::string& graphics() const;

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "recorder/base/json_reader.h"
 
 #include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <regex>
 #include <set>
+#include <string_view>
 
 #include "recorder/base/errors.h"
 #include "recorder/base/nearest_word.h"
@@ -183,6 +184,35 @@ std::uint32_t JsonPlace::integer(const Range& range) const {
 Vec3 JsonPlace::vector(const Range& range) const {
   const std::vector<JsonPlace> parts = list(3, 3);
   return {parts[0].number(range), parts[1].number(range), parts[2].number(range)};
+}
+
+namespace {
+
+thread_local JsonFaults* noting = nullptr;
+
+}  // namespace
+
+JsonFaults::JsonFaults() : outer_(noting) { noting = this; }
+
+JsonFaults::~JsonFaults() { noting = outer_; }
+
+void JsonFaults::note(const Error& fault) {
+  const bool known = std::any_of(found_.begin(), found_.end(),
+                                 [&](const Error& e) { return std::string_view(e.what()) == fault.what(); });
+  if (!known) found_.push_back(fault);
+}
+
+bool JsonFaults::at(std::initializer_list<std::string_view> pointers) {
+  return noting != nullptr && std::any_of(noting->found_.begin(), noting->found_.end(), [&](const Error& fault) {
+           const std::string place = fault.where().place + "/";
+           return std::any_of(pointers.begin(), pointers.end(),
+                              [&](std::string_view p) { return place.starts_with(std::string(p) + "/"); });
+         });
+}
+
+void JsonFaults::report(const Error& fault) {
+  if (noting == nullptr) throw fault;
+  noting->note(fault);
 }
 
 }  // namespace calot::recorder

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "recorder/base/json_faults.h"
+#include "recorder/base/json_reader.h"
 #include "recorder/base/nearest_word.h"
 
 namespace calot::recorder {

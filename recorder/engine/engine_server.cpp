@@ -146,8 +146,10 @@ void EngineServer::step(std::span<const std::byte> payload) {
   samples_.resize(request.ticks.size());
   logged_.resize(request.ticks.size());
   for (std::size_t i = 0; i < request.ticks.size(); ++i) {
-    if (!wire::fromWire(request.ticks[i], samples_[i], logged_[i]))
+    if (!isValid(request.ticks[i]))
       return fail(wire::FaultCode::message, "tick " + std::to_string(i) + " of the step is not a sample");
+    samples_[i] = request.ticks[i].samples;
+    logged_[i] = request.ticks[i].logged;
   }
   const EngineStep step = engine_->step({samples_, logged_, request.lateness});
   wire::IsStep answer;

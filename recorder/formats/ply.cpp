@@ -4,10 +4,10 @@
 
 #include <fmt/format.h>
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -17,6 +17,195 @@
 
 namespace calot::recorder {
 namespace {
+
+enum class PlyFormat : std::uint8_t { ascii, littleEndian, bigEndian };
+enum class PlyType : std::uint8_t { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
+
+/// Bytes and names of the types, in their order.
+struct PlyTypeInfo {
+  std::size_t bytes;
+  std::string_view name, oldName;
+};
+constexpr PlyTypeInfo plyTypes[] = {{1, "int8", "char"},     {1, "uint8", "uchar"},   {2, "int16", "short"},
+                                    {2, "uint16", "ushort"}, {4, "int32", "int"},     {4, "uint32", "uint"},
+                                    {4, "float32", "float"}, {8, "float64", "double"}};
+
+bool isWhole(PlyType type) { return type != PlyType::float32 && type != PlyType::float64; }
+
+struct PlyProperty {
+  std::string name;
+  PlyType type = PlyType::float32;
+  bool list = false;
+  PlyType countType = PlyType::uint8;  ///< of a list: whole numbers
+};
+
+struct PlyElement {
+  std::string name;
+  std::uint64_t count = 0;
+  std::vector<PlyProperty> properties;  ///< at least one
+
+  /// Place of a property, or -1.
+  [[nodiscard]] int find(std::string_view property) const {
+    const auto found =
+        std::find_if(properties.begin(), properties.end(), [&](const PlyProperty& p) { return p.name == property; });
+    return found == properties.end() ? -1 : static_cast<int>(found - properties.begin());
+  }
+  /// Place of the property that holds a face's corners, or -1.
+  [[nodiscard]] int corners() const {
+    const int plural = find("vertex_indices");
+    return plural >= 0 ? plural : find("vertex_index");
+  }
+};
+
+struct PlyHeader {
+  PlyFormat format = PlyFormat::ascii;
+  std::vector<PlyElement> elements;  ///< names differ, as do those of each one's properties
+  std::size_t lines = 0;             ///< of the header
+};
+
+constexpr std::size_t maxElements = 32;
+constexpr std::size_t maxProperties = 128;
+
+/// Parses and removes the header of a file's text, up to and including the line "end_header". The element `vertex` has
+/// x, y and z and `face` a list of indices, both within the limits.
+class HeaderReader {
+ public:
+  HeaderReader(std::string_view& text, const std::string& name, const SurfaceLimits& limits)
+      : text_(text), name_(name), limits_(limits) {}
+
+  PlyHeader read() {
+    if (Words first(nextLine()); first.next() != "ply" || !first.next().empty()) {
+      fail("a PLY file begins with \"ply\"");
+    }
+    while (true) {
+      if (text_.empty()) fail("the file ends before \"end_header\"");
+      Words words(nextLine());
+      const std::string_view keyword = words.next();
+      if (keyword == "end_header") break;
+      if (keyword == "comment" || keyword == "obj_info" || keyword.empty()) continue;
+      if (keyword == "format") {
+        readFormat(words);
+      } else if (keyword == "element") {
+        readElement(words);
+      } else if (keyword == "property") {
+        readProperty(words);
+      } else {
+        fail(fmt::format("\"{}\" is no keyword of a PLY header", shown(keyword)));
+      }
+    }
+    check();
+    return std::move(header_);
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& what) const {
+    throw Error(ErrorKind::damaged, Where{name_, fmt::format("line {}", header_.lines)}, what);
+  }
+
+  std::string_view nextLine() {
+    ++header_.lines;
+    const std::string_view line = takeLine(text_);
+    if (line.find('\0') != std::string_view::npos) fail("a zero byte in the header");
+    return line;
+  }
+
+  void readFormat(Words& words) {
+    const std::string_view format = words.next();
+    const std::string_view version = words.next();
+    if (hasFormat_) fail("a second \"format\"");
+    hasFormat_ = true;
+    if (format == "ascii") {
+      header_.format = PlyFormat::ascii;
+    } else if (format == "binary_little_endian") {
+      header_.format = PlyFormat::littleEndian;
+    } else if (format == "binary_big_endian") {
+      header_.format = PlyFormat::bigEndian;
+    } else {
+      fail(fmt::format("format \"{}\"; known are ascii, binary_little_endian, binary_big_endian", shown(format)));
+    }
+    if (version != "1.0") fail(fmt::format("version \"{}\" of PLY; 1.0 is known", shown(version)));
+  }
+
+  void readElement(Words& words) {
+    PlyElement element;
+    element.name = shown(words.next());
+    std::string fault;
+    const long long count = readWholeNumber(words.next(), fault);
+    if (!fault.empty()) fail(fault);
+    if (count < 0) fail(fmt::format("{} of an element", count));
+    element.count = static_cast<std::uint64_t>(count);
+    if (element.name == "vertex" && element.count > limits_.vertices) {
+      fail(fmt::format("more than {} vertices", limits_.vertices));
+    }
+    if (element.name == "face" && element.count > limits_.triangles) {
+      fail(fmt::format("more than {} triangles", limits_.triangles));
+    }
+    const auto& all = header_.elements;
+    if (std::any_of(all.begin(), all.end(), [&](const PlyElement& e) { return e.name == element.name; })) {
+      fail(fmt::format("a second element \"{}\"", element.name));
+    }
+    if (all.size() >= maxElements) fail(fmt::format("more than {} elements", maxElements));
+    header_.elements.push_back(std::move(element));
+  }
+
+  PlyType readType(std::string_view word) const {
+    for (std::size_t i = 0; i < std::size(plyTypes); ++i) {
+      if (word == plyTypes[i].name || word == plyTypes[i].oldName) return static_cast<PlyType>(i);
+    }
+    fail(fmt::format("\"{}\" is no type of PLY", shown(word)));
+  }
+
+  void readProperty(Words& words) {
+    if (header_.elements.empty()) fail("a property before any element");
+    PlyElement& element = header_.elements.back();
+    PlyProperty property;
+    std::string_view word = words.next();
+    if (word == "list") {
+      property.list = true;
+      property.countType = readType(words.next());
+      if (!isWhole(property.countType)) fail("a list is counted in whole numbers");
+      word = words.next();
+    }
+    property.type = readType(word);
+    property.name = shown(words.next());
+    if (property.name.empty()) fail("a property without a name");
+    if (element.find(property.name) >= 0) fail(fmt::format("a second property \"{}\"", property.name));
+    if (element.properties.size() >= maxProperties) fail(fmt::format("more than {} properties", maxProperties));
+    element.properties.push_back(std::move(property));
+  }
+
+  void check() const {
+    if (!hasFormat_) fail("the header does not say its format");
+    bool hasVertices = false;
+    bool hasFaces = false;
+    for (const PlyElement& element : header_.elements) {
+      if (element.properties.empty()) fail(fmt::format("element \"{}\" has no property", element.name));
+      if (element.name == "vertex") {
+        hasVertices = element.count > 0;
+        for (const char* axis : {"x", "y", "z"}) {
+          const int at = element.find(axis);
+          if (at < 0) fail(fmt::format("vertices have no property \"{}\"", axis));
+          if (element.properties[static_cast<std::size_t>(at)].list) fail(fmt::format("\"{}\" is a list", axis));
+        }
+      } else if (element.name == "face") {
+        hasFaces = element.count > 0;
+        const int at = element.corners();
+        if (at < 0) fail("faces have no property \"vertex_indices\"");
+        const PlyProperty& corners = element.properties[static_cast<std::size_t>(at)];
+        if (!corners.list) fail("\"vertex_indices\" is no list");
+        if (!isWhole(corners.type)) fail("indices are whole numbers");
+      }
+    }
+    if (!hasVertices) fail("no vertex");
+    if (!hasFaces) fail("no face; a surface is expected");
+  }
+
+  std::string_view& text_;
+  const std::string& name_;
+  const SurfaceLimits& limits_;
+  PlyHeader header_;
+  bool hasFormat_ = false;
+};
 
 class PlyBody {
  public:
@@ -78,7 +267,7 @@ class PlyBody {
       if (!fault.empty()) fail(fault);
       return value;
     }
-    const std::size_t size = plyBytes(type);
+    const std::size_t size = plyTypes[static_cast<std::size_t>(type)].bytes;
     if (body_.size() < size) fail(fmt::format("the file ends here, with {} wanted", element_->count));
     std::uint64_t bits = 0;
     for (std::size_t k = 0; k < size; ++k) {
@@ -109,13 +298,13 @@ class PlyBody {
   std::uint32_t nextCount(PlyType type, const char* what) {
     const double value = next(type);
     if (!(value >= 0.0 && value <= 4294967295.0) || value != std::floor(value)) {
-      fail(fmt::format("{} is not {}", value, what));
+      fail(fmt::format("{} is no {}", value, what));
     }
     return static_cast<std::uint32_t>(value);
   }
 
   void pass(const PlyProperty& property) {
-    const std::uint32_t count = property.list ? nextCount(property.countType, "a length of a list") : 1;
+    const std::uint32_t count = property.list ? nextCount(property.countType, "length of a list") : 1;
     for (std::uint32_t i = 0; i < count; ++i) {
       // Unused values may be anything, including NaN.
       header_.format == PlyFormat::ascii ? static_cast<void>(nextWord()) : static_cast<void>(next(property.type));
@@ -142,14 +331,14 @@ class PlyBody {
   }
 
   void readFace() {
-    const int corners = plyCorners(*element_);
+    const int corners = element_->corners();
     for (std::size_t k = 0; k < element_->properties.size(); ++k) {
       const PlyProperty& property = element_->properties[k];
       if (static_cast<int>(k) != corners) {
         pass(property);
         continue;
       }
-      const std::uint32_t count = nextCount(property.countType, "a length of a list");
+      const std::uint32_t count = nextCount(property.countType, "length of a list");
       if (count < 3) fail(fmt::format("a face with {} corners", count));
       const int first = nextIndex(property.type);
       int before = nextIndex(property.type);
@@ -164,7 +353,7 @@ class PlyBody {
   }
 
   int nextIndex(PlyType type) {
-    const std::uint32_t index = nextCount(type, "an index");
+    const std::uint32_t index = nextCount(type, "index");
     if (index >= limits_.vertices) fail(fmt::format("vertex {}, but a file has at most {}", index, limits_.vertices));
     return static_cast<int>(index);
   }
@@ -190,206 +379,8 @@ TriangleMesh parsePly(std::span<const std::byte> bytes, const std::string& name,
     throw Error(ErrorKind::damaged, Where{name}, fmt::format("larger than {} bytes", limits.bytes));
   }
   std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  PlyHeader header = takePlyHeader(text, name, limits);
+  PlyHeader header = HeaderReader(text, name, limits).read();
   return PlyBody(text, std::move(header), name, metres(unit), limits).read();
-}
-
-namespace {
-
-constexpr std::size_t maxElements = 32;
-constexpr std::size_t maxProperties = 128;
-
-constexpr std::array<std::pair<std::string_view, PlyType>, 16> typeWords{{{"char", PlyType::int8},
-                                                                          {"int8", PlyType::int8},
-                                                                          {"uchar", PlyType::uint8},
-                                                                          {"uint8", PlyType::uint8},
-                                                                          {"short", PlyType::int16},
-                                                                          {"int16", PlyType::int16},
-                                                                          {"ushort", PlyType::uint16},
-                                                                          {"uint16", PlyType::uint16},
-                                                                          {"int", PlyType::int32},
-                                                                          {"int32", PlyType::int32},
-                                                                          {"uint", PlyType::uint32},
-                                                                          {"uint32", PlyType::uint32},
-                                                                          {"float", PlyType::float32},
-                                                                          {"float32", PlyType::float32},
-                                                                          {"double", PlyType::float64},
-                                                                          {"float64", PlyType::float64}}};
-
-class HeaderReader {
- public:
-  HeaderReader(std::string_view& text, const std::string& name, const SurfaceLimits& limits)
-      : text_(text), name_(name), limits_(limits) {}
-
-  PlyHeader read() {
-    if (Words first(nextLine()); first.next() != "ply" || !first.next().empty()) {
-      fail("a PLY file begins with \"ply\"");
-    }
-    while (true) {
-      if (text_.empty()) fail("the file ends before \"end_header\"");
-      Words words(nextLine());
-      const std::string_view keyword = words.next();
-      if (keyword == "end_header") break;
-      if (keyword == "comment" || keyword == "obj_info" || keyword.empty()) continue;
-      if (keyword == "format") {
-        readFormat(words);
-      } else if (keyword == "element") {
-        readElement(words);
-      } else if (keyword == "property") {
-        readProperty(words);
-      } else {
-        fail(fmt::format("\"{}\" is not a keyword of a PLY header", shown(keyword)));
-      }
-    }
-    check();
-    return std::move(header_);
-  }
-
- private:
-  [[noreturn]] void fail(const std::string& what) const {
-    throw Error(ErrorKind::damaged, Where{name_, fmt::format("line {}", header_.lines)}, what);
-  }
-
-  std::string_view nextLine() {
-    ++header_.lines;
-    const std::string_view line = takeLine(text_);
-    if (line.find('\0') != std::string_view::npos) fail("a zero byte in the header");
-    return line;
-  }
-
-  void readFormat(Words& words) {
-    const std::string_view format = words.next();
-    const std::string_view version = words.next();
-    if (hasFormat_) fail("a second \"format\"");
-    hasFormat_ = true;
-    if (format == "ascii") {
-      header_.format = PlyFormat::ascii;
-    } else if (format == "binary_little_endian") {
-      header_.format = PlyFormat::littleEndian;
-    } else if (format == "binary_big_endian") {
-      header_.format = PlyFormat::bigEndian;
-    } else {
-      fail(fmt::format("format \"{}\"; known are ascii, binary_little_endian, binary_big_endian", shown(format)));
-    }
-    if (version != "1.0") fail(fmt::format("version \"{}\" of PLY; 1.0 is known", shown(version)));
-  }
-
-  void readElement(Words& words) {
-    PlyElement element;
-    element.name = shown(words.next());
-    std::string fault;
-    const long long count = readWholeNumber(words.next(), fault);
-    if (!fault.empty()) fail(fault);
-    if (count < 0) fail(fmt::format("{} of an element", count));
-    element.count = static_cast<std::uint64_t>(count);
-    if (element.name == "vertex" && element.count > limits_.vertices) {
-      fail(fmt::format("more than {} vertices", limits_.vertices));
-    }
-    if (element.name == "face" && element.count > limits_.triangles) {
-      fail(fmt::format("more than {} triangles", limits_.triangles));
-    }
-    const auto& all = header_.elements;
-    if (std::any_of(all.begin(), all.end(), [&](const PlyElement& e) { return e.name == element.name; })) {
-      fail(fmt::format("a second element \"{}\"", element.name));
-    }
-    if (all.size() >= maxElements) fail(fmt::format("more than {} elements", maxElements));
-    header_.elements.push_back(std::move(element));
-  }
-
-  PlyType readType(std::string_view word) const {
-    const auto* const found =
-        std::find_if(typeWords.begin(), typeWords.end(), [&](const auto& entry) { return entry.first == word; });
-    if (found == typeWords.end()) fail(fmt::format("\"{}\" is not a type of PLY", shown(word)));
-    return found->second;
-  }
-
-  void readProperty(Words& words) {
-    if (header_.elements.empty()) fail("a property before any element");
-    PlyElement& element = header_.elements.back();
-    PlyProperty property;
-    std::string_view word = words.next();
-    if (word == "list") {
-      property.list = true;
-      property.countType = readType(words.next());
-      if (property.countType == PlyType::float32 || property.countType == PlyType::float64) {
-        fail("a list is counted in whole numbers");
-      }
-      word = words.next();
-    }
-    property.type = readType(word);
-    property.name = shown(words.next());
-    if (property.name.empty()) fail("a property without a name");
-    if (element.find(property.name) >= 0) fail(fmt::format("a second property \"{}\"", property.name));
-    if (element.properties.size() >= maxProperties) fail(fmt::format("more than {} properties", maxProperties));
-    element.properties.push_back(std::move(property));
-  }
-
-  void check() const {
-    if (!hasFormat_) fail("the header does not say its format");
-    bool hasVertices = false;
-    bool hasFaces = false;
-    for (const PlyElement& element : header_.elements) {
-      if (element.properties.empty()) fail(fmt::format("element \"{}\" has no property", element.name));
-      if (element.name == "vertex") {
-        hasVertices = element.count > 0;
-        for (const char* axis : {"x", "y", "z"}) {
-          const int at = element.find(axis);
-          if (at < 0) fail(fmt::format("vertices have no property \"{}\"", axis));
-          if (element.properties[static_cast<std::size_t>(at)].list) fail(fmt::format("\"{}\" is a list", axis));
-        }
-      } else if (element.name == "face") {
-        hasFaces = element.count > 0;
-        const int at = plyCorners(element);
-        if (at < 0) fail("faces have no property \"vertex_indices\"");
-        const PlyProperty& corners = element.properties[static_cast<std::size_t>(at)];
-        if (!corners.list) fail("\"vertex_indices\" is not a list");
-        if (corners.type == PlyType::float32 || corners.type == PlyType::float64) fail("indices are whole numbers");
-      }
-    }
-    if (!hasVertices) fail("no vertex");
-    if (!hasFaces) fail("no face; a surface is expected");
-  }
-
-  std::string_view& text_;
-  const std::string& name_;
-  const SurfaceLimits& limits_;
-  PlyHeader header_;
-  bool hasFormat_ = false;
-};
-
-}  // namespace
-
-std::size_t plyBytes(PlyType type) {
-  switch (type) {
-    case PlyType::int8:
-    case PlyType::uint8:
-      return 1;
-    case PlyType::int16:
-    case PlyType::uint16:
-      return 2;
-    case PlyType::int32:
-    case PlyType::uint32:
-    case PlyType::float32:
-      return 4;
-    case PlyType::float64:
-      break;
-  }
-  return 8;
-}
-
-int PlyElement::find(std::string_view property) const {
-  const auto found = std::find_if(properties.begin(), properties.end(),
-                                  [property](const PlyProperty& p) { return p.name == property; });
-  return found == properties.end() ? -1 : static_cast<int>(found - properties.begin());
-}
-
-int plyCorners(const PlyElement& face) {
-  const int plural = face.find("vertex_indices");
-  return plural >= 0 ? plural : face.find("vertex_index");
-}
-
-PlyHeader takePlyHeader(std::string_view& text, const std::string& name, const SurfaceLimits& limits) {
-  return HeaderReader(text, name, limits).read();
 }
 
 }  // namespace calot::recorder

@@ -11,7 +11,7 @@
 #include <optional>
 #include <utility>
 
-#include "recorder/base/json_faults.h"
+#include "recorder/base/json_reader.h"
 #include "recorder/formats/scene_file.h"
 #include "sim/geometry/surface_distance.h"
 #include "sim/math/floating_point.h"

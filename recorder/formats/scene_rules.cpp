@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "recorder/base/json_faults.h"
+#include "recorder/base/json_reader.h"
 #include "sim/geometry/brick_lattice.h"
 #include "sim/geometry/closest_point.h"
 

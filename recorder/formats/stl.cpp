@@ -35,10 +35,7 @@ std::uint64_t binaryLength(std::span<const std::byte> bytes) {
 bool beginsWithSolid(std::span<const std::byte> bytes) {
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), std::min<std::size_t>(bytes.size(), 256));
   const std::size_t begin = std::min(text.find_first_not_of(" \t\r\n"), text.size());
-  std::string word(text.substr(begin, 5));
-  std::transform(word.begin(), word.end(), word.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-  return word == "solid";
+  return lowerCase(text.substr(begin, 5)) == "solid";
 }
 
 /// Explains why the unit cannot be metres; empty if it can.
@@ -138,10 +135,7 @@ class StlText {
       words_ = Words(line);
       word = words_.next();
     }
-    std::string small(word);
-    std::transform(small.begin(), small.end(), small.begin(),
-                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-    return small;
+    return lowerCase(word);
   }
 
   void expect(std::string_view wanted) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -18,6 +19,9 @@
 namespace calot::recorder {
 
 namespace {
+
+/// How long an engine may take over one answer. A step takes milliseconds, the largest scene seconds.
+constexpr std::chrono::seconds enginePatience{120};
 
 /// Golden recordings hold no results; engines send them all the same.
 AttemptHeader withResults(AttemptHeader header) {
@@ -46,11 +50,12 @@ std::string ResultReader::fault(const std::vector<wire::Column>& declared) const
                                        : fmt::format("{} is not a result of the engine", differing.first->path);
 }
 
-std::string ResultReader::read(std::span<const std::byte> row, StepResult& result, RecordedProcedure& procedure) const {
+std::string ResultReader::read(std::uint64_t step, std::span<const std::byte> row, StepResult& result,
+                               RecordedProcedure& procedure) const {
   if (row.size() != offset_.back())
     return fmt::format("results have {} bytes instead of {}", row.size(), offset_.back());
   const auto place = [&](std::size_t column) { return row.data() + offset_[column - layout_.results]; };
-  RowVisitor<decltype(place)> visit{layout_, place, layout_.results, false, {}};
+  RowVisitor<decltype(place)> visit{layout_, place, step, layout_.results, false, {}};
   visitResult(result, visit);
   if (layout_.procedure) visitProcedure(procedure, visit);
   return visit.fault;
@@ -152,7 +157,8 @@ bool EngineProcess::restore(const Keyframe& keyframe, const std::optional<NamedS
 
 void EngineProcess::announce(const StepInput& input) {
   stepRequest_.lateness = input.lateness;
-  wire::toWire(input.samples, input.logged, stepRequest_.ticks);
+  stepRequest_.ticks.resize(input.samples.size());
+  for (std::size_t i = 0; i < input.samples.size(); ++i) stepRequest_.ticks[i] = {input.samples[i], input.logged[i]};
   send(stepRequest_);
   ++announced_;
 }
@@ -173,7 +179,8 @@ EngineStep EngineProcess::step(const StepInput& input) {
   }
   digest_.component = answer.components;
   digest_.field = answer.digested;
-  if (const std::string fault = results_->read(answer.results, result_, procedure_); !fault.empty()) fail(fault);
+  if (const std::string fault = results_->read(answer.step, answer.results, result_, procedure_); !fault.empty())
+    fail(fault);
   result_.step = answer.step;
   result_.events.clear();
   for (const wire::Event& event : answer.events) result_.events.push_back(wire::fromWire(event));

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <chrono>
 #include <optional>
 #include <span>
 #include <string>
@@ -27,7 +26,7 @@ class ResultReader {
   [[nodiscard]] std::string fault(const std::vector<wire::Column>& declared) const;
   /// Reads a row. @param procedure of version 3 alone
   /// @return what of it no engine makes, or nothing @pre fault() had nothing to say
-  [[nodiscard]] std::string read(std::span<const std::byte> row, StepResult& result,
+  [[nodiscard]] std::string read(std::uint64_t step, std::span<const std::byte> row, StepResult& result,
                                  RecordedProcedure& procedure) const;
   /// The scene has a procedure that this version of StepResult judged.
   [[nodiscard]] bool hasProcedure() const { return layout_.procedure; }
@@ -92,9 +91,6 @@ class EngineProcess final : public Engine {
   StateDigest digest_;
   RecordedProcedure procedure_;
 };
-
-/// How long an engine may take over one answer. A step takes milliseconds, the largest scene seconds.
-inline constexpr std::chrono::seconds enginePatience{120};
 
 /// Takes an engine's next message. @returns why there is none: "ended: exit code 7"; empty where there is one
 std::string receiveMessage(ChildProcess& child, MessageHead& head, wire::Bytes& payload);

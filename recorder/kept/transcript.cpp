@@ -48,10 +48,9 @@ std::vector<std::byte> payloadOf(const std::vector<std::byte>& message) {
 }
 
 wire::Step stepOf(const RecordedStep& recorded, std::uint8_t wanted) {
-  wire::Step step;
-  step.wanted = wanted;
-  step.lateness = recorded.lateness;
-  wire::toWire(recorded.samples, recorded.ticks, step.ticks);
+  wire::Step step{wanted, recorded.lateness, {}};
+  for (std::size_t i = 0; i < recorded.samples.size(); ++i)
+    step.ticks.push_back({recorded.samples[i], recorded.ticks[i]});
   return step;
 }
 

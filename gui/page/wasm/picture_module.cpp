@@ -14,7 +14,7 @@
 #include "gui/render/gl_objects.h"
 #include "gui/render/graphics.h"
 #include "gui/render/scene_painter.h"
-#include "gui/render/smoke.h"
+#include "gui/render/translucent.h"
 #include "gui/render/view_check.h"
 #include "recorder/engine/wire.h"
 #include "sim/scene/scene_view.h"

@@ -73,7 +73,7 @@ std::vector<std::string> shortcomings(const Calibration& calibration);
 std::int64_t ageInDays(const Calibration& calibration, const std::string& now);
 
 /// The file's text; what is copied into each recording is its compact form, on one line.
-std::string calibrationText(Calibration calibration, bool compact);
+std::string calibrationText(const Calibration& calibration, bool compact);
 
 /// @throws Error (damaged) with file and JSON pointer.
 Calibration readCalibration(const std::filesystem::path& file);

@@ -15,12 +15,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-TriangleMesh parse(const std::string& text, LengthUnit unit = LengthUnit::metre, const ObjLimits& limits = {}) {
+TriangleMesh parse(const std::string& text, LengthUnit unit = LengthUnit::metre, const SurfaceLimits& limits = {}) {
   return parseObj(std::as_bytes(std::span(text.data(), text.size())), "t.obj", unit, limits);
 }
 
 /// The message of the refusal, or empty.
-std::string refusal(const std::string& text, const ObjLimits& limits = {}) {
+std::string refusal(const std::string& text, const SurfaceLimits& limits = {}) {
   try {
     parse(text, LengthUnit::metre, limits);
   } catch (const Error& error) {
@@ -92,7 +92,7 @@ TEST(Obj, RefusesWithTheLine) {
 }
 
 TEST(Obj, RefusesTooMuch) {
-  ObjLimits limits;
+  SurfaceLimits limits;
   limits.vertices = 3;
   EXPECT_EQ(refusal(square, limits), "t.obj: line 4: more than 3 vertices");
   limits = {};

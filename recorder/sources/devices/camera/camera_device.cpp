@@ -10,14 +10,14 @@
 #include <unistd.h>
 #include <algorithm>
 #include <cstring>
+#include <sstream>
 #include <thread>
 #include <utility>
 
 #include "recorder/base/errors.h"
 #include "recorder/base/file_bytes.h"
 #include "recorder/sources/devices/calibration.h"
-#include "recorder/sources/devices/camera/live_camera.h"
-#include "recorder/sources/devices/camera/video_file.h"
+#include "recorder/sources/devices/camera/frame_source.h"
 #include "recorder/sources/devices/evdev.h"
 #include "recorder/sources/devices/pointer_device.h"
 
@@ -302,11 +302,8 @@ std::string cameraIdentity(const std::vector<std::string>& cards) {
 
 CameraRequest parseCameraRequest(const DeviceRequest& request) {
   CameraRequest out;
-  std::string rest = request.argument;
-  while (!rest.empty()) {
-    const std::size_t comma = std::min(rest.find(','), rest.size());
-    std::string part = rest.substr(0, comma);
-    rest = comma < rest.size() ? rest.substr(comma + 1) : "";
+  std::istringstream parts(request.argument);
+  for (std::string part; std::getline(parts, part, ',');) {
     if (part.empty()) request.refuse("a name is missing beside a comma");
     if (part.starts_with(keysMark)) {
       out.keys = part.substr(keysMark.size());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "recorder/sources/devices/camera/live_camera.h"
+#include "recorder/sources/devices/camera/frame_source.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>

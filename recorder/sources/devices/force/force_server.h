@@ -73,14 +73,6 @@ struct ForceServerSettings {
   bool once = false;  ///< end when the first client has gone
 };
 
-/// Intention of the hand: its path, roll, jaw and buttons.
-struct Intention {
-  Vec3 position = Vec3::Zero();
-  Quat orientation = Quat::Identity();
-  double gripper = 0.0;
-  std::uint8_t buttons = 0;
-};
-
 /// Target of a scripted hand, between its samples on the straight line. At its end it stays.
 class IntendedPath {
  public:
@@ -88,7 +80,8 @@ class IntendedPath {
   /// A path of its own: reaches 65 mm away and back every four seconds, in small circles: in touch-liver the right hand
   /// meets the liver.
   IntendedPath() = default;
-  [[nodiscard]] Intention at(double seconds) const;
+  /// Pose, gripper and buttons.
+  [[nodiscard]] DeviceSample at(double seconds) const;
 
  private:
   std::vector<DeviceSample> samples_;

@@ -22,13 +22,13 @@ inline constexpr std::size_t maxText = 200;
 /// Description of a device: its first frame.
 struct Hello {
   std::uint16_t version = forcewire::version;
-  std::uint8_t hands = 2;         ///< bit 0 left, bit 1 right
-  std::uint32_t watchdog = 50;    ///< ms without a wrench after which its motors go off
-  double rate = 1000.0;           ///< poses a second and hand
-  HandleModel handle;             ///< limits, least damping and friction, quanta
-  std::array<Vec3, 2> workspace;  ///< lower and upper corner in D (m); both zero: without bounds
-  std::string name, serial;       ///< at most 63 and 31 bytes
-  Hello() { workspace.fill(Vec3::Zero()); }
+  std::uint8_t hands = 2;       ///< bit 0 left, bit 1 right
+  std::uint32_t watchdog = 50;  ///< ms without a wrench after which its motors go off
+  double rate = 1000.0;         ///< poses a second and hand
+  HandleModel handle;           ///< limits, least damping and friction, quanta
+  /// Lower and upper corner in D (m); both zero: without bounds.
+  std::array<Vec3, 2> workspace{Vec3::Zero(), Vec3::Zero()};
+  std::string name, serial;  ///< at most 63 and 31 bytes
 };
 
 /// The host's reply.
