@@ -18,7 +18,7 @@ namespace {
 using openigtlink::Item;
 
 constexpr std::chrono::milliseconds patience{300};
-constexpr std::size_t maxFaults = 16;  // kinds of fault told a connection
+constexpr std::size_t maxFaults = 16;  // kinds of fault reported per connection
 constexpr double maxGripper = 3.2;     // rad
 constexpr int statusOk = 1;
 

@@ -27,7 +27,7 @@ struct PicturePoint {
   double right = 0.0, down = 0.0;
 };
 
-/// Where the camera sees a point; none behind the lens. Tissue before it does not matter: what is hidden by an organ
+/// Pixel of a point; none behind the lens. Occlusion is ignored: a point that is hidden by an organ
 /// but inside the field of view has a point.
 std::optional<PicturePoint> pointInPicture(const PictureFrame& frame, const CameraSample& camera, const Vec3& p_W);
 

@@ -31,7 +31,7 @@ struct Twist {
   Vec3 angular = Vec3::Zero();   ///< rad/s
 };
 
-/// Where a corner is in the frame of its camera, when it was seen (m).
+/// Position of a corner in the frame of its camera, when it was seen (m).
 Vec3 inCamera(const CameraRig& rig, const CornerSight& corner, const Pose& body, const Twist& twist);
 
 /// How far it is seen from there, without the lens' distortion (pixels). @pre it lies in front of the camera
