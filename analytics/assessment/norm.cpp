@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <regex>
 #include <set>
 #include <utility>
 
@@ -222,7 +223,8 @@ Study studyOfMembers(const std::vector<AttemptRow>& attempts, const std::vector<
 
 Norm makeNorm(const std::vector<AttemptRow>& attempts, const std::vector<AttemptValue>& values,
               const std::vector<Rating>& ratings, const NormRequest& request, const std::string& name) {
-  if (request.name.empty() || request.name.size() > maxName || !isPlainName(request.name))
+  if (request.name.empty() || request.name.size() > maxName ||
+      !std::regex_match(request.name, std::regex(plainName.pattern)))
     throw Error(ErrorKind::invalid,
                 "norm: a name has 1 to 64 letters, digits, points, hyphens and underscores, and no others");
   if (request.who.protocol && request.who.protocol->protocol.attemptRule == AttemptRule::mean)
@@ -262,7 +264,7 @@ Norm makeNorm(const std::vector<AttemptRow>& attempts, const std::vector<Attempt
   norm.seed = request.seed;
   norm.synthetic = study.synthetic;
   if (study.keys.size() != 1)
-    throw Error(ErrorKind::refused, Where{name}, "a norm is of one comparability key", {Remedy::chooseKey});
+    throw Error(ErrorKind::refused, Where{name}, "a norm needs attempts of one comparability key", {Remedy::chooseKey});
   norm.comparabilityKey = study.keys[0];
   for (const AttemptRow& a : candidates) {
     const auto group = study.groupOf.find(a.uuid);

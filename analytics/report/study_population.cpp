@@ -235,7 +235,7 @@ std::array<std::string, 2> chooseGroups(const std::map<std::string, std::uint64_
   std::sort(names.begin(), names.end(), groupBefore);
   if (!choices.groups.empty()) {
     if (choices.groups.size() != 2 || choices.groups[0] == choices.groups[1]) {
-      throw Error(ErrorKind::invalid, "study: its groups are two, with different names", {Remedy::nameGroups});
+      throw Error(ErrorKind::invalid, "study: two groups with different names are expected", {Remedy::nameGroups});
     }
     for (const std::string& name : choices.groups) {
       if (present.count(name) == 0) {

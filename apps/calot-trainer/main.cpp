@@ -166,7 +166,7 @@ gui::TrainerSetup setUp(const Options& o, const std::optional<recorder::LoadedSc
   if (who.scope.moves() && who.scope.device.empty() && who.performer.empty())
     setup.scope = who.scope.keys = std::make_shared<recorder::ScopeInput>();
   if (!who.performer.empty() && !who.device.calibration.empty())
-    throw Error(ErrorKind::invalid, "--calibration is of a device; a performer has none");
+    throw Error(ErrorKind::invalid, "--calibration needs a device; a performer takes none");
   who.mode = attempt.mode;
   if (who.device.name.empty() && who.performer.empty()) {
     setup.mouse = std::make_shared<recorder::MouseInput>();

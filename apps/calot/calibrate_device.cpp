@@ -316,7 +316,7 @@ void calibrate(const CalibrateOptions& o) {
   if (!o.stream.empty()) recorder::refuseOutput(o.stream, o.force);
   if (recorder::findDeviceKind(o.device.name) == &recorder::cameraKind) return calibrateCamera(o);
   if (!o.board.empty() || !o.phases.empty() || !o.pictures.empty())
-    throw Error(ErrorKind::invalid, "calibrate: --board, --phases and --pictures are of cameras");
+    throw Error(ErrorKind::invalid, "calibrate: --board, --phases and --pictures are for cameras only");
   if (o.pixelMillimetres) return declareCalibration(o);
   const recorder::OpenedDevice opened = recorder::openDevice(o.device.name, toolsOf(o.device));
   if (o.from.empty() && opened.tickClock) {

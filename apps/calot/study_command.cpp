@@ -219,13 +219,13 @@ Design designOf(const DesignOptions& o, const StudySource& source) {
       {"--error-ratio", o.choices.errorRatio != 1.0, {Design::agreement}}};
   for (const DesignOption& option : own) {
     if (option.given && std::find(option.designs.begin(), option.designs.end(), design) == option.designs.end())
-      failDesign(fmt::format("{} is of --design {}, not of {}", option.name,
+      failDesign(fmt::format("{} belongs to --design {}, not to {}", option.name,
                              analytics::entryOf(option.designs.front()).name, name));
   }
   if (design == Design::twoGroups) return design;
-  if (!source.protocol.empty()) failDesign(fmt::format("a protocol is of two groups, not of --design {}", name));
+  if (!source.protocol.empty()) failDesign(fmt::format("a protocol has two groups; it does not fit --design {}", name));
   if (!source.elsewhere.baselineOccasion.empty())
-    failDesign(fmt::format("--baseline-occasion is of --design two-groups, not of {}", name));
+    failDesign(fmt::format("--baseline-occasion belongs to --design two-groups, not to {}", name));
   if (design == Design::strata && o.choices.strata.empty()) failDesign("--design strata needs --strata");
   if (design == Design::correlation && o.choices.against.empty()) failDesign("--design correlation needs --against");
   if (design == Design::timeToCriterion && !source.table.empty() && o.choices.finishedColumn.empty())
@@ -323,8 +323,8 @@ void runTwoGroups(StudyCommandOptions& options) {
 
 void runDesign(StudyCommandOptions& options) {
   if (!options.csv.empty())
-    throw Error(ErrorKind::invalid, "study: --csv is of --design two-groups; the others have --json");
-  if (options.source.masked) throw Error(ErrorKind::invalid, "study: --masked is of --design two-groups");
+    throw Error(ErrorKind::invalid, "study: --csv belongs to --design two-groups; the others have --json");
+  if (options.source.masked) throw Error(ErrorKind::invalid, "study: --masked belongs to --design two-groups");
   const analytics::DesignReport report = designReportOf(options.design, options.source);
   writeReport(analytics::designDocument(report), options.html, options.pdf, options.force);
   if (isExported(options)) noteExports(options, report.attempts);

@@ -28,6 +28,7 @@ struct PicturePoint {
 };
 
 /// Place of a point in the picture; none behind the lens. Tissue before it does not matter: what is hidden by an organ
+/// Pixel of a point; none behind the lens. Occlusion is ignored: a point that is hidden by an organ
 /// but inside the field of view has a point.
 std::optional<PicturePoint> pointInPicture(const PictureFrame& frame, const CameraSample& camera, const Vec3& p_W);
 

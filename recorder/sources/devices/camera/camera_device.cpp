@@ -258,7 +258,7 @@ OpenedDevice openCamera(const DeviceRequest& request) {
   const CameraRig& rig = *calibration.camera;
   if (wanted.cameras.size() != rig.cameras.size())
     request.refuse(
-        fmt::format("{} cameras are named, the calibration is of {}", wanted.cameras.size(), rig.cameras.size()));
+        fmt::format("{} cameras are named, the calibration covers {}", wanted.cameras.size(), rig.cameras.size()));
   std::unique_ptr<PedalKeys> keys;
   if (!wanted.keys.empty()) keys = std::make_unique<PedalKeys>(wanted.keys);
   if (!wanted.live) {
