@@ -3,6 +3,7 @@
 #include "analytics/assessment/grade.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -327,8 +328,7 @@ std::string errorsOf(const std::vector<CheckpointValue>& values) {
     if (!part.empty()) parts.push_back(std::move(part));
   }
   if (parts.empty()) return "Errors: none are judged in this scene.";
-  std::string text = "Errors: ";
-  for (std::size_t i = 0; i < parts.size(); ++i) text += (i > 0 ? ", " : "") + parts[i];
+  std::string text = fmt::format("Errors: {}", fmt::join(parts, ", "));
   const CheckpointValue* critical = find(values, criticalErrors);
   if (critical != nullptr && critical->value.value_or(0.0) > 0.0) text += "; a critical error fails the attempt";
   return text + ".";
