@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "analytics/assessment/create_norm.h"
 #include "analytics/report/plots.h"
 #include "recorder/words.h"
 
@@ -70,12 +71,7 @@ std::vector<std::string> opening(const Grade& g) {
                   g.attempt.participant.empty() ? recorder::wordFor(g.attempt.operatorKind) : g.attempt.participant,
                   g.attempt.startUtc.empty() ? "an unknown day" : g.attempt.startUtc, g.attempt.comparabilityKey,
                   recorder::wordFor(g.attempt.outcome), analytics::nameOf(g.attempt.verification.verdict)));
-  lines.push_back(
-      fmt::format("Rule of the norm ({}): no critical error, and {} of {} figures. By it {} of {} competent members "
-                  "pass, and {} of "
-                  "{} others.",
-                  g.norm.judgedBy, g.needed, g.inRule, g.competentRate.passed, g.competentRate.members,
-                  g.otherRate.passed, g.otherRate.members));
+  lines.push_back(fmt::format("Rule of the norm ({}): {}", g.norm.judgedBy, ruleText(g.norm)));
   return lines;
 }
 
@@ -139,9 +135,7 @@ std::vector<std::string> notes(const Grade& g) {
       lines.push_back(fmt::format("{}: computed by a script of the site, version {}, SHA-256 {}.", nameOf(f),
                                   f.mark.version, f.mark.metric->sha256));
   }
-  for (std::string warning : {ownFailureWarning(g.norm), uncountedWarning(g.norm), passMarkWarning(g.norm)}) {
-    if (!warning.empty()) lines.push_back(std::move(warning));
-  }
+  for (std::string& warning : normWarnings(g.norm)) lines.push_back(std::move(warning));
   for (const GradedFigure& f : g.figures) {
     if (!f.missing.empty()) lines.push_back(fmt::format("{}: not judged, {}", nameOf(f), f.missing));
     if (f.value && f.passed && !f.rank)
