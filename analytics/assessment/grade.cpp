@@ -8,7 +8,6 @@
 #include <cmath>
 #include <map>
 #include <string_view>
-#include <tuple>
 
 #include "analytics/assessment/norm_rule.h"
 #include "analytics/checkpoints/registry.h"
@@ -180,7 +179,6 @@ Grade gradeAttempt(const AttemptRow& attempt, const std::vector<AttemptRow>& att
   Grade grade;
   grade.attempt = attempt;
   grade.norm = norm;
-  std::tie(grade.competentRate, grade.otherRate) = passRates(norm);
   std::map<std::string, std::vector<const AttemptValue*>> valuesOf;
   for (const AttemptValue& v : values) valuesOf[v.attempt].push_back(&v);
   const std::vector<const AttemptValue*>& own = valuesOf[attempt.uuid];

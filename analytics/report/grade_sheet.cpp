@@ -229,6 +229,7 @@ void printGrade(const Grade& g, std::ostream& out) {
 }
 
 ValueTree gradeTree(const Grade& g) {
+  const auto [competent, others] = passRates(g.norm);
   ValueTree tree{{"synthetic", synthetic(g)},
                  {"use", g.norm.evidence.empty() ? "formative" : "evidence attached"},
                  {"use_text", useOf(g.norm)},
@@ -243,8 +244,7 @@ ValueTree gradeTree(const Grade& g) {
                  {"verdict", g.verdict},
                  {"rule", {{"figures", g.inRule}, {"needed", g.needed}, {"passed", g.passedCount}}},
                  {"pass_rate",
-                  {{"competent", {g.competentRate.passed, g.competentRate.members}},
-                   {"others", {g.otherRate.passed, g.otherRate.members}}}},
+                  {{"competent", {competent.passed, competent.members}}, {"others", {others.passed, others.members}}}},
                  {"remarks", g.remarks},
                  {"moments_missing", g.momentsMissing},
                  {"figures", ValueTree::array()}};
