@@ -27,11 +27,6 @@ inline std::string figureName(const std::string& checkpoint, const std::string& 
   return subject.empty() ? checkpoint : checkpoint + " " + subject;
 }
 
-/// A figure is named whole, or by its checkpoint's name.
-inline bool isCalled(const std::string& wanted, const std::string& checkpoint, const std::string& subject) {
-  return wanted == checkpoint || wanted == figureName(checkpoint, subject);
-}
-
 /// Letters, digits, points, hyphens and underscores: names are printed, and typed.
 bool isPlainName(const std::string& name);
 std::string plainName(const recorder::JsonPlace& place);

@@ -104,11 +104,11 @@ ValueTree groupRows(const ValueTree& form, const ValueTree& items, const std::ve
 }
 
 const std::vector<TreeColumn> scoreColumns{{"n", "/n", plain},
-                                             {"blank", "/blank", countAboveZero},
-                                             {"median", "/median", digits3},
-                                             {"quartile 1", "/lower_quartile", digits3},
-                                             {"quartile 3", "/upper_quartile", digits3},
-                                             {"mean", "/mean", digits3}};
+                                           {"blank", "/blank", countAboveZero},
+                                           {"median", "/median", digits3},
+                                           {"quartile 1", "/lower_quartile", digits3},
+                                           {"quartile 3", "/upper_quartile", digits3},
+                                           {"mean", "/mean", digits3}};
 
 /// Titles and cells of a group's scores between others.
 ReportTable summaryTable(const std::string& title, const ValueTree& rows, std::vector<TreeColumn> columns,

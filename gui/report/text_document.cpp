@@ -174,8 +174,7 @@ struct ReportTextDocument::Writer {
     return lengths;
   }
 
-  static void cell(QTextTable& grid, int row, int column, const std::string& text, analytics::Align align,
-                   bool bold) {
+  static void cell(QTextTable& grid, int row, int column, const std::string& text, analytics::Align align, bool bold) {
     QTextCursor inside = grid.cellAt(row, column).firstCursorPosition();
     QTextBlockFormat format;
     format.setAlignment(align == analytics::Align::right ? Qt::AlignRight : Qt::AlignLeft);
