@@ -223,7 +223,9 @@ Study studyOfMembers(const std::vector<AttemptRow>& attempts, const std::vector<
 
 Norm makeNorm(const std::vector<AttemptRow>& attempts, const std::vector<AttemptValue>& values,
               const std::vector<Rating>& ratings, const NormRequest& request, const std::string& name) {
-  if (request.name.empty() || request.name.size() > maxName || !isPlainName(request.name))
+  constexpr const char* plain = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_.";
+  if (request.name.empty() || request.name.size() > maxName ||
+      request.name.find_first_not_of(plain) != std::string::npos)
     throw Error(ErrorKind::invalid,
                 "norm: a name has 1 to 64 letters, digits, points, hyphens and underscores, and no others");
   if (request.who.protocol && request.who.protocol->protocol.attemptRule == AttemptRule::mean)
