@@ -49,7 +49,6 @@ struct GradedFigure {
 struct Grade {
   AttemptRow attempt;
   Norm norm;
-  PassRate competentRate, otherRate;  ///< of the norm's own members, by its rule
   std::optional<double> criticalErrors;
   std::string criticalMissing;        ///< why they are not known, or empty
   bool criticalUndecided = false;     ///< the simulation's interval holds no error and one

@@ -75,8 +75,11 @@ std::string passMarkWarning(const Norm& norm);
 /// True if the pass marks come from borderline regression.
 bool isByBorderline(const Norm& norm);
 
-/// How many of the rule's figures must be passed: leastPassed, or all of them.
+/// How many figures the rule has, and how many of them must be passed: leastPassed, or all of them.
+std::size_t figuresInRule(const Norm& norm);
 std::size_t neededPasses(const Norm& norm);
+/// The rule with the rates at which the norm's own members pass by it.
+std::string ruleText(const Norm& norm);
 
 /// Group names of members by their rating.
 inline constexpr const char* atMarkGroup = "at the mark or above";

@@ -63,7 +63,7 @@ void setFixedCuts(Norm& norm, const std::vector<FixedCut>& fixed) {
   for (const FixedCut& cut : fixed) {
     bool found = false;
     for (NormCheckpoint& mark : norm.checkpoints) {
-      if (cut.figure != mark.checkpoint && cut.figure != figureName(mark.checkpoint, mark.subject)) continue;
+      if (!isCalled(cut.figure, mark.checkpoint, mark.subject)) continue;
       found = true;
       if (cut.atLeast != (mark.direction == Direction::higher))
         throw Error(ErrorKind::invalid, fmt::format("norm: fixed mark of {}: of it {} is better",

@@ -157,7 +157,7 @@ bool addError(const DesignFigure& figure, DesignReport& report, std::vector<std:
 
 void analyseReliability(const DesignData& data, const DesignChoices&, DesignReport& report) {
   std::vector<std::string> warnings;
-  report.json["components"] = report.json["measurement_error"] = ValueTree::array();
+  for (const char* key : {"measurement_error", "components"}) report.json[key] = ValueTree::array();
   std::size_t analysed = 0;
   const bool leading = data.source == "cohort" || data.occasionWord == "row";
   for (const DesignFigure& figure : data.figures) {

@@ -279,7 +279,8 @@ std::string valuesFile(const Study& study, const ValueTree& watermark) {
 }
 
 std::string flowFile(const Study& study) {
-  ValueTree rows{{{"stage", "in the " + study.source}, {"count", study.recruited}}};
+  ValueTree rows = ValueTree::array();
+  rows.push_back({{"stage", "in the " + study.source}, {"count", study.recruited}});
   for (const FlowRow& row : study.flow) rows.push_back({{"stage", "left out: " + row.reason}, {"count", row.attempts}});
   rows.push_back({{"stage", "analysed"}, {"count", study.analysed}});
   return csvText(rows, fmt::format("stage {}=/count", study.counted));
