@@ -13,10 +13,10 @@
 #include "recorder/base/errors.h"
 #include "recorder/live/worker_pool.h"
 #include "recorder/live/wrapped_sources.h"
+#include "recorder/loop.h"
 #include "recorder/sources/devices/device_source.h"
 #include "recorder/sources/devices/mouse_device.h"
 #include "recorder/sources/scope/scope_source.h"
-#include "recorder/loop.h"
 
 namespace calot::gui {
 namespace {
