@@ -7,7 +7,6 @@
 #include "apps/calot/replay_report.h"
 #include "apps/calot/source_options.h"
 #include "recorder/base/text_output.h"
-#include "recorder/branch.h"
 #include "recorder/formats/scene_file.h"
 #include "recorder/live/worker_pool.h"
 #include "recorder/live/wrapped_sources.h"
