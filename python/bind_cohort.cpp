@@ -29,7 +29,7 @@ analytics::JudgedRecording assess(const std::string& file, unsigned threads, dou
                                   const std::optional<std::string>& cohort) {
   const bool known = std::find(std::begin(analytics::motionCutoffs), std::end(analytics::motionCutoffs), cutoff) !=
                      std::end(analytics::motionCutoffs);
-  if (!known) throw Error(ErrorKind::invalid, "cutoff: 3, 6 or 10 Hz is wanted");
+  if (!known) throw Error(ErrorKind::invalid, "cutoff: 3, 6 or 10 Hz is expected");
   if (cohort && cutoff != analytics::motionCutoff)
     throw Error(ErrorKind::invalid, "cutoff: values of a cohort have one filter, 6 Hz");
   analytics::AssessSettings settings{.threads = threads, .cutoff = cutoff};
@@ -108,7 +108,7 @@ auto listOf(Read read, py::dict (*dictOf)(const Row&)) {
 
 void bindCohort(py::module_& m) {
   m.def("assess", assessed, "path"_a, "threads"_a, "cutoff"_a, "apart"_a, "cohort"_a);
-  m.def("checkpoints", checkpoints, "What is known of every checkpoint.");
+  m.def("checkpoints", checkpoints, "Definition of every checkpoint.");
   py::class_<CohortReader>(m, "Cohort", "A cohort's database, opened for reading.")
       .def(py::init<const std::filesystem::path&>(), "path"_a, py::call_guard<py::gil_scoped_release>())
       .def("attempts", listOf([](const auto& d) { return d.listAttempts(); }, rowDict<analytics::AttemptRow>))

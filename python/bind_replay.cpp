@@ -99,7 +99,7 @@ py::dict reportOf(const recorder::ReplayReport& r) {
 }
 
 void bindReplay(py::module_& m) {
-  py::class_<StepFacts>(m, "Facts", "What a step came to, as bytes.")
+  py::class_<StepFacts>(m, "Facts", "Result of a step, as bytes.")
       .def_readonly("step", &StepFacts::step)
       .def_readonly("phase", &StepFacts::phase)
       .def_readonly("critical_view", &StepFacts::criticalView)
@@ -112,8 +112,7 @@ void bindReplay(py::module_& m) {
       .def_property_readonly("digest", [](const StepFacts& f) { return bytesOf(f.digest); });
   py::class_<SteppedReplay>(m, "Replay", "Re-simulates a recording step by step, and compares.")
       .def(py::init<const std::filesystem::path&>(), "path"_a, py::call_guard<py::gil_scoped_release>())
-      .def("advance", nextOf, "steps"_a = 1,
-           "Does so many steps; the facts of the last one, or None where there is none any more.")
+      .def("advance", nextOf, "steps"_a = 1, "Does these steps; the facts of the last one, or None at the end.")
       .def_property_readonly("columns", [](const SteppedReplay& r) { return columnList(r.columns()); })
       .def_property_readonly("steps", &SteppedReplay::steps);
   m.def("result_units", resultUnits, "Unit of each field of a step's result.");

@@ -91,7 +91,7 @@ void DrivenAttempt::look(const Vec3& position, const Quat& orientation) {
   const std::lock_guard lock(mutex_);
   const bool unit = std::abs(orientation.norm() - 1.0) <= 1e-6;
   if (!position.allFinite() || !unit)
-    throw Error(ErrorKind::invalid, "the camera: a finite position and a unit quaternion w, x, y, z are wanted");
+    throw Error(ErrorKind::invalid, "the camera: a finite position and a unit quaternion w, x, y, z are expected");
   attempt_.look({position, orientation});
 }
 

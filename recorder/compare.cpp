@@ -58,8 +58,7 @@ Divergence difference(std::uint64_t step, std::string component, const std::stri
   return differs(step, std::move(component), prefix + name, value, b.numbers[static_cast<std::size_t>(at)].second);
 }
 
-}  // namespace
-
+/// The first difference of a re-simulated tick's forces, bit for bit.
 std::optional<Divergence> compareTick(std::uint64_t step, std::uint64_t tick, const TickOutcome& recorded,
                                       const TickOutcome& here) {
   for (std::size_t h = 0; h < handCount; ++h) {
@@ -76,6 +75,7 @@ std::optional<Divergence> compareTick(std::uint64_t step, std::uint64_t tick, co
   return std::nullopt;
 }
 
+/// The first differing component of the State digests and its first differing field.
 std::optional<Divergence> compareDigest(std::uint64_t step, const DigestLayout& layout, const StateDigest& recorded,
                                         const StateDigest& here) {
   const bool withFields = !recorded.field.empty();  // golden recordings have none
@@ -109,6 +109,8 @@ std::optional<Divergence> compareDigest(std::uint64_t step, const DigestLayout& 
   }
   return Divergence{step, {}, "state", "a field that only the long digest shows", ""};
 }
+
+}  // namespace
 
 std::optional<Divergence> compareProcedure(std::uint64_t step, const RecordedProcedure& recorded,
                                            const RecordedProcedure& here) {

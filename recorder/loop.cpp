@@ -1,16 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "recorder/loop.h"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <atomic>
-#include <bit>
+#include <cmath>
 #include <optional>
 #include <utility>
 
 #include "recorder/base/errors.h"
+#include "recorder/base/text_output.h"
+#include "recorder/engine/session.h"
 #include "recorder/live/haptic_thread.h"
 #include "recorder/live/wrapped_sources.h"
 #include "recorder/recording/reader.h"
+#include "recorder/replay.h"
+#include "sim/math/fields.h"
+#include "sim/scene/version.h"
 
 namespace calot::recorder {
 
@@ -18,25 +25,16 @@ namespace {
 
 double seconds(Nanoseconds t) { return std::chrono::duration<double>(t).count(); }
 
-/// Conditions that end an attempt before a step, apart from its source.
-class Gate {
- public:
-  Gate(const Model& model, const RunSettings& settings)
-      : stepSeconds_(model.stepSeconds()), timeLimit_(model.scene().timeLimit), settings_(settings) {}
+bool isStopped(const RunSettings& settings) { return settings.stop != nullptr && settings.stop->load(); }
 
-  /// @returns running where step n may begin
-  [[nodiscard]] Outcome ask(std::uint64_t step) const {
-    const double time = static_cast<double>(step) * stepSeconds_;
-    if (timeLimit_ > 0.0 && time >= timeLimit_) return Outcome::timeLimit;
-    if ((settings_.seconds > 0.0 && time >= settings_.seconds) || stopped()) return Outcome::stopped;
-    return Outcome::running;
-  }
-  [[nodiscard]] bool stopped() const { return settings_.stop != nullptr && settings_.stop->load(); }
-
- private:
-  double stepSeconds_, timeLimit_;
-  const RunSettings& settings_;
-};
+/// How an attempt ends before step n, apart from its source; running: it does not.
+Outcome outcomeBefore(std::uint64_t step, const Model& model, const RunSettings& settings) {
+  const double time = static_cast<double>(step) * model.stepSeconds();
+  const double timeLimit = model.scene().timeLimit;
+  if (timeLimit > 0.0 && time >= timeLimit) return Outcome::timeLimit;
+  if ((settings.seconds > 0.0 && time >= settings.seconds) || isStopped(settings)) return Outcome::stopped;
+  return Outcome::running;
+}
 
 float lateness(Nanoseconds due) { return static_cast<float>(std::max(0.0, seconds(monotonicNow() - due))); }
 
@@ -44,7 +42,6 @@ float lateness(Nanoseconds due) { return static_cast<float>(std::max(0.0, second
 void runInline(Session& session, SampleSource& source, const RunSettings& settings, const StepWatch& watch,
                RunReport& report) {
   const std::uint32_t ticksPerStep = session.model().scene().ticksPerStep;
-  const Gate gate(session.model(), settings);
   std::vector<TickSamples> samples(ticksPerStep);
   std::vector<TickOutcome> ticks(ticksPerStep);
   PacedClock clock(monotonicNow());
@@ -52,8 +49,9 @@ void runInline(Session& session, SampleSource& source, const RunSettings& settin
   std::uint64_t tick = 0;
   while (true) {
     const SourceStatus status = waitWhilePaused(
-        source, [&gate] { return gate.stopped(); }, clock, pauses);
-    report.outcome = status == SourceStatus::failed ? Outcome::technicalFailure : gate.ask(session.steps());
+        source, [&] { return isStopped(settings); }, clock, pauses);
+    report.outcome = status == SourceStatus::failed ? Outcome::technicalFailure
+                                                    : outcomeBefore(session.steps(), session.model(), settings);
     if (report.outcome != Outcome::running) break;
     bool open = true;
     for (std::uint32_t i = 0; i < ticksPerStep; ++i, ++tick) {
@@ -85,29 +83,28 @@ void runInline(Session& session, SampleSource& source, const RunSettings& settin
   report.paused = pauses.seconds;
 }
 
-bool sameForce(const HandTick& a, const HandTick& b) {
-  const auto same = [](const Vec3& x, const Vec3& y) {
-    for (int i = 0; i < 3; ++i) {
-      if (std::bit_cast<std::uint64_t>(x[i]) != std::bit_cast<std::uint64_t>(y[i])) return false;
-    }
-    return true;
-  };
-  return same(a.force, b.force) && same(a.torque, b.torque);
+/// Bit for bit.
+bool sameForces(const TickOutcome& a, const TickOutcome& b) {
+  const auto same = [](const Vec3& x, const Vec3& y) { return std::ranges::equal(bytesOf(x), bytesOf(y)); };
+  for (std::size_t h = 0; h < handCount; ++h) {
+    if (!same(a.hand[h].force, b.hand[h].force) || !same(a.hand[h].torque, b.hand[h].torque)) return false;
+  }
+  return true;
 }
 
 /// Ticks on the haptic thread, steps on this one.
 void runLive(Session& session, SampleSource& source, const RunSettings& settings, const StepWatch& watch,
              RunReport& report) {
   const std::uint32_t ticksPerStep = session.model().scene().ticksPerStep;
-  const Gate gate(session.model(), settings);
   const std::uint64_t before = session.steps();
   std::atomic<bool> ranAway{false};  // the haptic thread asks before each step
   session.precompute();
   std::vector<TickSamples> samples(ticksPerStep);
   std::vector<TickOutcome> ticks(ticksPerStep);
   HapticThread haptics(session.model(), source, session.haptics(), session.contactSets(),
-                       {[&gate, &ranAway, before](std::uint64_t step) {
-                          return ranAway.load() ? Outcome::technicalFailure : gate.ask(before + step);
+                       {[&](std::uint64_t step) {
+                          return ranAway.load() ? Outcome::technicalFailure
+                                                : outcomeBefore(before + step, session.model(), settings);
                         },
                         settings.feedback, settings.stop});
   session.onContactSets([&haptics](const ContactSets& sets) { haptics.stepDone(sets); });
@@ -121,9 +118,7 @@ void runLive(Session& session, SampleSource& source, const RunSettings& settings
     for (std::uint32_t i = 0; i < ticksPerStep; ++i) {
       const TickOutcome again =
           session.tick(samples[i], NamedSets{ticks[i].hand[0].contactSet, ticks[i].hand[1].contactSet});
-      bool same = true;
-      for (std::size_t h = 0; h < handCount; ++h) same = same && sameForce(ticks[i].hand[h], again.hand[h]);
-      if (!same) ++report.disagreements;
+      if (!sameForces(ticks[i], again)) ++report.disagreements;
     }
     session.step(samples, ticks, late);  // with the forces that the hands felt
     if (settings.progress) settings.progress(session.steps());
@@ -196,7 +191,7 @@ Outcome StepwiseAttempt::step(const HandCommands& wanted) {
     throw Error(ErrorKind::invalid, "the attempt is over: reset begins another one");
   hands_.next(wanted, samples_);
   session_.run({samples_, {}, 0.0F});
-  outcome_ = watch_.ranAway() ? Outcome::technicalFailure : Gate(model(), {}).ask(steps());
+  outcome_ = watch_.ranAway() ? Outcome::technicalFailure : outcomeBefore(steps(), model(), {});
   return outcome_;
 }
 
@@ -240,6 +235,71 @@ void runOpenLoop(const Model& model, const AttemptInputs& inputs, std::span<Obse
     session.run({step, late, 0.0F});
   }
   session.end(inputs.outcome);
+}
+
+void refuseParent(const Recording& parent, const ChainVerdict& chain) {
+  const AttemptHeader& header = parent.header();
+  const std::string name = parent.path().string();
+  if (chain.intact && header.simulationVersion != simulationVersion) {
+    throw Error(ErrorKind::undecided, Where{name},
+                fmt::format("recorded with simulation version {}, this build has {}: it cannot be branched here",
+                            header.simulationVersion, simulationVersion));
+  }
+  if (!chain.intact) throw Error(ErrorKind::refused, Where{name}, fmt::format("content chain broken: {}", chain.what));
+  if (header.mode == Mode::assessment) {
+    throw Error(ErrorKind::refused, Where{name}, "made in assessment mode, which has no branches");
+  }
+}
+
+std::uint64_t forkStepAt(const Recording& parent, double time) {
+  const AttemptHeader& header = parent.header();
+  const double stepSeconds = header.tickSeconds * static_cast<double>(header.ticksPerStep);
+  // A time that was written in decimals means the step's end that is next to it, not the one before.
+  const double steps = std::floor(time / stepSeconds + 1e-6);
+  if (!(steps >= 1.0)) {
+    throw Error(ErrorKind::invalid, Where{parent.path().string(), fmt::format("fork at {} s", time)},
+                fmt::format("it lies at the end of the first step, {} s, or later", stepSeconds), {Remedy::moveFork});
+  }
+  if (steps > static_cast<double>(parent.stepCount())) {
+    throw Error(ErrorKind::invalid, Where{parent.path().string(), fmt::format("fork at {} s", time)},
+                fmt::format("the recording ends at {} s", parent.seconds()), {Remedy::moveFork});
+  }
+  return static_cast<std::uint64_t>(steps) - 1;
+}
+
+AttemptHeader branchHeader(const Recording& parent, const Model& model, std::uint64_t forkStep,
+                           const Provenance& provenance) {
+  const AttemptHeader& from = parent.header();
+  AttemptSettings settings = from;
+  settings.mode = Mode::practice;
+  AttemptHeader header = makeHeader(model, from.assets, provenance, settings);
+  header.parent = from.attempt;
+  header.forkStep = static_cast<std::int64_t>(forkStep);
+  return header;
+}
+
+void takeParent(Recording& parent, Session& session, std::uint64_t forkStep,
+                const std::function<void(std::uint64_t step, std::uint64_t of)>& progress) {
+  LocalEngine engine(session);
+  if (const auto divergence = follow(parent, engine, forkStep + 1, {}, progress)) {
+    throw Error(ErrorKind::refused, Where{parent.path().string()}, describe(*divergence));
+  }
+}
+
+BranchFile::BranchFile(std::filesystem::path target, bool force) : target_(std::move(target)), force_(force) {
+  refuseOutput(target_, force_);
+  temporary_ = target_;
+  temporary_ += ".branch";
+}
+
+BranchFile::~BranchFile() {
+  std::error_code ignored;
+  if (!published_) std::filesystem::remove(temporary_, ignored);
+}
+
+void BranchFile::publish() {
+  recorder::publish(temporary_, target_, force_);
+  published_ = true;
 }
 
 }  // namespace calot::recorder

@@ -4,12 +4,10 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <condition_variable>
 #include <exception>
+#include <future>
 #include <memory>
-#include <mutex>
 #include <stdexcept>
-#include <thread>
 
 #include "recorder/step_watch.h"
 
@@ -95,21 +93,16 @@ class Verification {
         firstBad_(segments.size()) {}
 
   void run(unsigned threads, const std::function<void(std::uint64_t, std::uint64_t)>& progress) {
-    std::vector<std::jthread> pool;  // joined whatever `progress` throws
-    working_ = std::min<std::size_t>(threads, segments_.size());
-    const std::size_t count = working_;
-    for (std::size_t t = 0; t < count; ++t) pool.emplace_back([this] { work(); });
+    std::vector<std::future<void>> workers;  // waited for whatever `progress` throws
+    const std::size_t count = std::min<std::size_t>(threads, segments_.size());
+    for (std::size_t t = 0; t < count; ++t) workers.push_back(std::async(std::launch::async, [this] { work(); }));
     std::uint64_t of = 0;
     for (const Segment& segment : segments_) of += segment.end - segment.first;
-    {
-      std::unique_lock lock(mutex_);
-      while (!finished_.wait_for(lock, progressInterval, [this] { return working_ == 0; })) {
-        lock.unlock();
+    for (const std::future<void>& worker : workers) {
+      while (worker.wait_for(progressInterval) != std::future_status::ready) {
         if (progress) progress(done_, of);
-        lock.lock();
       }
     }
-    for (std::jthread& thread : pool) thread.join();
     if (progress) progress(done_, of);
   }
 
@@ -145,8 +138,6 @@ class Verification {
       while (i < before && !firstBad_.compare_exchange_weak(before, i)) {
       }
     }
-    const std::lock_guard lock(mutex_);
-    if (--working_ == 0) finished_.notify_one();
   }
 
   const std::filesystem::path& path_;
@@ -157,9 +148,6 @@ class Verification {
   std::atomic<std::size_t> next_{0};
   std::atomic<std::size_t> firstBad_;
   std::atomic<std::uint64_t> done_{0};
-  std::mutex mutex_;
-  std::condition_variable finished_;
-  std::size_t working_ = 0;
 };
 
 }  // namespace

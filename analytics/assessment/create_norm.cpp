@@ -50,15 +50,9 @@ Norm createNorm(const std::string& database, NormRequest request, const std::vec
 }
 
 std::vector<std::string> normSummary(const Norm& norm) {
-  const auto [competent, others] = passRates(norm);
-  const auto counting =
-      std::count_if(norm.checkpoints.begin(), norm.checkpoints.end(), [](const auto& c) { return c.inRule; });
   return {fmt::format("Norm {} version {}, made on {} by {}: {} members, judged by {}; {}", norm.name, norm.version,
                       norm.createdUtc, norm.by, norm.members.size(), norm.judgedBy, norm.comparabilityKey),
-          fmt::format("Rule: no critical error, and {} of {} figures. By it {} of {} competent members pass, and {} of "
-                      "{} others.",
-                      neededPasses(norm), counting, competent.passed, competent.members, others.passed, others.members),
-          useOf(norm)};
+          "Rule: " + ruleText(norm), useOf(norm)};
 }
 
 std::vector<std::string> normWarnings(const Norm& norm) {

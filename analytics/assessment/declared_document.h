@@ -28,8 +28,8 @@ inline std::string figureName(const std::string& checkpoint, const std::string& 
 }
 
 /// Names are printed, and typed.
-inline constexpr TextRule plainName{maxName, "[A-Za-z0-9_.-]+",
-                                    "a name of letters, digits, points, hyphens and underscores is wanted"};
+inline constexpr TextRule plainName{maxName, "^[A-Za-z0-9_.-]+$",
+                                    "a name of letters, digits, points, hyphens and underscores is expected"};
 inline constexpr TextRule anyName{maxName}, anyText{maxText};
 
 /// Notes where a document was read from, its text and the hash of that.

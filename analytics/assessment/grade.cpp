@@ -3,11 +3,11 @@
 #include "analytics/assessment/grade.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <string_view>
-#include <tuple>
 
 #include "analytics/assessment/norm_rule.h"
 #include "analytics/checkpoints/checkpoint.h"
@@ -177,7 +177,6 @@ Grade gradeAttempt(const AttemptRow& attempt, const std::vector<AttemptRow>& att
   Grade grade;
   grade.attempt = attempt;
   grade.norm = norm;
-  std::tie(grade.competentRate, grade.otherRate) = passRates(norm);
   std::map<std::string, std::vector<const AttemptValue*>> valuesOf;
   for (const AttemptValue& v : values) valuesOf[v.attempt].push_back(&v);
   const std::vector<const AttemptValue*>& own = valuesOf[attempt.uuid];
@@ -325,8 +324,7 @@ std::string errorsOf(const std::vector<CheckpointValue>& values) {
     if (!part.empty()) parts.push_back(std::move(part));
   }
   if (parts.empty()) return "Errors: none are judged in this scene.";
-  std::string text = "Errors: ";
-  for (std::size_t i = 0; i < parts.size(); ++i) text += (i > 0 ? ", " : "") + parts[i];
+  std::string text = fmt::format("Errors: {}", fmt::join(parts, ", "));
   const CheckpointValue* critical = find(values, criticalErrors);
   if (critical != nullptr && critical->value.value_or(0.0) > 0.0) text += "; a critical error fails the attempt";
   return text + ".";

@@ -15,7 +15,7 @@
 
 namespace calot::analytics {
 
-/// Where a value stands among the n competent members that have the figure: 100 (k + t / 2 + 1 / 2) / (n + 1), k of
+/// Percentile of a value among the n competent members with the figure: 100 (k + t / 2 + 1 / 2) / (n + 1), k of
 /// them worse and t equal, beside what n people can tell: from 100 / (n + 1) to 100 n / (n + 1). No answer beyond the
 /// best or the worst of them, and where there are fewer than leastForPercentile.
 inline constexpr std::size_t leastForPercentile = 5;
@@ -49,7 +49,6 @@ struct GradedFigure {
 struct Grade {
   AttemptRow attempt;
   Norm norm;
-  PassRate competentRate, otherRate;  ///< of the norm's own members, by its rule
   std::optional<double> criticalErrors;
   std::string criticalMissing;        ///< why they are not known, or empty
   bool criticalUndecided = false;     ///< the simulation's interval holds no error and one

@@ -22,6 +22,11 @@ constexpr const char* otherGroup = "not competent";
 constexpr const char* allFigures = "all";
 constexpr const char* borderlinePrefix = "borderline regression on form ";
 
+std::size_t competentMembers(const Norm& norm) {
+  return static_cast<std::size_t>(
+      std::count_if(norm.members.begin(), norm.members.end(), [](const NormMember& m) { return m.competent; }));
+}
+
 /// The attempts with a group by their score, `above` from the mark on; of a participant the first that has a score.
 /// Others have no group.
 std::vector<AttemptRow> groupedBy(std::vector<AttemptRow> attempts, const std::map<std::string, double>& scores,
@@ -60,9 +65,8 @@ struct NormFigure {
 };
 
 bool isNamed(const std::vector<std::string>& named, const std::string& checkpoint, const std::string& subject) {
-  return std::any_of(named.begin(), named.end(), [&](const std::string& wanted) {
-    return wanted == checkpoint || wanted == figureName(checkpoint, subject);
-  });
+  return std::any_of(named.begin(), named.end(),
+                     [&](const std::string& wanted) { return isCalled(wanted, checkpoint, subject); });
 }
 
 NormCheckpoint markOf(const CheckpointDefinition& definition, const NormFigure& figure, const Norm& norm,
@@ -108,12 +112,12 @@ NormCheckpoint markOf(const CheckpointDefinition& definition, const NormFigure& 
   return mark;
 }
 
-/// Whether a figure is in the norm: those of phases, which repeat the whole attempt's, where they are asked for.
+/// True if a figure belongs to the norm; figures of phases, which repeat the whole attempt's, only on request.
 bool isAskedFor(const CheckpointDefinition& definition, const std::string& subject, const NormRequest& request) {
   return !isOfPhases(definition) || request.who.includePhases || isNamed(request.checkpoints, definition.name, subject);
 }
 
-/// Which figures members have that judge, in the registry's order; their values, once a member.
+/// Figures of the members that judge, in the registry's order; one value per member.
 std::vector<NormFigure> collectValues(Norm& norm, const std::vector<AttemptValue>& values, const NormRequest& request,
                                       const std::string& name) {
   std::vector<NormFigure> figures;
@@ -148,9 +152,7 @@ std::vector<NormFigure> collectValues(Norm& norm, const std::vector<AttemptValue
 
 /// True if a figure can be in the rule, given a mark.
 bool isCandidate(const std::string& checkpoint, const std::string& subject, const NormRequest& request) {
-  const auto fixed = [&](const FixedCut& cut) {
-    return cut.figure == checkpoint || cut.figure == figureName(checkpoint, subject);
-  };
+  const auto fixed = [&](const FixedCut& cut) { return isCalled(cut.figure, checkpoint, subject); };
   if (std::any_of(request.fixed.begin(), request.fixed.end(), fixed)) return true;
   if (request.checkpoints.empty()) return countsByDefault(checkpoint);
   return request.checkpoints.front() == allFigures || isNamed(request.checkpoints, checkpoint, subject);
@@ -181,19 +183,18 @@ void declareRule(Norm& norm, const NormRequest& request, const std::string& name
     if (all) break;
     bool found = false;
     for (NormCheckpoint& mark : norm.checkpoints) {
-      const std::string figure = figureName(mark.checkpoint, mark.subject);
-      if (wanted != figure && wanted != mark.checkpoint) continue;
+      if (!isCalled(wanted, mark.checkpoint, mark.subject)) continue;
       found = true;
       if (!mark.cut)
-        throw Error(ErrorKind::refused, Where{name}, fmt::format("{} has no pass mark: {}", figure, mark.reason));
+        throw Error(ErrorKind::refused, Where{name},
+                    fmt::format("{} has no pass mark: {}", figureName(mark.checkpoint, mark.subject), mark.reason));
       mark.inRule = true;
     }
     if (!found)
       throw Error(ErrorKind::invalid, fmt::format("norm: the members have no figure \"{}\" that judges", wanted),
                   {Remedy::nameCheckpoints});
   }
-  const auto inRule = static_cast<std::size_t>(
-      std::count_if(norm.checkpoints.begin(), norm.checkpoints.end(), [](const auto& c) { return c.inRule; }));
+  const std::size_t inRule = figuresInRule(norm);
   if (inRule == 0)
     throw Error(ErrorKind::refused, Where{name}, "no figure that counts has a pass mark", {Remedy::nameCheckpoints});
   norm.leastPassed = request.leastPassed;
@@ -222,14 +223,16 @@ Study studyOfMembers(const std::vector<AttemptRow>& attempts, const std::vector<
 
 Norm makeNorm(const std::vector<AttemptRow>& attempts, const std::vector<AttemptValue>& values,
               const std::vector<Rating>& ratings, const NormRequest& request, const std::string& name) {
-  if (request.name.empty() || request.name.size() > maxName || !isPlainName(request.name))
+  constexpr const char* plain = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_.";
+  if (request.name.empty() || request.name.size() > maxName ||
+      request.name.find_first_not_of(plain) != std::string::npos)
     throw Error(ErrorKind::invalid,
                 "norm: a name has 1 to 64 letters, digits, points, hyphens and underscores, and no others");
   if (request.who.protocol && request.who.protocol->protocol.attemptRule == AttemptRule::mean)
     throw Error(ErrorKind::refused, Where{request.who.protocol->protocol.file},
-                "its attempt rule is the mean, and a mean of attempts is no attempt that others are held against");
+                "its attempt rule is the mean, and a mean of attempts is not an attempt that others are held against");
   if (request.who.attemptRule == AttemptRule::mean)
-    throw Error(ErrorKind::invalid, "norm: a mean of attempts is no attempt", {Remedy::takeFirst});
+    throw Error(ErrorKind::invalid, "norm: a mean of attempts is not an attempt", {Remedy::takeFirst});
   StudyOptions who = request.who;
   std::vector<AttemptRow> candidates = attempts;
   Norm norm;
@@ -262,15 +265,14 @@ Norm makeNorm(const std::vector<AttemptRow>& attempts, const std::vector<Attempt
   norm.seed = request.seed;
   norm.synthetic = study.synthetic;
   if (study.keys.size() != 1)
-    throw Error(ErrorKind::refused, Where{name}, "a norm is of one comparability key", {Remedy::chooseKey});
+    throw Error(ErrorKind::refused, Where{name}, "a norm needs attempts of one comparability key", {Remedy::chooseKey});
   norm.comparabilityKey = study.keys[0];
   for (const AttemptRow& a : candidates) {
     const auto group = study.groupOf.find(a.uuid);
     if (group != study.groupOf.end()) norm.members.push_back({a.uuid, group->second == study.better, {}});
   }
   norm.membersMade = norm.members.size();
-  const auto competent = static_cast<std::size_t>(
-      std::count_if(norm.members.begin(), norm.members.end(), [](const NormMember& m) { return m.competent; }));
+  const std::size_t competent = competentMembers(norm);
   if (std::min(competent, norm.members.size() - competent) < minNormMembers)
     throw Error(ErrorKind::refused, Where{name},
                 fmt::format("a norm wants at least {} competent members and as many others; there are {} and {}",
@@ -289,16 +291,23 @@ bool passes(const NormCheckpoint& mark, double value) {
   return mark.direction == Direction::lower ? value <= *mark.cut : value >= *mark.cut;
 }
 
-std::size_t neededPasses(const Norm& norm) {
-  if (norm.leastPassed > 0) return norm.leastPassed;
+std::size_t figuresInRule(const Norm& norm) {
   return static_cast<std::size_t>(
       std::count_if(norm.checkpoints.begin(), norm.checkpoints.end(), [](const auto& c) { return c.inRule; }));
 }
 
+std::size_t neededPasses(const Norm& norm) { return norm.leastPassed > 0 ? norm.leastPassed : figuresInRule(norm); }
+
+std::string ruleText(const Norm& norm) {
+  const auto [competent, others] = passRates(norm);
+  return fmt::format(
+      "no critical error, and {} of {} figures. By it {} of {} competent members pass, and {} of {} others.",
+      neededPasses(norm), figuresInRule(norm), competent.passed, competent.members, others.passed, others.members);
+}
+
 std::string passMarkWarning(const Norm& norm) {
   if (std::none_of(norm.checkpoints.begin(), norm.checkpoints.end(), [](const auto& c) { return c.lower; })) return {};
-  const auto competent = static_cast<std::size_t>(
-      std::count_if(norm.members.begin(), norm.members.end(), [](const NormMember& m) { return m.competent; }));
+  const std::size_t competent = competentMembers(norm);
   const std::string text =
       isByBorderline(norm)
           ? coverageWarning(CoveredInterval::borderline, "pass mark", norm.members.size(), norm.members.size(),

@@ -52,7 +52,7 @@ inline constexpr std::size_t minNormMembers = 3;
 /// @param name of where they are from, for errors
 /// @throws Error (refused) as makeStudy(), where raters judged nobody or all alike, a side has too few members, a
 /// figure of the rule has no cut, the rule wants more than there are, or the protocol takes a mean of attempts; Error
-/// (invalid) for a name that is none.
+/// (invalid) for an unknown name.
 Norm makeNorm(const std::vector<AttemptRow>& attempts, const std::vector<AttemptValue>& values,
               const std::vector<Rating>& ratings, const NormRequest& request, const std::string& name);
 
@@ -75,8 +75,11 @@ std::string passMarkWarning(const Norm& norm);
 /// True if the pass marks come from borderline regression.
 bool isByBorderline(const Norm& norm);
 
-/// How many of the rule's figures must be passed: leastPassed, or all of them.
+/// How many figures the rule has, and how many of them must be passed: leastPassed, or all of them.
+std::size_t figuresInRule(const Norm& norm);
 std::size_t neededPasses(const Norm& norm);
+/// The rule with the rates at which the norm's own members pass by it.
+std::string ruleText(const Norm& norm);
 
 /// Group names of members by their rating.
 inline constexpr const char* atMarkGroup = "at the mark or above";

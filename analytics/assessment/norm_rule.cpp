@@ -45,7 +45,7 @@ FixedCut parseFixedCut(const std::string& text) {
     if (fault.empty() && !cut.figure.empty()) return cut;
   }
   throw Error(ErrorKind::invalid,
-              fmt::format("norm: fixed mark {}: a figure, <= or >=, and a number are wanted", recorder::shown(text)));
+              fmt::format("norm: fixed mark {}: a figure, <= or >=, and a number are expected", recorder::shown(text)));
 }
 
 bool countsByDefault(std::string_view checkpoint) { return holds(countingCheckpoints(), checkpoint); }
@@ -63,7 +63,7 @@ void setFixedCuts(Norm& norm, const std::vector<FixedCut>& fixed) {
   for (const FixedCut& cut : fixed) {
     bool found = false;
     for (NormCheckpoint& mark : norm.checkpoints) {
-      if (cut.figure != mark.checkpoint && cut.figure != figureName(mark.checkpoint, mark.subject)) continue;
+      if (!isCalled(cut.figure, mark.checkpoint, mark.subject)) continue;
       found = true;
       if (cut.atLeast != (mark.direction == Direction::higher))
         throw Error(ErrorKind::invalid, fmt::format("norm: fixed mark of {}: of it {} is better",
@@ -127,7 +127,7 @@ AngoffJudgement readAngoff(const CsvTable& table) {
       const double p = recorder::readFiniteNumber(row.cells[c], fault);
       if (!fault.empty()) failAt(table, row.line, table.columns[c], fault);
       if (p < 0.0 || p > 1.0)
-        failAt(table, row.line, table.columns[c], fmt::format("{} is no probability from 0 to 1", p));
+        failAt(table, row.line, table.columns[c], fmt::format("{} is not a probability from 0 to 1", p));
       result.probabilities.values.push_back(p);
     }
   }

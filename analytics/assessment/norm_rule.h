@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "analytics/assessment/declared_document.h"
 #include "analytics/cohort/assessment_database.h"
 #include "analytics/statistics/standard_setting.h"
 #include "recorder/base/csv.h"
@@ -18,6 +19,11 @@ struct FixedCut {
   bool atLeast = false;  ///< else at most
   double value = 0.0;    ///< in the unit that tables show
 };
+
+/// A figure is named whole, or by its checkpoint's name.
+inline bool isCalled(const std::string& wanted, const std::string& checkpoint, const std::string& subject) {
+  return wanted == checkpoint || wanted == figureName(checkpoint, subject);
+}
 
 /// "critical-view>=1", "clip-errors<=0". @throws Error (invalid)
 FixedCut parseFixedCut(const std::string& text);

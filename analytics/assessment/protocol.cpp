@@ -67,7 +67,7 @@ std::vector<Field> Population::fields() {
 
 std::vector<Field> DirectedHypothesis::fields() {
   using S = DirectedHypothesis;
-  static constexpr TextRule sha256{64, "[0-9a-f]{64}", "64 hexadecimal digits in small letters are wanted"};
+  static constexpr TextRule sha256{64, "^[0-9a-f]{64}$", "64 hexadecimal digits in small letters are expected"};
   return {
       object("hypothesis", "Hypothesis on one of a checkpoint, an external metric and an outcome"),
       optional("checkpoint", at<S, &S::checkpoint>, anyName, "Name, as calot checkpoints lists it"),
@@ -125,7 +125,8 @@ namespace {
 
 void checkCriterion(const JsonPlace& place, const PopulationCriterion& criterion) {
   const bool bounded = criterion.atLeast || criterion.atMost;
-  if (bounded == place.has("equals")) place.fail("either \"equals\", or \"atLeast\" or \"atMost\" or both are wanted");
+  if (bounded == place.has("equals"))
+    place.fail("either \"equals\", or \"atLeast\" or \"atMost\" or both are expected");
   if (criterion.atLeast && criterion.atMost && *criterion.atLeast > *criterion.atMost)
     place.fail("\"atLeast\" is larger than \"atMost\"");
 }
@@ -142,7 +143,7 @@ void checkHypothesis(const Protocol& protocol, const JsonPlace& place, DirectedH
   if (place.has("checkpoint") + place.has("external") + place.has("outcome") != 1)
     place.fail(
         "one of \"checkpoint\", \"external\" (a metric of your own) and \"outcome\" (a column of a table from "
-        "elsewhere) is wanted");
+        "elsewhere) is expected");
   if (place.has("sha256") && !hypothesis.external) place.at("sha256").fail("only an external metric has a script");
   if (hypothesis.external) {
     if (findCheckpoint(name) != nullptr)
@@ -194,7 +195,7 @@ Protocol parseProtocol(std::span<const std::byte> bytes, const std::string& file
       place.fail("a hypothesis on this figure stands above already");
   }
   if (std::none_of(protocol.hypotheses.begin(), protocol.hypotheses.end(), [](const auto& h) { return h.primary; }))
-    root.at("hypotheses").fail("none is primary; at least one is wanted");
+    root.at("hypotheses").fail("none is primary; at least one is expected");
   return protocol;
 }
 
@@ -208,7 +209,7 @@ std::string whyOutside(const Population& population, const std::map<std::string,
     }
     std::string fault;
     const double value = recorder::readFiniteNumber(at->second, fault);
-    if (!fault.empty()) return fmt::format("{} is no number", c.criterion);
+    if (!fault.empty()) return fmt::format("{} is not a number", c.criterion);
     if (c.atLeast && value < *c.atLeast)
       return fmt::format("{} {}, at least {} wanted", c.criterion, value, *c.atLeast);
     if (c.atMost && value > *c.atMost) return fmt::format("{} {}, at most {} wanted", c.criterion, value, *c.atMost);

@@ -172,7 +172,7 @@ std::map<std::string, int> answersOf(const RatingForm& form,
     std::string fault;
     const long long value = recorder::readWholeNumber(score, fault);
     if (!fault.empty() || value < form.least || value > form.most)
-      fail(key, fmt::format("\"{}\" is no whole number from {} to {} (- where it was left blank)", shown(score),
+      fail(key, fmt::format("\"{}\" is not a whole number from {} to {} (- where it was left blank)", shown(score),
                             form.least, form.most));
     answers[key] = static_cast<int>(value);
   }

@@ -133,7 +133,7 @@ std::string nameOf(CheckpointFamily family) {
 
 std::string whyTooOld(const AttemptContext& context, std::uint32_t needed) {
   if (context.resultVersion >= needed) return {};
-  return fmt::format("results of version {} do not tell of it", context.resultVersion);
+  return fmt::format("not recorded in results of version {}", context.resultVersion);
 }
 
 std::string coverageText(const CheckpointDefinition& definition) {

@@ -18,7 +18,7 @@
 #include "analytics/checkpoints/definition.h"
 #include "recorder/base/identity.h"
 #include "recorder/engine/observer.h"
-#include "recorder/sources/scope/picture_geometry.h"
+#include "recorder/sources/scope/endoscope.h"
 #include "sim/judgement/judge.h"
 #include "sim/scene/description.h"
 
@@ -220,7 +220,7 @@ enum class CheckpointFamily : std::uint8_t {
 
 std::string nameOf(CheckpointFamily family);  ///< "Table 2", "motion", "contact and force"
 
-/// Where tables show a checkpoint.
+/// Group of a checkpoint in tables.
 struct CheckpointPlace {
   CheckpointFamily family = CheckpointFamily::paper;
   int rank = 0;  ///< within the family, ascending, none twice; steps of ten leave room between them

@@ -146,7 +146,7 @@ std::vector<CheckpointValue> valuesFromSamples(const recorder::TrackedMotion& tr
 
 namespace {
 
-/// Intervals over so many of the tracker's own hold a sample whose pose was equal to the one before, and so unseen.
+/// A longer interval, in the tracker's own, hides a sample whose pose equalled the previous one.
 constexpr double unseenIntervals = 1.5;
 
 }  // namespace
@@ -166,7 +166,7 @@ bool MotionTrack::isDue() const {
 /// The newest sample's pose stood for longer than a source holds one.
 bool MotionTrack::rested() const { return seconds(vouched_ - sample_) > straightBridge; }
 
-/// What the newest sample's pose vouches for beyond 0.1 s is rest, up to the end.
+/// Extends the grid to the end: the newest sample vouches for rest beyond 0.1 s.
 void MotionTrack::closeRest(SampleGrid& grid) const {
   if (!grid.runs().empty() && rested()) grid.extend(static_cast<double>(vouched_), position_, orientation_);
 }

@@ -15,7 +15,7 @@ namespace calot::analytics {
 /// Better direction. `none`: the figure describes, it does not judge.
 enum class Direction : std::uint8_t { none, lower, higher };
 
-/// Where a value comes from (section 6 of the design). Numbers are stored and never reused.
+/// Origin of a value (section 6 of the design). Numbers are stored and never reused.
 enum class Origin : std::uint8_t {
   resimulated = 0,  ///< the simulation ran again, bit for bit, in the same simulation version
   observables = 1,  ///< recorded StepResults and forces, read by any later software

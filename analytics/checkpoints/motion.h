@@ -89,7 +89,7 @@ class SampleRate {
     std::uint64_t count = 0;
     double seconds = 0.0;
   };
-  /// Intervals of at most so many seconds together.
+  /// Merges intervals of at most this length (s).
   [[nodiscard]] Bin upTo(double longest) const;
 
   std::vector<Bin> bins_;
@@ -177,7 +177,7 @@ Motion filteredMotion(MotionSamples samples, double cutoff);
 /// Samples this close (s) are joined by a straight line whatever the tracker's interval; sources repeat a pose for as
 /// long.
 inline constexpr double straightBridge = 0.1;
-/// A gap: more than so many of the tracker's own intervals between two samples.
+/// A gap: more than this number of the tracker's own intervals between two samples.
 inline constexpr double gapIntervals = 2.5;
 /// More lost time (s) is not bridged: the motion falls into two segments.
 inline constexpr double maxBridge = 1.0;

@@ -29,7 +29,7 @@ struct Stretch {
   [[nodiscard]] std::size_t points() const { return end - begin; }
 };
 
-/// Points that a stretch of so many seconds has at least: each stands for 1 / motionRate.
+/// Minimum number of points of a stretch of this length (s): each stands for 1 / motionRate.
 std::size_t pointsOf(double seconds);
 
 /// Maximal runs of points that are all `true`, of at least `least` points.

@@ -97,7 +97,7 @@ bool isBlank(const std::string& text) { return text.find_first_not_of(" \t\r\n")
 
 void checkDecision(const std::string& reason, const std::string& by) {
   if (isBlank(by)) throw Error(ErrorKind::invalid, "exclusion: name who decides");
-  if (isBlank(reason)) throw Error(ErrorKind::invalid, "exclusion: a reason is wanted");
+  if (isBlank(reason)) throw Error(ErrorKind::invalid, "exclusion: a reason is expected");
 }
 
 /// Runs a statement for each attempt that binds its number and the tag, and audits those that it changes.
@@ -126,7 +126,7 @@ void checkTag(const std::string& tag) {
   const auto begins = [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; };  // a character, in UTF-8
   if (tag.empty() || std::count_if(tag.begin(), tag.end(), begins) > 40 ||
       std::any_of(tag.begin(), tag.end(), refused)) {
-    throw Error(ErrorKind::invalid, "tag: one word of 1 to 40 characters is wanted, without blanks and commas");
+    throw Error(ErrorKind::invalid, "tag: one word of 1 to 40 characters is expected, without blanks and commas");
   }
 }
 

@@ -68,7 +68,7 @@ void readMember(const SQLite::Column& from, std::optional<T>& to) {
   if (!from.isNull()) readMember(from, to.emplace());
 }
 
-/// What lists show: anything but bytes.
+/// Values that lists show: anything but bytes.
 template <class T>
 concept Listed = std::is_arithmetic_v<T> || std::is_enum_v<T> || std::is_same_v<T, std::string> ||
     std::is_same_v<T, std::optional<double>>;

@@ -125,7 +125,7 @@ void setWriteAheadLog(SQLite::Database& db, std::chrono::milliseconds patience) 
   }
 }
 
-/// Which schema the file has; 0 for a new one. @pre within a transaction: another process may be making the database,
+/// Schema version of the file; 0 for a new one. @pre within a transaction: another process may be making the database,
 /// and half of before and half of after would look like another program's file. @throws Error for what is not ours or
 /// is newer.
 int schemaOf(SQLite::Database& db, const std::string& path) {

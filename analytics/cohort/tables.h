@@ -212,7 +212,7 @@ std::vector<Row> selectRows(SQLite::Database& db, const TableOf<Row>& table, con
   return rows;
 }
 
-/// Where the database's tables are not as declared, one line each.
+/// Differences between the database's tables and their declaration, one line each.
 std::vector<std::string> schemaFaults(SQLite::Database& db);
 
 }  // namespace calot::analytics::tables

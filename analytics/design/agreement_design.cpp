@@ -36,7 +36,7 @@ FigurePairs pairsOf(const DesignFigure& first, const DesignFigure& second) {
 }
 
 /// The figure that others are held against, by its name or its checkpoint's.
-/// @throws Error (invalid) where it is none or several.
+/// @throws Error (invalid) unless it is exactly one.
 const DesignFigure& againstOf(const DesignData& data, const std::string& asked) {
   // Behind a column's name may stand what is better.
   const std::size_t colon = asked.rfind(':');
@@ -220,7 +220,7 @@ void analyseCorrelation(const DesignData& data, const DesignChoices& choices, De
       [&](const DesignFigure& figure) {
         const FigurePairs pairs = pairsOf(figure, against);
         const Expected<Spearman> test = spearman(pairs.first, pairs.second);
-        if (!test) return Expected<ValueTree>::none(test.reason());
+        if (!test) return Expected<ValueTree>(NoResult{test.reason()});
         return Expected<ValueTree>(ValueTree{{"n", pairs.first.size()},
                                              {"rho", test->rho},
                                              {"interval", spearmanInterval(test->rho, pairs.first.size())},

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A cohort's attempts and values as a design needs them.
 
-#include "analytics/design/cohort_design_data.h"
-
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
@@ -19,156 +17,28 @@
 namespace calot::analytics {
 namespace {
 
-std::string leftOutOf(const DesignData& data) {
-  std::string left;
-  for (const FlowRow& row : data.flow)
-    left += fmt::format("{}{} {}", left.empty() ? "" : ", ", row.attempts, row.reason);
-  return fmt::format(" of {} attempts{}", data.recruited, left.empty() ? "" : " (left out: " + left + ")");
+/// Facts about an analysed attempt that a design uses.
+struct Placed {
+  std::size_t person = 0, occasion = 0;
+  double order = 1.0;
+  bool completed = false;
+  double seconds = 0.0;  ///< how long it lasted
+};
+/// By uuid.
+using PlacedAttempts = std::map<std::string, Placed>;
+
+/// Place of a name, which is appended if it is new.
+std::size_t positionIn(std::vector<std::string>& names, const std::string& name) {
+  const auto at = std::find(names.begin(), names.end(), name);
+  if (at != names.end()) return static_cast<std::size_t>(at - names.begin());
+  names.push_back(name);
+  return names.size() - 1;
 }
 
-DesignData populated(const std::vector<AttemptRow>& recruited, const std::vector<AttemptValue>& values,
-                     const StudyOptions& options, const DesignChoices& choices, const std::string& name,
-                     PlacedAttempts& placed) {
-  DesignData data;
-  data.source = "cohort";
-  data.counted = "attempts";
-  data.where = std::filesystem::path(name).filename().string();
-  const bool grouped = entryOf(choices.design).groups != GroupsNeeded::none || !choices.groups.empty();
-  std::map<std::string, std::uint64_t> out, present;
-  std::vector<const AttemptRow*> taken;
-  std::uint64_t withoutStratum = 0;
-  StudyOptions rules = options;
-  if (!grouped) rules.grouping = Grouping::group;
-  for (const AttemptRow& a : recruited) {
-    ++data.recruited;
-    AttemptRow judged = a;
-    if (!grouped) judged.group = "everybody";  // having none excludes nobody here
-    if (const std::string reason = whyOut(judged, rules); !reason.empty()) {
-      ++out[reason];
-    } else if (!choices.strata.empty() && stratumOf(a, choices.strata).empty()) {
-      ++withoutStratum;
-    } else {
-      ++present[groupOf(a, options.grouping)];
-      taken.push_back(&a);
-    }
-  }
-  data.flow = flowOf(out);
-  if (withoutStratum > 0) data.flow.push_back({"no " + choices.strata, withoutStratum});
-  if (grouped) {
-    data.groups = groupsOfDesign(present, choices, name, leftOutOf(data));
-    const auto all = taken.size();
-    taken.erase(std::remove_if(taken.begin(), taken.end(),
-                               [&](const AttemptRow* a) {
-                                 return std::find(data.groups.begin(), data.groups.end(),
-                                                  groupOf(*a, options.grouping)) == data.groups.end();
-                               }),
-                taken.end());
-    if (taken.size() < all) data.flow.push_back({"another group", all - taken.size()});
-  }
-  if (data.groups.size() == 2) data.better = betterOf({data.groups[0], data.groups[1]}, choices);
-  std::set<std::string> keys;
-  StudySetting setting;
-  for (const AttemptRow* a : taken) {
-    keys.insert(a->comparabilityKey);
-    addToSetting(setting, *a);
-  }
-  const std::vector<std::string> keyList(keys.begin(), keys.end());
-  askForOneKey(keyList, options, name, data.remarks);
-  placed = placeAttempts(data, taken, options, choices, name);
-  for (const std::string& key : keyList) {
-    std::string words = comparabilityWords(key);
-    if (!words.empty() && words[0] == 't') words[0] = 'T';
-    data.head.push_back(words + ".");
-  }
-  const std::string first = setting.firstStartUtc.substr(0, 10), last = setting.lastStartUtc.substr(0, 10);
-  data.head.push_back(first.empty()
-                          ? "The dates of the attempts are not known."
-                          : fmt::format("Attempts from {} to {}. Cohort {}{}.", first, last, data.where,
-                                        options.cohort ? ", participants of \"" + options.cohort->name + "\"" : ""));
-  addFigures(data, values, placed, options, choices, name);
-  if (choices.design == Design::timeToCriterion) keepTimes(data, values, placed);
-  return data;
-}
-
-}  // namespace
-
-DesignData cohortDesignData(const std::vector<AttemptRow>& attempts, const std::vector<AttemptValue>& values,
-                            const StudyOptions& options, const DesignChoices& choices, const std::string& name) {
+/// People, strata, occasions and counts of these attempts.
+PlacedAttempts place(DesignData& data, const std::map<std::string, std::vector<const AttemptRow*>>& people,
+                     const StudyOptions& options, const DesignChoices& choices) {
   PlacedAttempts placed;
-  DesignData data = populated(attempts, values, options, choices, name, placed);
-  keepNamedFigures(data, choices);
-  return data;
-}
-
-DesignData cohortDesignData(const CohortDatabase& database, const AssessmentDatabase& assessment,
-                            const StudyOptions& asked, const DesignChoices& choices) {
-  StudyOptions options = asked;
-  options.family = choices.family;
-  if (options.cohort) options.cohort->participants = participantsOf(database.path(), options.cohort->name);
-  PlacedAttempts placed;
-  DesignData data = populated(database.listAttempts(), database.allValues(unaskedPhases(options)), options, choices,
-                              database.path(), placed);
-  if (choices.design != Design::timeToCriterion) {
-    const std::vector<Rating> ratings = assessment.ratings();
-    for (const StoredDocument& stored : assessment.forms()) {
-      const auto* bytes = reinterpret_cast<const std::byte*>(stored.text.data());
-      const RatingForm form = parseRatingForm({bytes, stored.text.size()}, stored.name);
-      if (form.ofAttempts) addForm(data, form, ratings, placed);
-    }
-  }
-  keepNamedFigures(data, choices);
-  return data;
-}
-
-namespace {
-
-/// By participant, by start.
-std::map<std::string, std::vector<const AttemptRow*>> attemptsByPerson(DesignData& data,
-                                                                       const std::vector<const AttemptRow*>& taken,
-                                                                       const StudyOptions& options,
-                                                                       const DesignChoices& choices,
-                                                                       const std::string& name) {
-  std::map<std::string, std::vector<const AttemptRow*>> people;
-  const bool byDevice = choices.design == Design::agreement && choices.against.empty();
-  for (const AttemptRow* a : taken) people[unitOf(*a)].push_back(a);
-  std::uint64_t later = 0;
-  std::size_t several = 0;
-  std::string whose;
-  for (auto& [person, list] : people) {
-    std::stable_sort(list.begin(), list.end(),
-                     [](const AttemptRow* a, const AttemptRow* b) { return a->startUtc < b->startUtc; });
-    for (const AttemptRow* a : list) {
-      if (!data.groups.empty() && groupOf(*a, options.grouping) != groupOf(*list[0], options.grouping))
-        throw Error(ErrorKind::refused, Where{name},
-                    fmt::format("participant \"{}\" is in two groups, which must be independent", person));
-    }
-    if (!entryOf(choices.design).oneEach) continue;
-    std::set<std::string> seen;
-    std::vector<const AttemptRow*> first;
-    for (const AttemptRow* a : list) {
-      if (seen.insert(byDevice ? a->device : std::string()).second) first.push_back(a);
-    }
-    if (first.size() == list.size()) continue;
-    if (several++ == 0) whose = fmt::format("\"{}\" has {}", person, list.size());
-    if (choices.attemptRule != AttemptRule::first) continue;
-    later += list.size() - first.size();
-    list = first;
-  }
-  if (several > 0 && !choices.attemptRule) {
-    throw Error(ErrorKind::refused, Where{name},
-                fmt::format("participant {} attempts{} ({} participant{} with several), which are not independent",
-                            whose, byDevice ? ", of a device more than one" : "", several, several == 1 ? "" : "s"),
-                {Remedy::chooseAttemptRule});
-  }
-  data.attemptRule = several == 0 ? (entryOf(choices.design).oneEach ? "one attempt each" : "all attempts of each")
-                     : choices.attemptRule == AttemptRule::first ? "the first of a participant's attempts"
-                                                                 : "the mean of a participant's attempts";
-  if (later > 0) data.flow.push_back({"later attempt of a participant (the first counts)", later});
-  return people;
-}
-
-void place(DesignData& data, const std::map<std::string, std::vector<const AttemptRow*>>& people,
-           const StudyOptions& options, const DesignChoices& choices, PlacedAttempts& placed) {
   const bool byDevice = choices.design == Design::agreement && choices.against.empty();
   data.occasionWord = byDevice ? "device" : "attempt";
   data.numbered = !byDevice;
@@ -197,36 +67,11 @@ void place(DesignData& data, const std::map<std::string, std::vector<const Attem
     }
     data.people.push_back(std::move(p));
   }
-}
-
-}  // namespace
-
-std::size_t positionIn(std::vector<std::string>& names, const std::string& name) {
-  const auto at = std::find(names.begin(), names.end(), name);
-  if (at != names.end()) return static_cast<std::size_t>(at - names.begin());
-  names.push_back(name);
-  return names.size() - 1;
-}
-
-std::string stratumOf(const AttemptRow& a, const std::string& strata) { return strata == "arm" ? a.arm : a.site; }
-
-PlacedAttempts placeAttempts(DesignData& data, const std::vector<const AttemptRow*>& taken, const StudyOptions& options,
-                             const DesignChoices& choices, const std::string& name) {
-  PlacedAttempts placed;
-  place(data, attemptsByPerson(data, taken, options, choices, name), options, choices, placed);
   return placed;
 }
 
-namespace {
-
 constexpr const char* timeFigure = "elapsed-time";
 constexpr const char* durationFigure = "attempt-duration";
-
-void sortValues(DesignFigure& figure) {
-  std::stable_sort(figure.values.begin(), figure.values.end(), [](const DesignValue& a, const DesignValue& b) {
-    return a.person != b.person ? a.person < b.person : a.order < b.order;
-  });
-}
 
 /// Mean of all items of a completed form, or none.
 std::optional<double> scoreOf(const Rating& rating, const std::vector<FormItem>& items) {
@@ -239,8 +84,8 @@ std::optional<double> scoreOf(const Rating& rating, const std::vector<FormItem>&
   return items.empty() ? std::nullopt : std::optional(sum / static_cast<double>(items.size()));
 }
 
-}  // namespace
-
+/// Checkpoints that are outcomes or asked for, in the registry's order. @throws Error (refused) for values of several
+/// versions of a checkpoint, unless these are mixed.
 void addFigures(DesignData& data, const std::vector<AttemptValue>& values, const PlacedAttempts& placed,
                 const StudyOptions& options, const DesignChoices& choices, const std::string& name) {
   const std::vector<std::string> unasked = unaskedPhases(options);
@@ -284,6 +129,7 @@ void addFigures(DesignData& data, const std::vector<AttemptValue>& values, const
   }
 }
 
+/// The elapsed time alone; an attempt that was not completed is followed as long as it lasted.
 void keepTimes(DesignData& data, const std::vector<AttemptValue>& values, const PlacedAttempts& placed) {
   DesignFigure times{timeFigure, "s", Direction::lower, {}};
   std::map<std::string, double> lasted;
@@ -305,6 +151,7 @@ void keepTimes(DesignData& data, const std::vector<AttemptValue>& values, const 
   data.figures = {std::move(times)};
 }
 
+/// Ratings by a form: mean of its items and of its raters, and of each rater of a participant's first rated attempt.
 void addForm(DesignData& data, const RatingForm& form, const std::vector<Rating>& ratings,
              const PlacedAttempts& placed) {
   std::map<std::string, std::map<std::string, double>> scores;  // by attempt, by rater
@@ -331,6 +178,87 @@ void addForm(DesignData& data, const RatingForm& form, const std::vector<Rating>
   sortValues(figure);
   data.figures.push_back(std::move(figure));
   data.rated.push_back(std::move(raters));
+}
+
+DesignData populated(const std::vector<AttemptRow>& recruited, const std::vector<AttemptValue>& values,
+                     const StudyOptions& options, const DesignChoices& choices, const std::string& name,
+                     PlacedAttempts& placed) {
+  DesignData data;
+  data.source = "cohort";
+  data.counted = "attempts";
+  data.where = std::filesystem::path(name).filename().string();
+  const bool grouped = entryOf(choices.design).groups != GroupsNeeded::none || !choices.groups.empty();
+  StudyOptions rules = options;
+  if (!grouped) rules.grouping = Grouping::group;
+  data.recruited = recruited.size();
+  IncludedAttempts included = includedAttempts(recruited, rules, choices.strata, !grouped);
+  data.flow = std::move(included.flow);
+  std::vector<const AttemptRow*>& taken = included.taken;
+  if (grouped) {
+    data.groups = groupsOfDesign(included.present, choices, name, leftOutOf(data.recruited, data.flow));
+    const std::size_t others = std::erase_if(taken, [&](const AttemptRow* a) {
+      return std::find(data.groups.begin(), data.groups.end(), groupOf(*a, options.grouping)) == data.groups.end();
+    });
+    if (others > 0) data.flow.push_back({"another group", others});
+  }
+  if (data.groups.size() == 2) data.better = betterOf({data.groups[0], data.groups[1]}, choices);
+  std::set<std::string> keys;
+  StudySetting setting;
+  for (const AttemptRow* a : taken) {
+    keys.insert(a->comparabilityKey);
+    addToSetting(setting, *a);
+  }
+  const std::vector<std::string> keyList(keys.begin(), keys.end());
+  askForOneKey(keyList, options, name, data.remarks);
+  const bool byDevice = choices.design == Design::agreement && choices.against.empty();
+  const AttemptsOfUnits people =
+      attemptsOfUnits(taken, data.groups, options.grouping,
+                      {choices.attemptRule, entryOf(choices.design).oneEach, byDevice}, name, data.flow);
+  data.attemptRule = people.rule;
+  placed = place(data, people.units, options, choices);
+  for (const std::string& key : keyList) {
+    std::string words = comparabilityWords(key);
+    if (!words.empty() && words[0] == 't') words[0] = 'T';
+    data.head.push_back(words + ".");
+  }
+  const std::string first = setting.firstStartUtc.substr(0, 10), last = setting.lastStartUtc.substr(0, 10);
+  data.head.push_back(first.empty()
+                          ? "The dates of the attempts are not known."
+                          : fmt::format("Attempts from {} to {}. Cohort {}{}.", first, last, data.where,
+                                        options.cohort ? ", participants of \"" + options.cohort->name + "\"" : ""));
+  addFigures(data, values, placed, options, choices, name);
+  if (choices.design == Design::timeToCriterion) keepTimes(data, values, placed);
+  return data;
+}
+
+}  // namespace
+
+DesignData cohortDesignData(const std::vector<AttemptRow>& attempts, const std::vector<AttemptValue>& values,
+                            const StudyOptions& options, const DesignChoices& choices, const std::string& name) {
+  PlacedAttempts placed;
+  DesignData data = populated(attempts, values, options, choices, name, placed);
+  keepNamedFigures(data, choices);
+  return data;
+}
+
+DesignData cohortDesignData(const CohortDatabase& database, const AssessmentDatabase& assessment,
+                            const StudyOptions& asked, const DesignChoices& choices) {
+  StudyOptions options = asked;
+  options.family = choices.family;
+  if (options.cohort) options.cohort->participants = participantsOf(database.path(), options.cohort->name);
+  PlacedAttempts placed;
+  DesignData data = populated(database.listAttempts(), database.allValues(unaskedPhases(options)), options, choices,
+                              database.path(), placed);
+  if (choices.design != Design::timeToCriterion) {
+    const std::vector<Rating> ratings = assessment.ratings();
+    for (const StoredDocument& stored : assessment.forms()) {
+      const auto* bytes = reinterpret_cast<const std::byte*>(stored.text.data());
+      const RatingForm form = parseRatingForm({bytes, stored.text.size()}, stored.name);
+      if (form.ofAttempts) addForm(data, form, ratings, placed);
+    }
+  }
+  keepNamedFigures(data, choices);
+  return data;
 }
 
 }  // namespace calot::analytics

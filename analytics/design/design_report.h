@@ -58,7 +58,7 @@ struct LinePlot {
 /// Values over another quantity. None where there are no points, or they are too large or too close for a scale.
 std::optional<Drawing> drawLines(const LinePlot& plot);
 
-/// What `analyse` finds of each figure, beside the figure's name and unit: "results". Others are refused.
+/// Results of `analyse` for each figure, beside the figure's name and unit: "results". Others are refused.
 /// @param except a figure that is left out @throws Error (refused) naming the first reason, where nothing was analysed.
 ValueTree& analyseFigures(const DesignData& data, DesignReport& report,
                           const std::function<Expected<ValueTree>(const DesignFigure&)>& analyse,

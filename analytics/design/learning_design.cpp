@@ -217,7 +217,8 @@ void analyseLearning(const DesignData& data, const DesignChoices& choices, Desig
     askForResults(data, report, 0);
   if (choices.criterion && data.figures.size() != 1)
     throw Error(ErrorKind::invalid, Where{data.where},
-                fmt::format("a criterion is of one figure; there are {}", data.figures.size()), {Remedy::nameFamily});
+                fmt::format("a criterion applies to one figure; there are {}", data.figures.size()),
+                {Remedy::nameFamily});
   const std::size_t fitted = addCurves(data, choices, report);
   if (!choices.criterion) askForResults(data, report, fitted);
   report.methods = fmt::format(

@@ -30,7 +30,7 @@ CrossedValues crossedValues(const DesignData& data, const DesignFigure& figure, 
   return values;
 }
 
-/// Which levels the variance components are of, and the people who have all of them.
+/// Levels of the variance components, and the people who have all of them.
 struct CrossedTable {
   RatingTable table;
   std::size_t incomplete = 0;  ///< people left out
@@ -157,7 +157,7 @@ bool addError(const DesignFigure& figure, DesignReport& report, std::vector<std:
 
 void analyseReliability(const DesignData& data, const DesignChoices&, DesignReport& report) {
   std::vector<std::string> warnings;
-  report.json["components"] = report.json["measurement_error"] = ValueTree::array();
+  for (const char* key : {"measurement_error", "components"}) report.json[key] = ValueTree::array();
   std::size_t analysed = 0;
   const bool leading = data.source == "cohort" || data.occasionWord == "row";
   for (const DesignFigure& figure : data.figures) {
@@ -193,7 +193,7 @@ void analyseReliability(const DesignData& data, const DesignChoices&, DesignRepo
                  {"residual", "", [](const ValueTree& row) { return shareText(row, "residual_variance"); }},
                  {"G [95 %]", "", [](const ValueTree& row) { return coefficientText(row, "g"); }},
                  {"Phi [95 %]", "", [](const ValueTree& row) { return coefficientText(row, "phi"); }}}),
-        tableOf("Decision study: G / Phi of the mean of so many", components, decisions)}) {
+        tableOf("Decision study: G / Phi of the mean of N", components, decisions)}) {
     if (!table.rows.empty()) report.tables.push_back(std::move(table));
   }
   report.notes.emplace_back(

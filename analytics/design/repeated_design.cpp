@@ -50,7 +50,7 @@ ValueTree repeatedTree(const RepeatedGroups& m, const Expected<RandomIntercept>&
           {"restricted_log_likelihood", m.restrictedLogLikelihood},
           {"overall", treeOf(overall, [](const RandomIntercept& r) {
              return ValueTree{
-                 {"difference", r.difference}, {"error", r.error}, {"df", r.df}, {"p", r.p}, {"interval", r.interval}};
+                 {"difference", r.estimate}, {"error", r.error}, {"df", r.df}, {"p", r.p}, {"interval", r.interval}};
            })}};
 }
 
@@ -81,7 +81,7 @@ void analyseRepeated(const DesignData& data, const DesignChoices& choices, Desig
     }
     const Expected<RepeatedGroups> model =
         repeatedGroups(values, data.numbered ? OccasionKind::number : OccasionKind::named, sites);
-    if (!model) return Expected<ValueTree>::none(model.reason());
+    if (!model) return Expected<ValueTree>(NoResult{model.reason()});
     const std::vector<std::string> occasions = occasionsOf(data, figure);
     first.push_back(occasions.at(0));
     for (const ModelTerm& term : model->interaction) p.push_back(term.p);

@@ -50,7 +50,7 @@ void analyseSeveralGroups(const DesignData& data, const DesignChoices&, DesignRe
   ValueTree& results = analyseFigures(data, report, [&](const DesignFigure& figure) {
     const std::vector<std::vector<double>> values = byGroup(data, oneEachOf(figure));
     const Expected<KruskalWallis> test = kruskalWallis(values);
-    if (!test) return Expected<ValueTree>::none(test.reason());
+    if (!test) return Expected<ValueTree>(NoResult{test.reason()});
     for (const auto& group : values) small = small || group.size() < 5;
     return Expected<ValueTree>(severalTree(data, values, *test));
   });
@@ -97,7 +97,7 @@ void analyseStrata(const DesignData& data, const DesignChoices& choices, DesignR
       (person.group == 0 ? strata[person.stratum].x : strata[person.stratum].y).push_back(each.value[i]);
     }
     const Expected<StratifiedRankSum> test = stratifiedRankSum(strata);
-    if (!test) return Expected<ValueTree>::none(test.reason());
+    if (!test) return Expected<ValueTree>(NoResult{test.reason()});
     return Expected<ValueTree>(ValueTree{{"n", each.person.size()},
                                          {"strata", test->strata},
                                          {"strata_left_out", test->left},

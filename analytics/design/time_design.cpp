@@ -60,7 +60,7 @@ void analyseTimes(const DesignData& data, const DesignChoices& choices, DesignRe
   ValueTree& results = analyseFigures(data, report, [&](const DesignFigure& figure) {
     const GroupTimes times = timesByGroup(data, figure);
     const Expected<LogRank> test = logRank(times[0], times[1]);
-    if (!test) return Expected<ValueTree>::none(test.reason());
+    if (!test) return Expected<ValueTree>(NoResult{test.reason()});
     LinePlot plot{"Finished: " + figure.name, "%", figure.unit.empty() ? "time" : figure.unit, {}, {}, data.synthetic};
     const Expected<WorstRank> worst =
         worstRank(times[0], times[1], firstFaster ? Hypothesis::firstSmaller : Hypothesis::firstLarger);

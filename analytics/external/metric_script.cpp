@@ -111,7 +111,7 @@ void limit(int resource, rlim_t value) {
   _exit(notStarted);
 }
 
-/// What comes through a connection, up to a number of bytes.
+/// Bytes received through a connection, up to a maximum.
 struct Collected {
   int descriptor;
   std::size_t most;
@@ -181,7 +181,7 @@ ScriptEnd runScript(const std::vector<std::string>& command, const std::filesyst
   std::array<pollfd, 3> ready{pollfd{answer.descriptor, POLLIN, 0}, pollfd{printed.descriptor, POLLIN, 0},
                               pollfd{process.descriptor(), POLLIN, 0}};
   ScriptEnd end;
-  // What it forked may keep both connections open after its end.
+  // A process that it forked may keep both connections open after its end.
   while ((ready[2].revents & POLLIN) == 0 && end.how == ScriptEnd::How::exited) {
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - Clock::now()).count();
     if (left <= 0) end.how = ScriptEnd::How::late;
@@ -298,27 +298,27 @@ ExternalMetric metricOf(const ScriptJson& declared, const std::string& file, std
   CheckpointDefinition& d = metric.definition;
   d.name = declared.at("name").get<std::string>();
   if (!isMetricName(d.name))
-    throw fail(fmt::format("NAME \"{}\": 1 to {} small letters, digits and hyphens are wanted, a letter first",
+    throw fail(fmt::format("NAME \"{}\": 1 to {} small letters, digits and hyphens are expected, a letter first",
                            recorder::shown(d.name), maxMetricName));
   if (findCheckpoint(d.name) != nullptr)
     throw fail(fmt::format("NAME \"{}\" is a checkpoint of the program (calot checkpoints lists them)", d.name));
   const ScriptJson& version = declared.at("version");
   if (!version.is_number_unsigned() || version.get<std::uint64_t>() < 1 ||
       version.get<std::uint64_t>() > maxMetricVersion)
-    throw fail(fmt::format("VERSION {}: 1 to {} is wanted", version.dump(), maxMetricVersion));
+    throw fail(fmt::format("VERSION {}: 1 to {} is expected", version.dump(), maxMetricVersion));
   d.version = version.get<std::uint32_t>();
   d.unit = d.displayUnit = declared.at("unit").get<std::string>();
   if (!isMetricText(d.unit, maxMetricUnit))
-    throw fail(fmt::format("UNIT: 1 to {} bytes on one line are wanted, \"1\" for a share", maxMetricUnit));
+    throw fail(fmt::format("UNIT: 1 to {} bytes on one line are expected, \"1\" for a share", maxMetricUnit));
   d.title = declared.at("title").get<std::string>();
   if (!isMetricText(d.title, maxMetricTitle))
-    throw fail(fmt::format("TITLE: 1 to {} bytes on one line are wanted", maxMetricTitle));
+    throw fail(fmt::format("TITLE: 1 to {} bytes on one line are expected", maxMetricTitle));
   static const std::map<std::string, Direction> directions{
       {"lower", Direction::lower}, {"higher", Direction::higher}, {"none", Direction::none}};
   const auto better = declared.at("better").get<std::string>();
   const auto direction = directions.find(better);
   if (direction == directions.end())
-    throw fail(fmt::format("BETTER \"{}\": lower, higher or none is wanted", recorder::shown(better)));
+    throw fail(fmt::format("BETTER \"{}\": lower, higher or none is expected", recorder::shown(better)));
   d.direction = direction->second;
   d.window = "whole attempt";
   d.filter = "none";

@@ -48,7 +48,7 @@ ScriptEnd runScript(const std::vector<std::string>& command, const std::filesyst
 /// travels inside the program.
 std::string_view metricRunner();
 
-/// Where what a script prints goes, line by line.
+/// Receives a script's output, line by line.
 using ScriptPrint = std::function<void(const std::string& script, const std::string& line)>;
 
 /// A script that declared its metric. Its text was read once: what is hashed is what runs.

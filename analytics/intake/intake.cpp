@@ -51,7 +51,7 @@ milliseconds ageOf(const FileState& state) {
                   milliseconds(0));
 }
 
-/// A cohort or a folder that cannot serve is told at once, and leaves no journal.
+/// An unusable cohort or folder is reported at once, and leaves no journal.
 IntakeSettings checked(IntakeSettings settings) {
   std::error_code ignored;
   if (std::filesystem::exists(settings.cohort, ignored)) {
@@ -73,7 +73,7 @@ bool Intake::isDecided(const std::string& file, const FileState& state, IntakeRe
     rest.retries += later ? 1U : 0U;
     return later;
   }
-  // What another version could not decide, this one may.
+  // This version may decide recordings that another version could not.
   return !entry->otherVersion || entry->simulationVersion == simulationVersion;
 }
 

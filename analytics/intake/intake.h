@@ -59,7 +59,7 @@ struct IntakeRest {
 };
 
 /// The queue: what the folders hold, less what the journal and the cohort know. It survives the program: a recording is
-/// stored, then told, then entered in the journal, so that one killed at any moment loses none and stores none twice.
+/// stored, then reported, then entered in the journal: a process killed at any moment loses none and stores none twice.
 class Intake {
  public:
   /// @throws Error as CohortDatabase does, where there is one; failure, where the journal is another program's;

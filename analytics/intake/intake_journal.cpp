@@ -42,7 +42,7 @@ std::optional<nlohmann::ordered_json> rowIn(const std::string& line) {
 
 std::string journalHead() { return checkedLine({{"format", "calot-intake"}, {"format_version", 1}}); }
 
-/// Paths are bytes, JSON is UTF-8: a path that is none stands in hexadecimal.
+/// Paths are bytes, JSON is UTF-8: a path that is not UTF-8 stands in hexadecimal.
 std::string inHex(const std::string& text) {
   std::string hex;
   for (const char c : text) hex += fmt::format("{:02x}", static_cast<unsigned char>(c));
@@ -170,7 +170,8 @@ void IntakeJournal::load() {
     return;
   }
   // A file that does not begin so may be anything: it is not emptied.
-  if (line != head) throw Error(ErrorKind::damaged, Where{path_.string()}, "is no journal of Calot; name another file");
+  if (line != head)
+    throw Error(ErrorKind::damaged, Where{path_.string()}, "is not a journal of Calot; name another file");
   std::uint64_t good = head.size();
   while (std::getline(in, line) && !in.eof()) {  // one without its end was cut off
     try {

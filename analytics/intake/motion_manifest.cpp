@@ -23,7 +23,7 @@ constexpr std::string_view criterionPrefix = "experience:";
 constexpr const char* declared[] = {"task", "participant", "mode", "purpose", "handedness", "outcome", "start"};
 
 using Details = std::map<std::string, std::string>;
-/// What a row says of its participant, by its columns.
+/// Columns of a row about its participant.
 constexpr std::pair<const char*, std::string Participant::*> textColumns[] = {
     {"group", &Participant::group}, {"arm", &Participant::arm}, {"site", &Participant::site}};
 constexpr std::pair<const char*, Details Participant::*> pairColumns[] = {{"experience", &Participant::experience},
@@ -43,7 +43,7 @@ std::string readPairs(const std::string& cell, char mark, const char* form, std:
     if (item.empty()) continue;
     const std::size_t at = item.find(mark);
     if (at == std::string::npos || at == 0 || at + 1 == item.size())
-      return fmt::format("\"{}\": {} is wanted, several between semicolons", shown(item), form);
+      return fmt::format("\"{}\": {} is expected, several between semicolons", shown(item), form);
     if (!out.emplace(trimmed(item.substr(0, at)), trimmed(item.substr(at + 1))).second)
       return fmt::format("{} is given twice", shown(item.substr(0, at)));
   }

@@ -55,7 +55,7 @@ class Enrolment {
   [[nodiscard]] std::vector<Error> conflicts(const MotionManifest& manifest) const;
 
  private:
-  /// What the cohort does not know of a participant yet, all of it where it does not know the participant.
+  /// Entries of a participant that the cohort lacks; all of them if it lacks the participant.
   [[nodiscard]] Participant additionsOf(const Participant& wanted) const;
 
   std::string path_;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "analytics/assessment/create_norm.h"
 #include "analytics/report/plots.h"
 
 namespace calot::analytics {
@@ -69,12 +70,7 @@ std::vector<std::string> opening(const Grade& g) {
                   g.attempt.participant.empty() ? recorder::wordFor(g.attempt.operatorKind) : g.attempt.participant,
                   g.attempt.startUtc.empty() ? "an unknown day" : g.attempt.startUtc, g.attempt.comparabilityKey,
                   recorder::wordFor(g.attempt.outcome), analytics::nameOf(g.attempt.verification.verdict)));
-  lines.push_back(
-      fmt::format("Rule of the norm ({}): no critical error, and {} of {} figures. By it {} of {} competent members "
-                  "pass, and {} of "
-                  "{} others.",
-                  g.norm.judgedBy, g.needed, g.inRule, g.competentRate.passed, g.competentRate.members,
-                  g.otherRate.passed, g.otherRate.members));
+  lines.push_back(fmt::format("Rule of the norm ({}): {}", g.norm.judgedBy, ruleText(g.norm)));
   return lines;
 }
 
@@ -138,9 +134,7 @@ std::vector<std::string> notes(const Grade& g) {
       lines.push_back(fmt::format("{}: computed by a script of the site, version {}, SHA-256 {}.", nameOf(f),
                                   f.mark.version, f.mark.metric->sha256));
   }
-  for (std::string warning : {ownFailureWarning(g.norm), uncountedWarning(g.norm), passMarkWarning(g.norm)}) {
-    if (!warning.empty()) lines.push_back(std::move(warning));
-  }
+  for (std::string& warning : normWarnings(g.norm)) lines.push_back(std::move(warning));
   for (const GradedFigure& f : g.figures) {
     if (!f.missing.empty()) lines.push_back(fmt::format("{}: not judged, {}", nameOf(f), f.missing));
     if (f.value && f.passed && !f.rank)
@@ -234,6 +228,7 @@ void printGrade(const Grade& g, std::ostream& out) {
 }
 
 ValueTree gradeTree(const Grade& g) {
+  const auto [competent, others] = passRates(g.norm);
   ValueTree tree{{"synthetic", synthetic(g)},
                  {"use", g.norm.evidence.empty() ? "formative" : "evidence attached"},
                  {"use_text", useOf(g.norm)},
@@ -248,8 +243,7 @@ ValueTree gradeTree(const Grade& g) {
                  {"verdict", g.verdict},
                  {"rule", {{"figures", g.inRule}, {"needed", g.needed}, {"passed", g.passedCount}}},
                  {"pass_rate",
-                  {{"competent", {g.competentRate.passed, g.competentRate.members}},
-                   {"others", {g.otherRate.passed, g.otherRate.members}}}},
+                  {{"competent", {competent.passed, competent.members}}, {"others", {others.passed, others.members}}}},
                  {"remarks", g.remarks},
                  {"moments_missing", g.momentsMissing},
                  {"figures", ValueTree::array()}};

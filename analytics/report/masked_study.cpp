@@ -6,7 +6,6 @@
 #include <sodium.h>
 #include <array>
 #include <cstdint>
-#include <string_view>
 #include <utility>
 
 #include "recorder/attempt.h"
@@ -123,7 +122,7 @@ class CellHash {
 
   template <class... Cells>
   void add(const Cells&... cells) {
-    (cell(cells), ...);
+    (cell(fmt::format("{}", cells)), ...);
   }
 
   std::string hex() {
@@ -135,18 +134,12 @@ class CellHash {
   }
 
  private:
-  void cell(std::string_view text) {
-    number(text.size());
+  void cell(const std::string& text) {
+    std::array<unsigned char, 8> size{};
+    for (std::size_t i = 0; i < size.size(); ++i)
+      size[i] = static_cast<unsigned char>(std::uint64_t{text.size()} >> (8 * i));
+    crypto_hash_sha256_update(&state_, size.data(), size.size());
     crypto_hash_sha256_update(&state_, reinterpret_cast<const unsigned char*>(text.data()), text.size());
-  }
-  template <class T>
-  void cell(const T& value) {
-    cell(std::string_view(fmt::format("{}", value)));
-  }
-  void number(std::uint64_t value) {
-    std::array<unsigned char, 8> bytes{};
-    for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<unsigned char>(value >> (8 * i));
-    crypto_hash_sha256_update(&state_, bytes.data(), bytes.size());
   }
 
   crypto_hash_sha256_state state_{};

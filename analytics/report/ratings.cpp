@@ -116,21 +116,21 @@ std::vector<FormSubscale> scalesOf(const RatingForm& form) {
   return scales;
 }
 
-void addScales(FormReport& report, const RatingForm& form, const std::vector<const Rating*>& taken,
-               const std::map<std::string, std::string>& groupOf, const Attempts& attempts) {
-  for (const FormSubscale& scale : scalesOf(form)) {
-    ScaleReport row{scale.name, scale.items.size(), {}};
-    for (const std::string& group : report.groups) {
-      Scores scores;
-      for (const Rating* r : taken) {
-        if (groupOf.at(subjectOf(*r)) != group) continue;
-        std::vector<double>& given = scores[participantOf(subjectOf(*r), attempts)][r->attempt];
-        if (const std::optional<double> sum = sumOf(*r, scale.items)) given.push_back(*sum);
-      }
-      row.groups.push_back(summary(scores));
+/// For each group a summary of the sums of these items.
+std::vector<ItemSummary> summaries(const std::vector<std::string>& keys, const std::vector<std::string>& groups,
+                                   const std::vector<const Rating*>& taken,
+                                   const std::map<std::string, std::string>& groupOf, const Attempts& attempts) {
+  std::vector<ItemSummary> result;
+  for (const std::string& group : groups) {
+    Scores scores;
+    for (const Rating* r : taken) {
+      if (groupOf.at(subjectOf(*r)) != group) continue;
+      std::vector<double>& given = scores[participantOf(subjectOf(*r), attempts)][r->attempt];
+      if (const std::optional<double> sum = sumOf(*r, keys)) given.push_back(*sum);
     }
-    report.scales.push_back(std::move(row));
+    result.push_back(summary(scores));
   }
+  return result;
 }
 
 void addAgreement(FormReport& report, const RatingForm& form, const std::vector<FormItem>& items,
@@ -150,30 +150,22 @@ void addAgreement(FormReport& report, const RatingForm& form, const std::vector<
   std::sort(rated.begin(), rated.end(), [](const RatedAttempt& a, const RatedAttempt& b) {
     return a.startUtc != b.startUtc ? a.startUtc < b.startUtc : a.uuid < b.uuid;
   });
-  std::vector<std::string> keys;
-  keys.reserve(items.size());
-  for (const FormItem& item : items) keys.push_back(item.key);
-  const auto overall = [&](const Rating& r) -> std::optional<double> {
-    const std::optional<double> sum = sumOf(r, keys);
-    return sum ? std::optional(*sum / static_cast<double>(keys.size())) : std::nullopt;
-  };
-  const RatingTable whole = tableOf(rated, raters, overall, report.repeated);
-  report.incomplete = rated.size() - whole.subjects - report.repeated;
-  if (items.size() > 1) report.agreement.push_back(agreementOn("mean of all items", whole));
-  for (const FormSubscale& scale : form.subscales) {
-    std::uint64_t repeated = 0;
-    report.agreement.push_back(
-        agreementOn(scale.name, tableOf(
-                                    rated, raters, [&](const Rating& r) { return sumOf(r, scale.items); }, repeated)));
-  }
-  for (const FormItem& item : items) {
-    const auto one = [&](const Rating& r) -> std::optional<double> {
-      const auto at = r.answers.find(item.key);
-      return at == r.answers.end() ? std::nullopt : std::optional<double>(at->second);
+  const auto agreeOn = [&](const std::string& figure, const std::vector<std::string>& keys, double divisor,
+                           std::uint64_t& repeated) {
+    const auto value = [&](const Rating& r) -> std::optional<double> {
+      const std::optional<double> sum = sumOf(r, keys);
+      return sum ? std::optional(*sum / divisor) : std::nullopt;
     };
-    std::uint64_t repeated = 0;
-    report.agreement.push_back(agreementOn(item.key, tableOf(rated, raters, one, repeated)));
-  }
+    return report.agreement.emplace_back(agreementOn(figure, tableOf(rated, raters, value, repeated))).attempts;
+  };
+  std::vector<std::string> keys;
+  for (const FormItem& item : items) keys.push_back(item.key);
+  const std::uint64_t whole = agreeOn("mean of all items", keys, static_cast<double>(keys.size()), report.repeated);
+  report.incomplete = rated.size() - whole - report.repeated;
+  if (items.size() == 1) report.agreement.clear();
+  std::uint64_t unused = 0;
+  for (const FormSubscale& scale : form.subscales) agreeOn(scale.name, scale.items, 1.0, unused);
+  for (const FormItem& item : items) agreeOn(item.key, {item.key}, 1.0, unused);
 }
 
 void addConsistency(FormReport& report, const RatingForm& form, const std::vector<const Rating*>& taken) {
@@ -222,21 +214,17 @@ FormReport reportForm(const RatingForm& form, const std::vector<Rating>& ratings
   const std::vector<FormItem> items = form.items();
   for (const FormItem& item : items) {
     ItemReport row{item.key, item.text, item.primaryGroup, {}, {}};
+    row.groups = summaries({item.key}, groups, taken, groupOf, attemptOf);
     for (const std::string& group : groups) {
-      Scores scores;
-      for (const Rating* r : taken) {
-        if (groupOf.at(subjectOf(*r)) != group) continue;
-        std::vector<double>& given = scores[participantOf(subjectOf(*r), attemptOf)][r->attempt];
-        if (const auto at = r->answers.find(item.key); at != r->answers.end()) given.push_back(at->second);
-      }
-      row.groups.push_back(summary(scores));
       const auto mean = item.published.find(group);
       row.published.push_back(mean == item.published.end() ? std::nullopt : std::optional(mean->second));
     }
     report.items.push_back(std::move(row));
   }
   if (form.ofAttempts) {
-    addScales(report, form, taken, groupOf, attemptOf);
+    for (const FormSubscale& scale : scalesOf(form))
+      report.scales.push_back(
+          {scale.name, scale.items.size(), summaries(scale.items, groups, taken, groupOf, attemptOf)});
     addAgreement(report, form, items, taken, attemptOf);
   } else {
     addConsistency(report, form, taken);

@@ -176,7 +176,7 @@ void ReportTable::print(std::ostream& out, std::size_t most) const {
   };
   line([&](std::size_t c) { return columns[c].first; }, ' ');
   line([](std::size_t) { return std::string(); }, '-');
-  // What is left of cells that are too wide goes on below: in the next row where that belongs to this one (its first
+  // The rest of cells that are too wide goes on below: in the next row if it belongs to this one (its first
   // cell is empty) and has an empty cell there, else in a line of its own.
   std::vector<std::vector<std::string>> rest(columns.size());
   const auto takeRest = [&](std::size_t c) {

@@ -30,7 +30,7 @@ namespace calot::analytics {
 struct SimulationRange {
   std::uint64_t known = 0, values = 0;  ///< attempts' values that have an interval, and all of them
   double halfWidth = 0.0;               ///< median over the intervals
-  /// Where every value has one: least and largest P(first group larger) + P(equal) / 2 over the worlds
+  /// If every value has an interval: least and largest P(first group larger) + P(equal) / 2 over the worlds
   /// (ValueInterval::worlds()), in each of which all attempts have the same step, mesh and constants.
   std::optional<std::pair<double, double>> area;
 
@@ -205,7 +205,7 @@ struct CoverageRow {
   Expected<MannWhitney> test = NoResult{"not computed"};
 };
 
-/// Where and when the attempts of a study were made.
+/// Sites and dates of a study's attempts.
 struct StudySetting {
   std::vector<std::string> tasks;           ///< scenes, or what was done in imported motion; ascending
   std::string firstStartUtc, lastStartUtc;  ///< of those analysed; empty: not known
@@ -255,7 +255,7 @@ using StudyProgress = std::function<void(double share, const char* doing)>;
 /// Practice, branches, goldens, excluded attempts, unfinished recordings, technical failures and recordings that did
 /// not verify stay out, counted in the flow.
 /// @throws Error (refused) when there are not two groups, a participant has several attempts and there is no rule, or
-/// comparability keys or checkpoint versions would mix; Error (invalid) for a name that is none, of a cohort too.
+/// comparability keys or checkpoint versions would mix; Error (invalid) for an unknown name, of a cohort too.
 Study makeStudy(const CohortDatabase& database, const StudyOptions& options, const StudyProgress& progress = {});
 
 /// Additions of makeStudy() of a database to the options: the named cohort's participants, recorded experience.

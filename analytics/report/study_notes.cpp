@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "analytics/report/rating_tables.h"
-#include "analytics/report/study_coverage.h"
 #include "analytics/report/study_output.h"
+#include "analytics/report/study_rows.h"
 #include "recorder/attempt.h"
 
 namespace calot::analytics {

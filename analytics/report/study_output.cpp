@@ -12,7 +12,7 @@
 
 #include "analytics/report/plots.h"
 #include "analytics/report/rating_tables.h"
-#include "analytics/report/study_coverage.h"
+#include "analytics/report/study_rows.h"
 #include "analytics/statistics/descriptive.h"
 #include "recorder/base/errors.h"
 #include "recorder/base/text_output.h"
@@ -279,7 +279,8 @@ std::string valuesFile(const Study& study, const ValueTree& watermark) {
 }
 
 std::string flowFile(const Study& study) {
-  ValueTree rows{{{"stage", "in the " + study.source}, {"count", study.recruited}}};
+  ValueTree rows = ValueTree::array();
+  rows.push_back({{"stage", "in the " + study.source}, {"count", study.recruited}});
   for (const FlowRow& row : study.flow) rows.push_back({{"stage", "left out: " + row.reason}, {"count", row.attempts}});
   rows.push_back({{"stage", "analysed"}, {"count", study.analysed}});
   return csvText(rows, fmt::format("stage {}=/count", study.counted));
@@ -398,7 +399,7 @@ ReportDocument studyDocument(const Study& study) {
     document.parts.emplace_back(Heading{"Figures"});
     document.add(
         "Box: quartiles and median; whiskers: the outermost values within 1.5 times the box's height; a point for each "
-        "participant, or for one in so many. A group of fewer than five is shown by its points alone.");
+        "participant, or for every n-th. A group of fewer than five is shown by its points alone.");
     document.parts.emplace_back(std::move(figures));
   }
   if (Figures figures = scorePlots(study); !figures.drawings.empty()) {

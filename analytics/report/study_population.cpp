@@ -42,7 +42,10 @@ std::string groupOf(const AttemptRow& a, Grouping grouping) {
   return a.operatorKind == recorder::OperatorKind::performer ? a.profile : "";
 }
 
-std::string whyOut(const AttemptRow& a, const StudyOptions& options) {
+namespace {
+
+/// First reason that excludes an attempt, or empty. Details that differ between attempts follow a colon.
+std::string whyOut(const AttemptRow& a, const StudyOptions& options, bool everybody) {
   const std::vector<std::string>& reason = exclusionReasons();
   if (options.cohort && options.cohort->participants.count(a.participant) == 0)
     return reason[0] + ": " + options.cohort->name;
@@ -56,28 +59,111 @@ std::string whyOut(const AttemptRow& a, const StudyOptions& options) {
   if (a.mode == recorder::Mode::practice && !options.includePractice) return reason[8];
   if (!a.parent.empty() && !options.includeBranches) return reason[9];
   if (a.purpose == "golden") return reason[10];
-  if (groupOf(a, options.grouping).empty()) return reason[11];
+  const std::string group = groupOf(a, options.grouping);
+  if (group.empty() && !everybody) return reason[11];
   if (options.protocol) {
-    if (std::string why = whyOutByProtocol(a, groupOf(a, options.grouping), *options.protocol); !why.empty())
-      return why;
+    if (std::string why = whyOutByProtocol(a, group, *options.protocol); !why.empty()) return why;
   }
   if (!options.key.empty() && a.comparabilityKey != options.key) return reason[12];
   return {};
 }
 
+}  // namespace
+
 std::string unitOf(const AttemptRow& a) { return a.participant.empty() ? "attempt " + a.uuid : a.participant; }
 
-std::vector<FlowRow> flowOf(const std::map<std::string, std::uint64_t>& counted) {
-  std::vector<FlowRow> flow;
+const std::string& stratumOf(const AttemptRow& a, const std::string& strata) {
+  return strata == "arm" ? a.arm : a.site;
+}
+
+IncludedAttempts includedAttempts(const std::vector<AttemptRow>& recruited, const StudyOptions& options,
+                                  const std::string& strata, bool everybody) {
+  IncludedAttempts included;
+  std::map<std::string, std::uint64_t> out;
+  std::uint64_t withoutStratum = 0;
+  for (const AttemptRow& a : recruited) {
+    if (const std::string reason = whyOut(a, options, everybody); !reason.empty()) {
+      ++out[reason];
+    } else if (!strata.empty() && stratumOf(a, strata).empty()) {
+      ++withoutStratum;
+    } else {
+      ++included.present[groupOf(a, options.grouping)];
+      included.taken.push_back(&a);
+    }
+  }
   for (const std::string& reason : exclusionReasons()) {
-    for (const auto& [why, count] : counted) {
-      if (why == reason || why.rfind(reason + ": ", 0) == 0) flow.push_back({why, count});
+    for (const auto& [why, count] : out) {
+      if (why == reason || why.rfind(reason + ": ", 0) == 0) included.flow.push_back({why, count});
     }
   }
   for (const std::string& reason : protocolReasons()) {
-    if (const auto at = counted.find(reason); at != counted.end()) flow.push_back({reason, at->second});
+    if (const auto at = out.find(reason); at != out.end()) included.flow.push_back({reason, at->second});
   }
-  return flow;
+  if (withoutStratum > 0) included.flow.push_back({"no " + strata, withoutStratum});
+  return included;
+}
+
+std::string leftOutOf(std::uint64_t recruited, const std::vector<FlowRow>& flow) {
+  std::string left;
+  for (const FlowRow& row : flow) left += fmt::format("{}{} {}", left.empty() ? "" : ", ", row.attempts, row.reason);
+  return fmt::format(" of {} attempts{}", recruited, left.empty() ? "" : " (left out: " + left + ")");
+}
+
+AttemptsOfUnits attemptsOfUnits(const std::vector<const AttemptRow*>& taken, std::span<const std::string> groups,
+                                Grouping grouping, const AttemptReduction& reduction, const std::string& name,
+                                std::vector<FlowRow>& flow) {
+  AttemptsOfUnits result;
+  std::uint64_t elsewhere = 0, later = 0;
+  for (const AttemptRow* a : taken) {
+    if (groups.empty() || std::find(groups.begin(), groups.end(), groupOf(*a, grouping)) != groups.end()) {
+      result.units[unitOf(*a)].push_back(a);
+    } else {
+      ++elsewhere;
+    }
+  }
+  std::size_t several = 0;
+  std::string whose;
+  for (auto& [unit, list] : result.units) {
+    std::stable_sort(list.begin(), list.end(),
+                     [](const AttemptRow* a, const AttemptRow* b) { return a->startUtc < b->startUtc; });
+    std::map<std::string, const AttemptRow*> firstOf;  // by device
+    std::vector<const AttemptRow*> kept;
+    for (const AttemptRow* a : list) {
+      if (!groups.empty() && groupOf(*a, grouping) != groupOf(*list[0], grouping))
+        throw Error(ErrorKind::refused, Where{name},
+                    fmt::format("participant \"{}\" is in {} groups, which must be independent", unit,
+                                groups.size() == 2 ? "both" : "two"));
+      if (!reduction.oneEach) continue;
+      const auto [first, added] = firstOf.try_emplace(reduction.byDevice ? a->device : "", a);
+      if (added) {
+        kept.push_back(a);
+      } else if (reduction.rule == AttemptRule::first && a->startUtc == first->second->startUtc) {
+        throw Error(
+            ErrorKind::refused, Where{name},
+            fmt::format("two attempts of participant \"{}\" start at {}: neither is the first", unit, a->startUtc),
+            {Remedy::takeMean, Remedy::exclude});
+      }
+    }
+    if (!reduction.oneEach || kept.size() == list.size()) continue;
+    if (several++ == 0) whose = fmt::format("\"{}\" has {}", unit, list.size());
+    if (reduction.rule != AttemptRule::first) continue;
+    later += list.size() - kept.size();
+    list = std::move(kept);
+  }
+  if (several > 0 && !reduction.rule) {
+    throw Error(
+        ErrorKind::refused, Where{name},
+        fmt::format("participant {} attempts{} ({} participant{} with several), which are not independent", whose,
+                    reduction.byDevice ? ", of a device more than one" : "", several, several == 1 ? "" : "s"),
+        {Remedy::chooseAttemptRule});
+  }
+  result.rule = !reduction.oneEach                     ? "all attempts of each"
+                : several == 0                         ? "one attempt each"
+                : reduction.rule == AttemptRule::first ? "the first of a participant's attempts"
+                                                       : "the mean of a participant's attempts";
+  if (elsewhere > 0) flow.push_back({"another group", elsewhere});
+  if (later > 0) flow.push_back({"later attempt of a participant (the first counts)", later});
+  return result;
 }
 
 void askForOneKey(const std::vector<std::string>& keys, const StudyOptions& options, const std::string& name,
@@ -149,7 +235,7 @@ std::array<std::string, 2> chooseGroups(const std::map<std::string, std::uint64_
   std::sort(names.begin(), names.end(), groupBefore);
   if (!choices.groups.empty()) {
     if (choices.groups.size() != 2 || choices.groups[0] == choices.groups[1]) {
-      throw Error(ErrorKind::invalid, "study: its groups are two, with different names", {Remedy::nameGroups});
+      throw Error(ErrorKind::invalid, "study: two groups with different names are expected", {Remedy::nameGroups});
     }
     for (const std::string& name : choices.groups) {
       if (present.count(name) == 0) {

@@ -81,17 +81,8 @@ void spread(const Expected<std::vector<double>>& adjusted, const std::vector<Stu
 }  // namespace
 
 std::string nameOf(Role role) {
-  switch (role) {
-    case Role::undeclared:
-      return "";
-    case Role::primary:
-      return "primary";
-    case Role::secondary:
-      return "secondary";
-    case Role::exploratory:
-      return "exploratory";
-  }
-  return "";
+  constexpr const char* names[] = {"", "primary", "secondary", "exploratory"};
+  return names[static_cast<std::size_t>(role)];
 }
 
 void chooseByProtocol(StudyChoices& choices, const Protocol& protocol) {
@@ -209,9 +200,7 @@ void adjustByProtocol(Study& study, const Protocol& protocol) {
     if (p) row.supported = *p <= protocol.level && row.asHypothesised.value_or(false);
   }
   for (const DirectedHypothesis& h : protocol.hypotheses) {
-    const bool there =
-        std::any_of(study.rows.begin(), study.rows.end(), [&](const StudyRow& r) { return matches(h, r); });
-    if (there) continue;
+    if (std::any_of(study.rows.begin(), study.rows.end(), [&](const StudyRow& r) { return matches(h, r); })) continue;
     study.remarks.push_back(fmt::format("{} {}{}, of which the protocol has a {} hypothesis.",
                                         study.source == "table" ? "No outcome is" : "No attempt has", figureOf(h),
                                         h.sha256.empty() ? "" : " of the script with SHA-256 " + h.sha256,

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "analytics/report/plots.h"
-#include "analytics/report/study_coverage.h"
+#include "analytics/report/study_rows.h"
 
 namespace calot::analytics {
 namespace {

@@ -9,7 +9,7 @@
 
 namespace calot::analytics {
 
-/// Why there is no result, one line.
+/// Reason why there is no result, one line.
 struct NoResult {
   std::string reason;
 };

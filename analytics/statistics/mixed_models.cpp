@@ -191,7 +191,7 @@ Expected<RandomIntercept> randomIntercept(std::span<const ModelAttempt> attempts
   if (!model && model.reason().find(": take ") != std::string::npos) return NoResult{model.reason()};
   if (few) return NoResult{"too few participants for the model"};
   if (!model) {
-    return NoResult{model.reason() == "the columns depend on each other" ? "group and site can't be told apart"
+    return NoResult{model.reason() == "the columns depend on each other" ? "group and site cannot be distinguished"
                                                                          : model.reason()};
   }
   const double df = static_cast<double>(participants.size() - sites.size()) - 1.0;

@@ -79,7 +79,7 @@ struct LearningCurve {
 /// distinct x or than three values, and values all equal.
 Expected<LearningCurve> fitLearningCurve(std::span<const double> x, std::span<const double> y);
 
-/// Where the curve itself lies at x, by Student's t: a - b / x is linear in a and b, so its variance is
+/// Interval of the curve itself at x, by Student's t: a - b / x is linear in a and b, so its variance is
 /// Var a - 2 Cov(a, b) / x + Var b / x^2 (Draper and Smith 1998, 1.4).
 /// @pre x > 0, 0 < level < 1, curve.freedom > 0
 Interval bandOf(const LearningCurve& curve, double x, double level = 0.95);

@@ -46,7 +46,7 @@ MeanSquares meanSquares(const RatingTable& table) {
       largest = std::max(largest, std::abs(table.at(i, j)));
     }
   }
-  // What rounding alone leaves of an exact fit: some units in the last place of the values, squared.
+  // Residual of an exact fit by rounding alone: some units in the last place of the values, squared.
   const double last = 8.0 * std::numeric_limits<double>::epsilon() * largest, rounding = n * k * last * last;
   if (rest < rounding) rest = 0.0;
   if (rows < rounding) rows = 0.0;
@@ -81,7 +81,7 @@ struct Design {
   double n = 0.0, k = 0.0;
 };
 
-/// Of ICC(3,k); lower and upper alone. That of the single form, (F - 1) / (F + k - 1), by Spearman and Brown.
+/// ICC(3,k): lower and upper alone. The interval of the single form, (F - 1) / (F + k - 1), by Spearman and Brown.
 Interval ofThreeAverage(const Design& d, double p) {
   const double f = d.s.subjects / d.s.residual, df1 = d.n - 1.0, df2 = df1 * (d.k - 1.0);
   return {1.0 - fisherQuantile(p, df1, df2) / f, 1.0 - 1.0 / (f * fisherQuantile(p, df2, df1)), 0.0, "F"};
@@ -228,7 +228,7 @@ std::optional<DemingLine> demingLine(std::span<const double> x, std::span<const 
   }
   if (sxy == 0.0) return std::nullopt;
   const double apart = syy - errorRatio * sxx, root = std::hypot(apart, 2.0 * std::sqrt(errorRatio) * sxy);
-  // Of the two forms the one without cancellation.
+  // The form without cancellation.
   const double slope = apart >= 0.0 ? (apart + root) / (2.0 * sxy) : 2.0 * errorRatio * sxy / (root - apart);
   if (!std::isfinite(slope)) return std::nullopt;
   return DemingLine{my - slope * mx, slope};

@@ -19,7 +19,7 @@ struct NormalCurve {
   double mean = 0.0, deviation = 1.0;
 };
 
-/// Where the two densities cross between their means: the root there of
+/// Intersection of the two densities between their means: the root there of
 ///   ln(s2 / s1) + (x - m2)^2 / (2 s2^2) - (x - m1)^2 / (2 s1^2) = 0.
 /// Between the means the left side is monotone, so there is one root or none: no answer where one curve lies above the
 /// other all the way, for equal means, or for a deviation that is not positive.

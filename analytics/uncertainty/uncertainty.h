@@ -50,7 +50,7 @@ std::vector<ValueInterval> estimateUncertainty(const std::filesystem::path& reco
                                                const std::vector<CheckpointValue>& values, unsigned threads,
                                                const UncertaintyProgress& progress = {});
 
-/// The same scene, divided otherwise: so many ticks a step, and `elements` times as many tetrahedra in every organ;
+/// The same scene, divided otherwise: `ticksPerStep`, and `elements` times as many tetrahedra in every organ;
 /// with them fat's cubes, the vessels' elements and the strands of beds, each by the same ratio of lengths
 /// (elements^(1/3)), rounded to whole ones.
 SceneDescription redivided(const SceneDescription& scene, std::uint32_t ticksPerStep, double elements);

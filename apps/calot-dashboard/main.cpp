@@ -77,7 +77,7 @@ int run(int argc, char** argv) {
   }
 
   calot::recorder::useComplianceCache(calot::recorder::userCacheFolder());
-  // A file that cannot be opened is told before there is a window, and needs none.
+  // A file that cannot be opened is reported before there is a window, and needs none.
   std::shared_ptr<const calot::gui::CohortDocument> document;
   const bool recording = given->count() > 0 && isRecording(file);
   std::string attempt;  // uuid of the recording's

@@ -22,10 +22,10 @@
 #include "apps/common/program.h"
 #include "apps/window/window_start.h"
 #include "gui/attempt/theme.h"
-#include "gui/trainer/attempt_input.h"
 #include "gui/trainer/end_page.h"
 #include "gui/trainer/operation_view.h"
 #include "gui/trainer/trainer_window.h"
+#include "gui/trainer/training_session.h"
 #include "gui/trainer/voice.h"
 #include "recorder/base/dates.h"
 #include "recorder/base/errors.h"
@@ -96,7 +96,7 @@ void add(CLI::App& app, Options& o) {
   app.add_option("--pictures", o.pictures, "Write a PNG of each page into this folder, and end");
 }
 
-/// A device of the command line, or a performer to be watched, as the trainer's source. Each attempt opens it anew.
+/// A device of the command line, or a performer to be watched, as the trainer's source. Each attempt opens it again.
 class OptionsInput final : public gui::AttemptInput {
  public:
   /// @param seed of a performer
@@ -130,7 +130,7 @@ recorder::DeviceSourceSettings mouseSettings(const Options& o, recorder::Mode mo
   return settings;
 }
 
-/// A cohort that cannot be opened is told before there is a window; one that is not there is made when it is needed.
+/// A cohort that cannot be opened is reported before there is a window; a missing one is made when it is needed.
 std::filesystem::path cohortOf(const std::string& cohort) {
   if (cohort.empty()) return {};
   std::error_code ignored;
@@ -141,7 +141,7 @@ std::filesystem::path cohortOf(const std::string& cohort) {
   return cohort;
 }
 
-/// Everything that can be wrong is told here, before there is a window.
+/// Every fault of the command line is reported here, before there is a window.
 gui::TrainerSetup setUp(const Options& o, const std::optional<recorder::LoadedScene>& scene) {
   requireFolder(o.folder, "recordings");
   if (!o.pictures.empty()) requireFolder(o.pictures, "pictures");
@@ -166,7 +166,7 @@ gui::TrainerSetup setUp(const Options& o, const std::optional<recorder::LoadedSc
   if (who.scope.moves() && who.scope.device.empty() && who.performer.empty())
     setup.scope = who.scope.keys = std::make_shared<recorder::ScopeInput>();
   if (!who.performer.empty() && !who.device.calibration.empty())
-    throw Error(ErrorKind::invalid, "--calibration is of a device; a performer has none");
+    throw Error(ErrorKind::invalid, "--calibration needs a device; a performer takes none");
   who.mode = attempt.mode;
   if (who.device.name.empty() && who.performer.empty()) {
     setup.mouse = std::make_shared<recorder::MouseInput>();
@@ -179,7 +179,7 @@ gui::TrainerSetup setUp(const Options& o, const std::optional<recorder::LoadedSc
     setup.input = std::make_shared<gui::MouseAttemptInput>(setup.mouse, mouseSettings(o, attempt.mode), addScope);
   } else {
     auto input = std::make_shared<OptionsInput>(who, o.seed);
-    // What is wrong with it is reported now. A performer needs a scene; a device is there or not whatever the scene.
+    // Its faults are reported now. A performer needs a scene; a device is there or not whatever the scene.
     if (scene || who.performer.empty()) static_cast<void>(input->open(scene ? scene->description : SceneDescription{}));
     setup.input = std::move(input);
   }
@@ -190,11 +190,11 @@ std::optional<recorder::LoadedScene> sceneOf(const std::string& name) {
   if (name.empty()) return std::nullopt;
   recorder::LoadedScene scene = recorder::loadScene(recorder::findScene(name, assetFolders()));
   for (const std::string& warning : scene.warnings) fmt::print(stderr, "calot-trainer: warning: {}\n", warning);
-  static_cast<void>(recorder::prepareScene(scene.assets, Where{"scene " + name}));  // a fault is told before a window
+  static_cast<void>(recorder::prepareScene(scene.assets, Where{"scene " + name}));  // faults before a window
   return scene;
 }
 
-/// Lets the window live until `there`, or so many seconds are over. @returns there()
+/// Runs the window until `there`, or until `seconds` are over. @returns there()
 bool waitFor(const std::function<bool()>& there, int seconds) {
   const QDeadlineTimer limit(1000LL * seconds);
   while (!there() && !limit.hasExpired()) QApplication::processEvents(QEventLoop::WaitForMoreEvents, 20);
@@ -244,7 +244,7 @@ void takePictures(gui::TrainerWindow& window, std::optional<recorder::LoadedScen
 gui::TrainerWindow* shown = nullptr;
 QtMessageHandler usualMessages = nullptr;
 
-/// Where the display goes away, Qt says so and calls exit() in the middle of its work, beside threads that draw, record
+/// If the display goes away, Qt says so and calls exit() in the middle of its work, beside threads that draw, record
 /// and simulate. What runs ends first, so that its recording is whole; what is left is not worth being taken apart.
 void onMessage(QtMsgType type, const QMessageLogContext& context, const QString& message) {
   if (shown == nullptr || !message.contains("connection broke")) return usualMessages(type, context, message);

@@ -6,7 +6,6 @@
 #include "analytics/checkpoints/motion.h"
 #include "analytics/cohort_files.h"
 #include "analytics/regrade.h"
-#include "analytics/share.h"
 #include "analytics/uncertainty/uncertainty.h"
 #include "apps/calot/command.h"
 #include "apps/calot/import_command.h"

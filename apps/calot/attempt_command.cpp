@@ -130,14 +130,14 @@ void addAttempt(CLI::App& app, Run& run) {
   CLI::App* tagged =
       addCommand(attempt, run, "tag", "Put a word on an attempt to find it by, or take it off", tag, o).first;
   for (CLI::App* command : {exclude, include, tagged}) {
-    command->add_option("attempt", o->attempt, "Its uuid, or what it begins with")->required();
+    command->add_option("attempt", o->attempt, "Its uuid, or the beginning of it")->required();
     if (command == tagged) {
       command->add_option("change", o->change, "add, or remove")->required()->check(oneOf({"add", "remove"}));
       command->add_option("tag", o->tag, "The word: 1 to 40 characters, no blanks or commas")->required();
     }
     command->add_option("--cohort", o->cohort, "Cohort database")->required();
-    if (command != tagged) command->add_option("--reason", o->reason, "Why")->required();
-    command->add_option("--by", o->by, "Who decides")->required();
+    if (command != tagged) command->add_option("--reason", o->reason, "Reason of the decision")->required();
+    command->add_option("--by", o->by, "Person who decides")->required();
   }
   tagged->add_flag("--json", o->json, "Print JSON");
 }

@@ -10,7 +10,7 @@
 
 #include "apps/calot/command.h"
 #include "apps/calot/source_options.h"
-#include "gui/film/lettering.h"
+#include "gui/film/overlay.h"
 #include "gui/render/image.h"
 #include "recorder/base/errors.h"
 #include "recorder/base/text_output.h"
@@ -184,7 +184,7 @@ struct CalibrateOptions {
   DeviceOptions device;
   std::string from, stream, output;
   double strokeMillimetres = 100.0;
-  // Of cameras alone.
+  // Options of cameras.
   std::vector<std::string> board;
   std::string phases, pictures;
   double rulerMillimetres = recorder::rulerLength, readoutMilliseconds = 0.0;
@@ -300,7 +300,7 @@ void calibrateCamera(const CalibrateOptions& o) {
   return finishCalibration(o, stream, std::move(calibration));
 }
 
-/// Of a mouse: the trainer's own, or one that is taken from the system.
+/// Declares a mouse: the trainer's own, or one that is taken from the system.
 void declareCalibration(const CalibrateOptions& o) {
   if (!o.from.empty() || !o.stream.empty())
     throw Error(ErrorKind::invalid, "calibrate: --from and --keep-stream measure; --pixel declares");
@@ -316,7 +316,7 @@ void calibrate(const CalibrateOptions& o) {
   if (!o.stream.empty()) recorder::refuseOutput(o.stream, o.force);
   if (recorder::findDeviceKind(o.device.name) == &recorder::cameraKind) return calibrateCamera(o);
   if (!o.board.empty() || !o.phases.empty() || !o.pictures.empty())
-    throw Error(ErrorKind::invalid, "calibrate: --board, --phases and --pictures are of cameras");
+    throw Error(ErrorKind::invalid, "calibrate: --board, --phases and --pictures are for cameras only");
   if (o.pixelMillimetres) return declareCalibration(o);
   const recorder::OpenedDevice opened = recorder::openDevice(o.device.name, toolsOf(o.device));
   if (o.from.empty() && opened.tickClock) {

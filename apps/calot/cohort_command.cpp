@@ -235,7 +235,7 @@ void addCohort(CLI::App& app, Run& run) {
   addName("site", "Name a site", nameSite);
   addName("arm", "Name a study arm", nameArm);
   const auto [station, s] = addName("station", "Name a station, and the key that it signs with", nameStation);
-  station->add_option("--site", s->site, "Where it stands");
+  station->add_option("--site", s->site, "Site at which it stands");
   station->add_option("--public-key", s->key, "64 hexadecimal digits, as `calot station show` prints them");
   const auto [name, n] = addName("name", "Name a cohort of participants", nameCohort);
   name->add_option("--add", n->add, "Participant who belongs to it; may be repeated")->allow_extra_args(false);

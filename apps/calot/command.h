@@ -26,7 +26,7 @@ namespace calot::apps {
 
 using Json = nlohmann::ordered_json;
 
-/// What main() shall call: returns the exit code or throws calot::Error.
+/// The chosen command's work, called by main(): returns the exit code or throws calot::Error.
 using Run = std::function<int()>;
 
 /// Each function adds a command with its options to the application. A new command is a file that defines its function,
@@ -148,7 +148,7 @@ void printResult(std::string_view what, const Json& body);
 /// The same on one line, flushed: of results that come one after the other.
 void printResultLine(std::string_view what, const Json& body);
 
-/// Columns of the terminal that stdout is, from 60 to 160; 80 where it is none.
+/// Columns of the terminal on stdout, from 60 to 160; 80 without a terminal.
 std::size_t terminalColumns();
 
 /// The text in lines of at most `columns`, broken at blanks; its own line breaks stay. Lines below the first begin with

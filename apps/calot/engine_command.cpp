@@ -11,7 +11,6 @@
 #include "recorder/base/text_output.h"
 #include "recorder/kept/engine_folders.h"
 #include "recorder/kept/engine_process.h"
-#include "recorder/kept/transcript.h"
 #include "recorder/recording/probe.h"
 #include "recorder/replay.h"
 #include "sim/scene/version.h"
@@ -120,7 +119,7 @@ void build(const BuildOptions& o) {
   const fs::path script = fs::path(o.source) / "scripts/engine.py";
   std::error_code ignored;
   if (!fs::is_regular_file(script, ignored))
-    throw Error(ErrorKind::invalid, fmt::format("{} is no clone of the source: name one with --source", o.source));
+    throw Error(ErrorKind::invalid, fmt::format("{} is not a clone of the source: name one with --source", o.source));
   recorder::refuseOutput(o.output, o.force);
   std::vector<std::string> command{"python3", script.string(), "build", std::to_string(o.version), "-o", o.output};
   if (o.module) command.emplace_back("--module");

@@ -27,7 +27,8 @@ void printFiles(const std::vector<std::filesystem::path>& files) {
 
 void exportMotionFile(const ExportOptions& o) {
   if (!o.folder.empty() || !o.cohort.empty())
-    throw Error(ErrorKind::invalid, Where{o.file}, "is no recording (.h5): of a motion file there is --motion alone");
+    throw Error(ErrorKind::invalid, Where{o.file},
+                "is not a recording (.h5): of a motion file there is --motion alone");
   std::optional<recorder::ColumnMap> map;
   if (!o.columns.empty()) map = recorder::readColumnMap(o.columns);
   const recorder::TrackedMotion tracked = readMotion(o.file, map ? &*map : nullptr);
@@ -55,7 +56,7 @@ void exportRecording(const ExportOptions& o) {
   }
   if (!o.motion.empty()) printFiles(analytics::writeMotionTables(analytics::motionOf(recording), o.motion, o.force));
   if (!recording.complete()) fmt::print("incomplete\n");
-  // What was asked for is there; that it was changed since it was recorded is the answer.
+  // The export is complete; the exit code reports that the recording was changed.
   if (!chain.intact) throw Error(ErrorKind::refused, fmt::format("{}: {}", o.file, chain.what));
 }
 

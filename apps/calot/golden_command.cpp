@@ -15,6 +15,7 @@
 #include "apps/calot/source_options.h"
 #include "recorder/base/file_bytes.h"
 #include "recorder/base/record_reader.h"
+#include "recorder/base/record_writer.h"
 #include "recorder/base/text_output.h"
 #include "recorder/formats/scene_file.h"
 #include "recorder/live/worker_pool.h"
@@ -38,7 +39,7 @@ struct GoldenValue {
   bool operator==(const GoldenValue&) const = default;
 };
 
-/// One recording and how to make it: a performer in a scene, up to so many seconds.
+/// One recording and how to make it: a performer in a scene, for at most `seconds`.
 struct GoldenEntry {
   std::string file;  ///< base name, beside the list
   std::string scene, performer;
@@ -51,7 +52,7 @@ struct GoldenEntry {
 
 struct GoldenList {
   std::uint32_t simulationVersion = 0;  ///< of all recordings
-  std::string reason;                   ///< why they were made anew
+  std::string reason;                   ///< why they were made again
   std::string valuesReason;             ///< why values were taken over since; empty: they were not
   std::vector<GoldenEntry> recordings;
 
@@ -91,7 +92,7 @@ std::vector<Field> GoldenList::fields() {
   return {
       object("", "Golden recordings"),
       {"simulation_version", at<S, &S::simulationVersion>, "", positive, "Simulation version of all recordings"},
-      {"reason", at<S, &S::reason>, longText, "Reason to make them anew"},
+      {"reason", at<S, &S::reason>, longText, "Reason to make them again"},
       optional("values_reason", at<S, &S::valuesReason>, longText, "Reason to take over values since"),
       Field("recordings", at<S, &S::recordings>, "Recordings").items(1, 1000),
   };
@@ -109,7 +110,7 @@ GoldenList readGoldenList(const std::filesystem::path& file) {
     const recorder::JsonPlace place = root.at("recordings").at(i);
     const std::string& base = list.recordings[i].file;
     if (base.front() == '.' || std::filesystem::path(base).filename() != base)
-      place.at("file").fail("is no file's name: a name without folders is wanted");
+      place.at("file").fail("is not a file's name: a name without folders is expected");
     if (!names.insert(base).second) place.fail("names a file that stands above already");
   }
   return list;
@@ -117,24 +118,13 @@ GoldenList readGoldenList(const std::filesystem::path& file) {
 
 /// The list as JSON; every number reads back as the same bits.
 std::string toJson(const GoldenList& list) {
-  Json json{{"simulation_version", list.simulationVersion}, {"reason", list.reason}};
-  if (!list.valuesReason.empty()) json["values_reason"] = list.valuesReason;
-  json["recordings"] = Json::array();
-  for (const GoldenEntry& e : list.recordings) {
-    Json values = Json::array();
-    for (const GoldenValue& v : e.values) {
-      Json value{{"name", v.name}};
-      if (!v.subject.empty()) value["subject"] = v.subject;
-      value["version"] = v.version;
-      value["value"] = v.value;
-      values.push_back(value);
-    }
-    json["recordings"].push_back({{"file", e.file},
-                                  {"scene", e.scene},
-                                  {"performer", e.performer},
-                                  {"seed", e.seed},
-                                  {"seconds", e.seconds},
-                                  {"checkpoints", values}});
+  Json json = recorder::writeRecord(list);
+  const auto omitEmpty = [](Json& row, const char* name) {
+    if (row[name] == "") row.erase(name);
+  };
+  omitEmpty(json, "values_reason");
+  for (Json& recording : json["recordings"]) {
+    for (Json& value : recording["checkpoints"]) omitEmpty(value, "subject");
   }
   return json.dump(1) + "\n";
 }
@@ -418,7 +408,7 @@ void addGolden(CLI::App& app, Run& run) {
     return one;
   };
   CLI::App* checking = add("check", "Replays them; compares checkpoints with those of the list.", checkGolden);
-  CLI::App* updating = add("update", "Makes them anew, after a change of the simulation.", updateGolden);
+  CLI::App* updating = add("update", "Records them again, after a change of the simulation.", updateGolden);
   CLI::App* values = add("values", "Replays them; the list takes over what the checkpoints give.", takeValues);
   checking->add_option("--only", o->only, "one file of the list");
   for (CLI::App* one : {checking, values}) addThreads(*one, o->threads, "of the simulation; 0: all");

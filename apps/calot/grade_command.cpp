@@ -99,7 +99,7 @@ std::vector<std::byte> carriedRecording(const analytics::AttemptRow& attempt, co
 
 void grade(const GradeOptions& o) {
   if (o.withReplay && o.html.empty())
-    throw Error(ErrorKind::invalid, "--with-replay is of a page: name one with --html");
+    throw Error(ErrorKind::invalid, "--with-replay needs a page: name one with --html");
 
   for (const std::string& file : {o.html, o.pdf}) {
     if (!file.empty()) recorder::refuseOutput(file, o.force);

@@ -23,7 +23,7 @@ struct CoarseSurface {
 constexpr double goodEnough = 0.1, acceptable = 0.3;
 constexpr int searches = 8;
 
-/// A closed surface of about so many triangles: the boundary of a tetrahedral mesh (mesh_to_count.h) of the same
+/// A closed surface of about this number of triangles: the boundary of a tetrahedral mesh (mesh_to_count.h) of the same
 /// volume within 1 %. Thin parts go as they do there.
 /// @param surface closed, outward, manifold
 CoarseSurface coarseSurface(const TriangleMesh& surface, int triangles) {
@@ -80,7 +80,7 @@ void checkFiles(const MeshOptions& o) {
   if (!o.output.empty() && !o.output.ends_with(".vtk"))
     throw Error(ErrorKind::invalid, o.output + ": the output's name must end in .vtk");
   if (!o.output.empty() && o.tetrahedra == 0)
-    throw Error(ErrorKind::invalid, "mesh: --tetrahedra is wanted, the number of them");
+    throw Error(ErrorKind::invalid, "mesh: --tetrahedra gives the number of tetrahedra");
   if (!o.surfaceOutput.empty() && !o.surfaceOutput.ends_with(".obj"))
     throw Error(ErrorKind::invalid, o.surfaceOutput + ": the surface's name must end in .obj");
   for (const std::string& file : {o.output, o.surfaceOutput}) {
@@ -196,14 +196,13 @@ void addMesh(CLI::App& app, Run& run) {
   command->add_option("--unit", options->unit, "of the file's coordinates: m, cm or mm")
       ->required()
       ->check(oneOf({"m", "cm", "mm"}));
-  command->add_option("--tetrahedra", options->tetrahedra, "how many are wanted")
-      ->check(CLI::Range(12, maxTetrahedronCount));
+  command->add_option("--tetrahedra", options->tetrahedra, "their number")->check(CLI::Range(12, maxTetrahedronCount));
   command->add_option("-o,--output", options->output, "the mesh to write, a .vtk file");
   CLI::Option* surface = command->add_option("--surface-output", options->surfaceOutput,
                                              "the closed surface to write, a .obj file in metres, for scenes");
   command
       ->add_option("--surface-triangles", options->surfaceTriangles,
-                   "make that surface anew with about so many triangles")
+                   "remesh that surface with about this number of triangles")
       ->check(CLI::Range(100, 1'000'000))
       ->needs(surface);
   command->add_flag("--repair", options->repair, "fill holes");

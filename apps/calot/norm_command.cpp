@@ -84,7 +84,7 @@ std::uint32_t minOf(const std::string& rule) {
   const long long least = counted ? recorder::readWholeNumber(rule.substr(prefix.size()), fault) : 0;
   if (!fault.empty() || least < 1 || least > 1000)
     throw Error(ErrorKind::invalid,
-                fmt::format("norm: --rule {}: all, or at-least:K is wanted", recorder::shown(rule)));
+                fmt::format("norm: --rule {}: all, or at-least:K is expected", recorder::shown(rule)));
   return static_cast<std::uint32_t>(least);
 }
 
@@ -208,7 +208,7 @@ void attachEvidence(NormOptions& o) {
 
 void addCreateOptions(CLI::App& command, NormOptions& o) {
   analytics::StudyOptions& who = o.request.who;
-  command.add_option("--by", o.by, "Who makes it")->required();
+  command.add_option("--by", o.by, "Person who makes it")->required();
   command.add_option("--rule", o.rule, "How figures combine: all, or at-least:K of them")->required();
   addList(command, "--checkpoints", o.request.checkpoints,
           "Figures in the rule, A,B: a checkpoint, or one of it (\"path-length left\"); all: every one with a mark; "
@@ -223,7 +223,7 @@ void addCreateOptions(CLI::App& command, NormOptions& o) {
       "A study's protocol, a file or the name of one that comes with the program: its groups, the better one, its "
       "criteria and attempt rule");
   addList(command, "--groups", who.groups, "The two groups, A,B");
-  command.add_option("--better", who.better, "Which of them is competent");
+  command.add_option("--better", who.better, "The competent one of them");
   command.add_option("--judged-by", o.request.judgedBy,
                      "Instead of groups: the form by which raters judged the attempts (competence)");
   CLI::Option* form =
@@ -234,8 +234,8 @@ void addCreateOptions(CLI::App& command, NormOptions& o) {
   mark->needs(form);
   for (const char* other : {"--groups", "--better", "--judged-by", "--protocol"})
     form->excludes(command.get_option(other));
-  addChoice(command, "--group-by", o.groupBy, "What makes the groups", {"performer", "group"});
-  command.add_option("--attempt-rule", o.attemptRule, "Of a participant's several attempts the first")
+  addChoice(command, "--group-by", o.groupBy, "Property that makes the groups", {"performer", "group"});
+  command.add_option("--attempt-rule", o.attemptRule, "The first of a participant's several attempts")
       ->check(oneOf({"first"}));
   command.add_option("--key", who.key, "Only attempts of this comparability key");
   command.add_flag("--include-synthetic", who.includeSynthetic, "Take in what performers made (watermarked)");
@@ -247,7 +247,7 @@ void addCreateOptions(CLI::App& command, NormOptions& o) {
     protocol->excludes(command.get_option(name));
   for (const char* name : {"--groups", "--better", "--group-by"})
     command.get_option("--judged-by")->excludes(command.get_option(name));
-  command.add_option("--seed", o.seed, "Of the bootstrap")->check(wholeNumber)->capture_default_str();
+  command.add_option("--seed", o.seed, "Seed of the bootstrap")->check(wholeNumber)->capture_default_str();
 }
 
 }  // namespace
@@ -280,8 +280,8 @@ void addNorm(CLI::App& app, Run& run) {
   angoff->add_flag("--json", a->json, "Print JSON");
   shown->add_flag("--json", o->json, "Print JSON");
   proven->add_option("--file", o->file, "The document; its name and hash are stored")->required();
-  proven->add_option("--statement", o->statement, "What it shows, one sentence")->required();
-  proven->add_option("--by", o->by, "Who attaches it")->required();
+  proven->add_option("--statement", o->statement, "Its finding, one sentence")->required();
+  proven->add_option("--by", o->by, "Person who attaches it")->required();
 }
 
 }  // namespace calot::apps

@@ -56,7 +56,7 @@ std::vector<std::string> split(const std::string& text, char mark) {
   return parts;
 }
 
-/// Of values with this mean and deviation the curve of their logarithms, where they are lognormal.
+/// Curve of values with this mean and deviation; of their logarithms if they are lognormal.
 analytics::NormalCurve curveOf(double mean, double deviation, bool lognormal, const std::string& text) {
   if (!(deviation > 0.0)) failPower(fmt::format("--checkpoint {}: a deviation is not positive", recorder::shown(text)));
   if (!lognormal) return {mean, deviation};
@@ -77,7 +77,7 @@ void addCheckpoint(PlannedStudy& planned, const std::string& text, bool lognorma
     if (!fault.empty()) break;
   }
   if (colon == std::string::npos || colon == 0 || numbers.size() != 4)
-    failPower(fmt::format("--checkpoint {}: NAME:MEAN,SD,MEAN,SD is wanted", recorder::shown(text)));
+    failPower(fmt::format("--checkpoint {}: NAME:MEAN,SD,MEAN,SD is expected", recorder::shown(text)));
   planned.names.push_back(recorder::shown(text.substr(0, colon)));
   planned.plan.checkpoints.push_back(
       {curveOf(numbers[0], numbers[1], lognormal, text), curveOf(numbers[2], numbers[3], lognormal, text)});
@@ -150,7 +150,8 @@ std::vector<std::size_t> sizesOf(const std::string& text) {
     if (parts.size() > 3) failPower(fmt::format("--n {}: FROM:TO:STEP", recorder::shown(text)));
     std::string fault;
     const long long by = parts.size() < 3 ? 1 : recorder::readWholeNumber(parts[2], fault);
-    if (!fault.empty() || by < 1) failPower(fmt::format("--n {}: the step is no number from 1", recorder::shown(text)));
+    if (!fault.empty() || by < 1)
+      failPower(fmt::format("--n {}: the step is not a number from 1", recorder::shown(text)));
     const std::size_t from = number(parts[0]), to = number(parts[1]);
     for (std::size_t n = from; n <= to; n += static_cast<std::size_t>(by)) sizes.push_back(n);
   }
@@ -194,7 +195,7 @@ PlannedStudy planOf(PowerOptions& o) {
   planned.plan.adjustment = o.adjustment == "holm"   ? analytics::Adjustment::holm
                             : o.adjustment == "none" ? analytics::Adjustment::none
                                                      : analytics::Adjustment::benjaminiHochberg;
-  // Draws from people have ties, whose exact distribution is counted anew each time.
+  // Draws from people have ties, whose exact distribution is counted each time.
   planned.plan.simulations = o.simulations > 0 ? o.simulations : data ? 2000 : 10000;
   planned.plan.seed = std::stoull(o.seed);
   return planned;
@@ -325,19 +326,20 @@ void addPower(CLI::App& app, Run& run) {
       ->add_option("--checkpoint", o->checkpoints,
                    "NAME:MEAN,SD,MEAN,SD of the first and the second group; may be repeated")
       ->allow_extra_args(false);
-  addChoice(*command, "--shape", o->shape, "Of --effect and --checkpoint", {"normal", "lognormal"});
+  addChoice(*command, "--shape", o->shape, "Distribution for --effect and --checkpoint", {"normal", "lognormal"});
   command->add_option("--n", o->sizes, "People in the first group: FROM:TO:STEP, A,B,C or one number")
       ->capture_default_str();
   addNumber(*command, "--allocation", o->allocation, "People in the second group for each in the first", 0.1, 10.0);
-  addNumber(*command, "--correlation", o->correlation, "Of a participant's checkpoints with each other", 0.0, 0.99);
+  addNumber(*command, "--correlation", o->correlation, "Correlation of a participant's checkpoints with each other",
+            0.0, 0.99);
   addNumber(*command, "--step", o->step, "Round values to multiples of it (scores, counts); 0: not", 0.0, 1e6);
-  addChoice(*command, "--adjustment", o->adjustment, "Of the p values of all checkpoints",
+  addChoice(*command, "--adjustment", o->adjustment, "Adjustment of the p values of all checkpoints",
             {"holm", "benjamini-hochberg", "none"});
   addNumber(*command, "--level", o->level, "Level of significance", 0.0001, 0.5);
-  addNumber(*command, "--target", o->target, "Power that is wanted", 0.01, 0.99);
+  addNumber(*command, "--target", o->target, "Power to reach", 0.01, 0.99);
   command->add_option("--simulations", o->simulations, "Studies a size; default 10000, from people at hand 2000")
       ->check(CLI::Range(std::uint64_t{100}, std::uint64_t{1000000}));
-  command->add_option("--seed", o->seed, "Of the simulation")->check(wholeNumber)->capture_default_str();
+  command->add_option("--seed", o->seed, "Seed of the simulation")->check(wholeNumber)->capture_default_str();
   command->add_flag("--json", o->json, "Print JSON");
   // These are the protocol's.
   for (const char* name : {"--level", "--adjustment"}) command->get_option(name)->excludes("--protocol");

@@ -60,7 +60,7 @@ void lockAnalysis(const ProtocolOptions& o) {
                             protocol.name, protocol.version));
   }
   const analytics::CohortDatabase cohort(o.database, Access::read);
-  // What the study would refuse cannot be locked.
+  // An analysis that the study would refuse cannot be locked.
   static_cast<void>(analytics::makeMaskedStudy(cohort, assessment, options, false));
   analytics::AnalysisLock present = analytics::presentAnalysis(cohort, assessment, options);
   present.by = o.by;
@@ -123,18 +123,18 @@ void addProtocol(CLI::App& app, Run& run) {
   CLI::App* registered = add("register", "Store a protocol with its hash and the time of now", registerProtocol);
   registered->add_option("protocol", o->protocol, file)->required();
   addCohortOption(*registered, o->database, "Cohort database; made where there is none")->required();
-  registered->add_option("--by", o->by, "Who registers it")->required();
+  registered->add_option("--by", o->by, "Person who registers it")->required();
   CLI::App* locked = add("lock", "Fix a study's analysis, after which its groups are named", lockAnalysis);
   locked->add_option("protocol", o->protocol, file)->required();
   addCohortOption(*locked, o->database)->required();
-  locked->add_option("--by", o->by, "Who locks it")->required();
+  locked->add_option("--by", o->by, "Person who locks it")->required();
   locked->add_option("--cohort-name", o->study.cohortName, "As the study's option of this name");
   locked->add_option("--key", o->study.cohort.key, "As the study's option of this name");
   locked->add_flag("--mix-keys", o->study.cohort.mixKeys, "As the study's option of this name");
   locked->add_flag("--phases", o->study.cohort.includePhases, "As the study's option of this name");
   CLI::App* listed =
       add("list", "List the protocols that a cohort holds, or those that come with the program", listProtocols);
-  addCohortOption(*listed, o->database, "Cohort database; none: what comes with the program");
+  addCohortOption(*listed, o->database, "Cohort database (default: the protocols that come with the program)");
   listed->add_flag("--json", o->json, "Print JSON");
 }
 

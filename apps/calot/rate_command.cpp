@@ -74,7 +74,7 @@ Given readAnswers(const std::string& file) {
   const std::string name = path.filename().string();
   const nlohmann::json json =
       recorder::parseStrictJson(recorder::readFileBytes(path, name, std::size_t{1} << 20U), name);
-  if (!json.is_object()) throw Error(ErrorKind::damaged, Where{name}, "/: an object of items and scores is wanted");
+  if (!json.is_object()) throw Error(ErrorKind::damaged, Where{name}, "/: an object of items and scores is expected");
   Given given;
   for (const auto& item : json.items()) {
     if (!item.value().is_null() && !item.value().is_number_integer())
@@ -89,7 +89,7 @@ Given readAnswers(const std::vector<std::string>& items) {
   for (const std::string& item : items) {
     const std::size_t at = item.find('=');
     if (at == std::string::npos || at == 0 || at + 1 == item.size())
-      fail(fmt::format("--answer {}: ITEM=SCORE is wanted", recorder::shown(item)));
+      fail(fmt::format("--answer {}: ITEM=SCORE is expected", recorder::shown(item)));
     given.emplace_back(item.substr(0, at), item.substr(at + 1));
   }
   return given;
@@ -178,7 +178,7 @@ void takePackAnswers(const RateOptions& o) {
   std::cout << '\n';
 }
 
-/// Where the film of an attempt comes from.
+/// Source of the film of an attempt.
 struct FilmOrigin {
   std::string attempt;  ///< uuid
   std::filesystem::path file;
@@ -300,7 +300,7 @@ void checkRaters(const std::vector<std::string>& raters) {
     if (!plain || !seen.insert(rater).second) {
       throw Error(
           ErrorKind::invalid,
-          fmt::format("rate: --raters: \"{}\": different pseudonyms of letters, digits, - and _ are wanted", rater));
+          fmt::format("rate: --raters: \"{}\": different pseudonyms of letters, digits, - and _ are expected", rater));
     }
   }
 }

@@ -7,7 +7,6 @@
 #include "apps/calot/replay_report.h"
 #include "apps/calot/source_options.h"
 #include "recorder/base/text_output.h"
-#include "recorder/branch.h"
 #include "recorder/formats/scene_file.h"
 #include "recorder/live/worker_pool.h"
 #include "recorder/live/wrapped_sources.h"
@@ -109,7 +108,7 @@ struct RecordOptions {
 };
 
 void record(const RecordOptions& o) {
-  if (!std::isfinite(o.seconds)) throw Error(ErrorKind::invalid, "--seconds: a number is wanted");
+  if (!std::isfinite(o.seconds)) throw Error(ErrorKind::invalid, "--seconds: a number is expected");
   stopOnSignals();
   recorder::refuseOutput(o.output, o.force);
   std::optional<recorder::StationKey> key = stationKeyOf(o.stationKey);
@@ -181,7 +180,7 @@ class LastPose final : public recorder::Observer {
 };
 
 void branch(const BranchOptions& o) {
-  if (!std::isfinite(o.seconds)) throw Error(ErrorKind::invalid, "--seconds: a number is wanted");
+  if (!std::isfinite(o.seconds)) throw Error(ErrorKind::invalid, "--seconds: a number is expected");
   stopOnSignals();
   const double at = parseTime(o.at);
   std::optional<recorder::StationKey> key = stationKeyOf(o.stationKey);

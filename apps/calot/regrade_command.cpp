@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// calot regrade: the derived values of a cohort, computed anew.
+// calot regrade: recomputes the derived values of a cohort.
 
 #include <map>
 
@@ -36,7 +36,7 @@ ExitCode regrade(const RegradeOptions& o) {
 
 void addRegrade(CLI::App& app, Run& run) {
   const auto [command, o] =
-      addCommand(app, run, "regrade", "Compute the derived values of a cohort anew, and show what changed", regrade);
+      addCommand(app, run, "regrade", "Recompute the derived values of a cohort, and show what changed", regrade);
   addCohortOption(*command, o->cohort)->required();
   command->add_option("recordings", o->places, "Recordings, or folders that hold them; default: the database's folder");
   addThreads(*command, o->jobs, "Recordings at a time; 0: one for each processor", "--jobs");

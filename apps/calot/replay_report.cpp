@@ -152,13 +152,13 @@ void addStoring(CLI::App& command, std::string& cohort, double& cutoff) {
       ->check([](const std::string& text) {
         const bool known = std::any_of(std::begin(analytics::motionCutoffs), std::end(analytics::motionCutoffs),
                                        [&](double hertz) { return text == std::to_string(static_cast<int>(hertz)); });
-        return known ? std::string() : std::string("3, 6 or 10 is wanted");
+        return known ? std::string() : std::string("3, 6 or 10 is expected");
       });
 }
 
 void checkStored(const std::string& cohort, double cutoff) {
   if (cohort.empty() && cutoff == 0.0)
-    throw Error(ErrorKind::invalid, "--cohort: a database for the values is wanted (or --cutoff, to see them only)");
+    throw Error(ErrorKind::invalid, "--cohort: a database for the values is expected (or --cutoff, to see them only)");
   if (!cohort.empty() && cutoff != 0.0) {
     throw Error(ErrorKind::invalid,
                 "--cutoff: values of a cohort have one filter, 6 Hz; leave out --cohort to see those of another");

@@ -14,7 +14,6 @@
 #include "recorder/sources/kinematics_source.h"
 #include "recorder/sources/performer.h"
 #include "recorder/sources/performer_profile.h"
-#include "recorder/sources/scope/scope_assistant.h"
 #include "recorder/sources/scope/scope_source.h"
 #ifdef CALOT_BULLET
 #include "sim/bullet/bullet_tree.h"
@@ -32,7 +31,7 @@ void addTools(CLI::App& command, DeviceOptions& options) {
 }
 
 std::array<std::string, handCount> toolsOf(const DeviceOptions& options) {
-  if (options.tools.size() != handCount) throw Error(ErrorKind::invalid, "--tools: two names are wanted: LEFT,RIGHT");
+  if (options.tools.size() != handCount) throw Error(ErrorKind::invalid, "--tools: two names are expected: LEFT,RIGHT");
   std::array<std::string, handCount> out;
   for (std::size_t h = 0; h < handCount; ++h) out[h] = options.tools[h] == "-" ? "" : options.tools[h];
   return out;
@@ -119,7 +118,7 @@ void refuseScope(const ScopeOptions& options) {
   if (!options.moves())
     throw Error(ErrorKind::invalid, "--scope-device: the endoscope is fixed; --scope 0 or --scope 30 lets it move");
   if (recorder::isCombination(options.device))
-    throw Error(ErrorKind::invalid, "--scope-device: one device is wanted, without left= and right=");
+    throw Error(ErrorKind::invalid, "--scope-device: one device is expected, without left= and right=");
 }
 
 std::unique_ptr<recorder::SampleSource> withScope(std::unique_ptr<recorder::SampleSource> source,

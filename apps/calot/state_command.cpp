@@ -38,7 +38,7 @@ void state(const StateOptions& o) {
     if (!o.anyway) throw Error(ErrorKind::undecided, Where{o.recording}, what, {Remedy::replayAnyway});
     std::cerr << "calot: warning: " << o.recording << ": " << what << '\n';
   }
-  // What a State's bytes mean this build knows of its own version alone.
+  // This build can read the State of its own version only.
   const recorder::EngineChoice choice(recording, {.anyway = true});
   recorder::Seeker seeker(recording, choice);
   seeker.seek(o.step);
@@ -46,7 +46,7 @@ void state(const StateOptions& o) {
   State state;
   const recorder::Keyframe keyframe = seeker.keyframe();
   if (!restoreState(scene->model(), keyframe.state, state))
-    throw Error(ErrorKind::damaged, fmt::format("{}: the State of step {} is none", o.recording, o.step));
+    throw Error(ErrorKind::damaged, fmt::format("{}: the State of step {} cannot be restored", o.recording, o.step));
   if (!o.flat) {
     recorder::writeStateFile(o.output, o.step, simulationVersion, recorder::stateFields(scene->model(), state),
                              o.force);

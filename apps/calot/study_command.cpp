@@ -31,7 +31,8 @@ void addCohortOptions(CLI::App& command, StudySource& options, CLI::Option& tabl
   command.add_option("--cohort-name", options.cohortName,
                      "Only attempts of the participants of this cohort (calot cohort name)");
   addChoice(command, "--group-by", options.groupBy,
-            "What makes the groups: the participants' group or the performers' profile", {"performer", "group"});
+            "Property that makes the groups: the participants' group or the performers' profile",
+            {"performer", "group"});
   command.add_flag("--include-synthetic", options.cohort.includeSynthetic,
                    "Take in what performers made (watermarked)");
   command.add_flag("--include-practice", options.cohort.includePractice, "Take in attempts in practice mode");
@@ -182,7 +183,7 @@ Design chosenDesign(const DesignOptions& o, const StudySource& source) {
 void addDesignOptions(CLI::App& command, DesignOptions& o) {
   std::vector<std::string> names;
   for (const analytics::DesignEntry& e : analytics::designs()) names.emplace_back(e.name);
-  command.add_option("--design", o.design, "What is asked of the data; see below (default: two-groups)")
+  command.add_option("--design", o.design, "Question to the data; see below (default: two-groups)")
       ->check(oneOf(names));
   command.add_option("--strata", o.choices.strata,
                      "Strata of the designs strata and repeated: of a cohort site or arm, of a table a column");
@@ -194,7 +195,7 @@ void addDesignOptions(CLI::App& command, DesignOptions& o) {
                      "the criterion");
   addNumber(command, "--in-a-row", o.choices.run, "Attempts in a row that must meet the criterion (learning)", 1, 1000);
   command.add_option("--finished-column", o.choices.finishedColumn,
-                     "Of a table: whether the attempt was finished, 1 or 0 (time-to-criterion)");
+                     "Column of a table: 1 if the attempt was finished, else 0 (time-to-criterion)");
   command
       .add_option("--error-ratio", o.choices.errorRatio,
                   "Error variance of the second method over that of the first (agreement)")
@@ -218,19 +219,20 @@ Design designOf(const DesignOptions& o, const StudySource& source) {
       {"--error-ratio", o.choices.errorRatio != 1.0, {Design::agreement}}};
   for (const DesignOption& option : own) {
     if (option.given && std::find(option.designs.begin(), option.designs.end(), design) == option.designs.end())
-      failDesign(fmt::format("{} is of --design {}, not of {}", option.name,
+      failDesign(fmt::format("{} belongs to --design {}, not to {}", option.name,
                              analytics::entryOf(option.designs.front()).name, name));
   }
   if (design == Design::twoGroups) return design;
-  if (!source.protocol.empty()) failDesign(fmt::format("a protocol is of two groups, not of --design {}", name));
+  if (!source.protocol.empty()) failDesign(fmt::format("a protocol has two groups; it does not fit --design {}", name));
   if (!source.elsewhere.baselineOccasion.empty())
-    failDesign(fmt::format("--baseline-occasion is of --design two-groups, not of {}", name));
+    failDesign(fmt::format("--baseline-occasion belongs to --design two-groups, not to {}", name));
   if (design == Design::strata && o.choices.strata.empty()) failDesign("--design strata needs --strata");
   if (design == Design::correlation && o.choices.against.empty()) failDesign("--design correlation needs --against");
   if (design == Design::timeToCriterion && !source.table.empty() && o.choices.finishedColumn.empty())
     failDesign("--design time-to-criterion of a table needs --finished-column");
   if (!o.choices.criterion && o.choices.run != 1) failDesign("--in-a-row needs --criterion");
-  if (o.choices.criterion && !std::isfinite(*o.choices.criterion)) failDesign("--criterion: a finite number is wanted");
+  if (o.choices.criterion && !std::isfinite(*o.choices.criterion))
+    failDesign("--criterion: a finite number is expected");
   if (source.table.empty() && !o.choices.strata.empty() && o.choices.strata != "site" && o.choices.strata != "arm")
     failDesign("--strata of a cohort: site or arm");
   if (!source.table.empty() && source.elsewhere.occasionColumns.empty() && design == Design::agreement &&
@@ -272,7 +274,7 @@ void noteExports(const StudyCommandOptions& options, const std::vector<std::stri
       if (!file.empty()) analytics::recordExport(options.source.database, kind, file, attempts);
     }
   } catch (const Error& e) {
-    std::cerr << "calot: warning: what was written is not noted for withdrawals: " << messageOf(e) << '\n';
+    std::cerr << "calot: warning: the export could not be registered for later withdrawal: " << messageOf(e) << '\n';
   }
 }
 
@@ -321,8 +323,8 @@ void runTwoGroups(StudyCommandOptions& options) {
 
 void runDesign(StudyCommandOptions& options) {
   if (!options.csv.empty())
-    throw Error(ErrorKind::invalid, "study: --csv is of --design two-groups; the others have --json");
-  if (options.source.masked) throw Error(ErrorKind::invalid, "study: --masked is of --design two-groups");
+    throw Error(ErrorKind::invalid, "study: --csv belongs to --design two-groups; the others have --json");
+  if (options.source.masked) throw Error(ErrorKind::invalid, "study: --masked belongs to --design two-groups");
   const analytics::DesignReport report = designReportOf(options.design, options.source);
   writeReport(analytics::designDocument(report), options.html, options.pdf, options.force);
   if (isExported(options)) noteExports(options, report.attempts);

@@ -91,7 +91,7 @@ ExitCode verify(const VerifyOptions& o) {
   for (const std::filesystem::path& folder : settings.folders) {
     std::error_code ignored;
     if (!std::filesystem::is_directory(folder, ignored))
-      throw Error(ErrorKind::damaged, Where{folder.string()}, "is no folder that can be watched");
+      throw Error(ErrorKind::damaged, Where{folder.string()}, "is not a folder that can be watched");
   }
   analytics::FolderWatch watch(settings.folders);
   analytics::Intake intake(settings);
@@ -105,7 +105,7 @@ ExitCode verify(const VerifyOptions& o) {
         stopRequested());
     if (stopRequested()) return worstOf(codes);
     if (o.once && rest.settling == 0) return endOnce(rest, codes);
-    // What settles is looked at again soon, what grows and what failed at the next look of its own accord.
+    // Files that settle are looked at again soon, growing and failed ones at the next scan.
     const milliseconds next = rest.settling > 0 ? std::max(settings.quiet, milliseconds(50)) : fromSeconds(o.rescan);
     const Clock::time_point until = Clock::now() + next;
     for (bool changed = false; !changed && !stopRequested() && Clock::now() < until;) {

@@ -3,8 +3,6 @@
 
 #include <fmt/format.h>
 #include <algorithm>
-#include <cmath>
-#include <utility>
 
 #include "gui/words/event_words.h"
 #include "recorder/base/errors.h"

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "gui/attempt/long_work.h"
 
 #include <cmath>

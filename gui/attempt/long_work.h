@@ -111,7 +111,7 @@ class LongWork : public QObject {
   explicit LongWork(QObject* parent = nullptr) : QObject(parent) {}
   /// Breaks off what is being done, without waiting for it.
   ~LongWork() override;
-  /// Breaks off what is being done and begins anew.
+  /// Cancels the present work and begins again.
   void start(Work work);
   void cancel();
   [[nodiscard]] bool busy() const { return control_ != nullptr; }

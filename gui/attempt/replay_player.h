@@ -2,7 +2,6 @@
 // Decides what a replay shows next, apart from the thread that carries it out.
 #pragma once
 
-#include <chrono>
 #include <condition_variable>
 #include <cstdint>
 #include <filesystem>
@@ -35,7 +34,7 @@ inline constexpr double slowestReplay = 0.1, fastestReplay = 16.0;  ///< times r
 /// A request to a replay: what it names changes.
 struct ReplayWish {
   std::optional<double> time = {};   ///< to go there (s since the attempt's start); clamped
-  int steps = 0;                     ///< then by so many, clamped; playing stops
+  int steps = 0;                     ///< then by this number, clamped; playing stops
   std::optional<bool> playing = {};  ///< true, at the end: from the start again
   std::optional<double> speed = {};  ///< clamped to slowestReplay and fastestReplay
 };
@@ -85,7 +84,7 @@ class ReplayPlayer {
   std::thread thread_;  // last: it uses what is above
 };
 
-/// Where a replay stands and what it can do.
+/// State of a replay and its possible controls.
 struct ReplayReach {
   std::optional<std::uint64_t> step;         ///< the last step done; none before the first
   std::span<const std::uint64_t> keyframes;  ///< steps after which there is a keyframe, rising

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "gui/attempt/replay_transport.h"
 
-#include <algorithm>
 #include <array>
 #include <QBoxLayout>
 #include <QComboBox>

@@ -58,7 +58,7 @@ class Replay : public QObject {
   double speed_ = 1.0;
   PlayerPosition position_;
   std::mutex mutex_;
-  std::optional<PlayerPosition> newest_;  ///< told and not yet taken
+  std::optional<PlayerPosition> newest_;  ///< reported and not yet taken
   Back back_;                             ///< of the present player
   std::unique_ptr<ReplayPlayer> player_;
 };

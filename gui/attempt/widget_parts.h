@@ -26,6 +26,13 @@ inline QLabel* plainLabel(const char* name, bool wrap = true) {
   return label;
 }
 
+/// The same, whose words can be selected and copied.
+inline QLabel* selectableLabel(const char* name) {
+  auto* const label = plainLabel(name);
+  label->setTextInteractionFlags(Qt::TextSelectableByMouse | Qt::TextSelectableByKeyboard);
+  return label;
+}
+
 inline void embolden(QWidget* widget) {
   QFont bold = widget->font();
   bold.setBold(true);
@@ -54,7 +61,7 @@ inline QPushButton* button(const char* text, const char* name) {
   return made;
 }
 
-/// A choice as wide as so many letters, however long its entries are.
+/// A choice as wide as this number of letters, however long its entries are.
 inline QComboBox* choice(const char* name, int letters) {
   auto* const made = named(name, new QComboBox);
   made->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);

@@ -273,7 +273,7 @@ void AttemptPage::clear() {
   attempt_.reset();
   recording_->close("No attempt is chosen.", "No attempt is chosen.");
   banner_->showText("Choose an attempt on the page Attempts: double-click it, or press Enter.");
-  summary_->clear();
+  summary_->hide();
   figures_->clear();
   find_->hide();
   force_->clear();

@@ -4,7 +4,6 @@
 #include <optional>
 
 #include "gui/attempt/long_work.h"
-#include "gui/dashboard/cohort_document.h"
 #include "gui/dashboard/page_parts.h"
 #include "gui/dashboard/recording_view.h"
 

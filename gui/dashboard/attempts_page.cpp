@@ -198,6 +198,7 @@ int AttemptsPage::rowOf(const QString& uuid) const {
 }
 
 void AttemptsPage::select(const QString& uuid) {
+  if (selected() != nullptr && selected()->uuid == uuid.toStdString()) return;
   if (rowOf(uuid) < 0) {
     search_->clear();
     verdict_->setCurrentIndex(0);
@@ -230,7 +231,7 @@ void AttemptsPage::filter() {
   if (tag_->currentIndex() > 0) wanted.tag = tag_->currentText().toStdString();
   filter_.set(wanted);
   showCount();
-  // What was current may be hidden now: then it is the first of what is left.
+  // If the current attempt is hidden now, the first of the remaining ones becomes current.
   if (table_->currentIndex().isValid()) return;
   if (filter_.rowCount() > 0)
     table_->selectRow(0);

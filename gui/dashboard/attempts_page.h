@@ -6,7 +6,6 @@
 #include <QSortFilterProxyModel>
 
 #include "gui/dashboard/checkpoint_table_model.h"
-#include "gui/dashboard/cohort_document.h"
 #include "gui/dashboard/page_parts.h"
 
 namespace calot::gui {
@@ -53,7 +52,8 @@ class AttemptFilter : public QSortFilterProxyModel {
   };
 
   explicit AttemptFilter(QObject* parent = nullptr);
-  /// Lays the whole table out anew: rows that go one by one, as invalidateFilter() has them, take seconds of thousands.
+  /// Lays the whole table out again: rows that go one by one, as invalidateFilter() has them, take seconds of
+  /// thousands.
   void set(const Criteria& wanted);
 
  protected:

@@ -109,7 +109,13 @@ class FamilyTreeModel : public QStandardItemModel {
   [[nodiscard]] int leftOut() const { return leftOut_; }  ///< checkpoints that the scene has nothing for
 
   [[nodiscard]] QVariant data(const QModelIndex& index, int role) const override;
+  void multiData(const QModelIndex& index, QModelRoleDataSpan roles) const override {
+    QAbstractItemModel::multiData(index, roles);  // by data(): items hold no cells
+  }
   [[nodiscard]] QVariant headerData(int section, Qt::Orientation orientation, int role) const override;
+  [[nodiscard]] Qt::ItemFlags flags(const QModelIndex&) const override {
+    return Qt::ItemIsEnabled | Qt::ItemIsSelectable;
+  }
   /// Families keep their order. Values go by size within one figure's kind, missing ones last. @param column -1: as in
   /// the source
   void sort(int column, Qt::SortOrder order) override;

@@ -14,13 +14,23 @@
 #include "gui/words/problem_words.h"
 
 namespace calot::gui {
-namespace {
 
-QString tagsText(const std::vector<std::string>& tags) {
-  QStringList words;
-  for (const std::string& tag : tags) words += QString::fromStdString(tag);
-  return words.join(", ");
+QStringList textsOf(const std::vector<std::string>& texts) {
+  QStringList made;
+  for (const std::string& text : texts) made += QString::fromStdString(text);
+  return made;
 }
+
+QString faultOf(const std::function<void()>& call) {
+  try {
+    call();
+    return {};
+  } catch (const std::exception& error) {
+    return QString::fromStdString(problemText(error));
+  }
+}
+
+namespace {
 
 struct ColumnText {
   const char* title;
@@ -39,7 +49,7 @@ constexpr std::array<ColumnText, AttemptLines::columnTotal> columns{{
     {"Start", [](const Row& a) { return startText(a.startUtc); }},
     {"Verification", [](const Row& a) { return badgeText(a.verification.verdict); }},
     {"Synthetic", [](const Row& a) { return QString(a.synthetic ? "synthetic" : ""); }},
-    {"Tags", [](const Row& a) { return tagsText(a.tags); }},
+    {"Tags", [](const Row& a) { return textsOf(a.tags).join(", "); }},
 }};
 
 }  // namespace
@@ -58,7 +68,7 @@ AttemptLines::AttemptLines(std::vector<analytics::AttemptRow> attempts) : attemp
     line.search = text.toLower();
     tags.insert(attempt.tags.begin(), attempt.tags.end());
   }
-  for (const std::string& tag : tags) tags_ += QString::fromStdString(tag);
+  tags_ = textsOf({tags.begin(), tags.end()});
   std::vector<int> order(attempts_.size());
   for (int column = 0; column < columnTotal; ++column) {
     // A start is stored to the second and shown to the minute.
@@ -134,24 +144,16 @@ CohortWriter::~CohortWriter() {
 
 void CohortWriter::write(const std::string& database, Change change, std::function<void()> undone) {
   thread_.start([back = back_, database, change = std::move(change), undone = std::move(undone)] {
-    QString fault;
-    try {
+    const QString fault = faultOf([&] {
       analytics::CohortDatabase cohort(database, analytics::CohortDatabase::Access::write);
       change(cohort);
-    } catch (const std::exception& error) {
-      fault = QString::fromStdString(problemText(error));
-      undone();
-    }
-    back->pass([&](CohortWriter& writer) {
-      QMetaObject::invokeMethod(
-          &writer,
-          [&writer, fault] {
-            if (fault.isEmpty())
-              emit writer.written();
-            else
-              emit writer.failed(fault);
-          },
-          Qt::QueuedConnection);
+    });
+    if (!fault.isEmpty()) undone();
+    Link<CohortWriter>::post(back, [fault](CohortWriter& writer) {
+      if (fault.isEmpty())
+        emit writer.written();
+      else
+        emit writer.failed(fault);
     });
   });
 }

@@ -20,6 +20,10 @@
 
 namespace calot::gui {
 
+[[nodiscard]] QStringList textsOf(const std::vector<std::string>& texts);
+/// Calls. @return one line for the user where it threw, or empty
+[[nodiscard]] QString faultOf(const std::function<void()>& call);
+
 /// The attempts of a cohort with what a table shows of them. Made where the cohort is read: to put ten thousand rows
 /// into words and in order takes longer than an interface may be kept waiting. Never changes.
 class AttemptLines {

@@ -65,7 +65,7 @@ Comparison compare(const std::vector<AttemptRow>& attempts, const std::vector<At
   std::uint32_t newest = 0;
   for (const auto& entry : found) newest = std::max(newest, entry.second->version);
   std::map<std::string, ComparisonGroup> groups;
-  // What a value is shown in depends on its definition and unit alone, which are looked up where the unit changes.
+  // The display unit depends on definition and unit alone, which are looked up when the unit changes.
   const std::string* unit = nullptr;
   double factor = 1.0;
   for (const AttemptRow& attempt : attempts) {

@@ -64,7 +64,7 @@ struct Comparison {
 [[nodiscard]] std::optional<analytics::Drawing> drawComparison(const Comparison& comparison, const std::string& title,
                                                                const analytics::PlotFrame& frame);
 
-/// Who made attempts: participants by pseudonym; behind them performers' profiles, whose runs are no one's learning.
+/// People with attempts: participants by pseudonym; behind them performers' profiles, whose runs are no one's learning.
 struct Trainee {
   std::string name;
   bool synthetic = false;

@@ -2,7 +2,6 @@
 #include "gui/dashboard/dashboard_window.h"
 
 #include <algorithm>
-#include <exception>
 #include <QDockWidget>
 #include <QDragEnterEvent>
 #include <QDropEvent>
@@ -29,7 +28,6 @@
 #include "gui/dashboard/ratings_page.h"
 #include "gui/dashboard/settings.h"
 #include "gui/dashboard/study_page.h"
-#include "gui/words/problem_words.h"
 #include "recorder/base/errors.h"
 
 namespace calot::gui {
@@ -37,23 +35,6 @@ namespace {
 
 constexpr int noticeFor = 8000;     // ms
 constexpr int refreshEvery = 3000;  // ms, while an import runs
-
-struct Opened {
-  std::shared_ptr<const CohortDocument> document;
-  bool upgraded = false;  ///< it was of an older schema
-};
-
-/// Any thread. @throws Error as CohortDocument
-Opened openOrUpgrade(const std::string& path) {
-  try {
-    return {std::make_shared<const CohortDocument>(path)};
-  } catch (const Error& error) {
-    const std::vector<Remedy>& remedies = error.remedies();
-    if (std::find(remedies.begin(), remedies.end(), Remedy::upgradeCohort) == remedies.end()) throw;
-  }
-  const analytics::CohortDatabase upgraded(path, analytics::CohortDatabase::Access::write);
-  return {std::make_shared<const CohortDocument>(path), true};
-}
 
 QStringList localFiles(const QMimeData& data) {
   QStringList files;
@@ -64,6 +45,27 @@ QStringList localFiles(const QMimeData& data) {
 }
 
 }  // namespace
+
+struct DashboardWindow::Opened {
+  std::shared_ptr<const CohortDocument> document;
+  bool upgraded = false;  ///< it was of an older schema
+  QString fault;          ///< why there is no document
+};
+
+DashboardWindow::Opened DashboardWindow::openOrUpgrade(const std::string& path) {
+  Opened opened;
+  opened.fault = faultOf([&] {
+    try {
+      opened.document = std::make_shared<const CohortDocument>(path);
+    } catch (const Error& error) {
+      const std::vector<Remedy>& remedies = error.remedies();
+      if (std::find(remedies.begin(), remedies.end(), Remedy::upgradeCohort) == remedies.end()) throw;
+      const analytics::CohortDatabase upgraded(path, analytics::CohortDatabase::Access::write);
+      opened = {std::make_shared<const CohortDocument>(path), true, {}};
+    }
+  });
+  return opened;
+}
 
 DashboardWindow::DashboardWindow(const AssessProgram& program, const std::vector<std::filesystem::path>& assetFolders,
                                  QWidget* parent)
@@ -105,7 +107,7 @@ DashboardWindow::DashboardWindow(const AssessProgram& program, const std::vector
   layout->addWidget(problem_);
   layout->addWidget(stack_, 1);
   setCentralWidget(centre);
-  rating_->setForms(readForms(assetFolders));
+  rating_->readForms(assetFolders);
   buildImport();
   buildMenus();
   connectPages();
@@ -237,61 +239,52 @@ void DashboardWindow::setDocument(std::shared_ptr<const CohortDocument> document
   emit documentShown();
 }
 
-void DashboardWindow::takeOpened(const std::shared_ptr<const CohortDocument>& document, bool upgraded) {
+bool DashboardWindow::takeOpened(const Opened& opened) {
+  if (!opened.document) {
+    showProblem(opened.fault);
+    return false;
+  }
   loader_.forget();  // the former one, read again
-  setDocument(document);
-  if (upgraded)
+  setDocument(opened.document);
+  if (opened.upgraded)
     showProblem("This cohort was of an older Calot and has been brought up to date. A copy as it was is beside it.");
+  return true;
 }
 
 bool DashboardWindow::openDatabase(const QString& path) {
   opener_.forget();
-  try {
-    const Opened opened = openOrUpgrade(path.toStdString());
-    takeOpened(opened.document, opened.upgraded);
-    return true;
-  } catch (const Error& error) {
-    showProblem(QString::fromStdString(problemText(error)));
-    return false;
-  }
+  return takeOpened(openOrUpgrade(path.toStdString()));
 }
 
 void DashboardWindow::openLater(const QString& path) {
   statusBar()->showMessage("Opening " + QFileInfo(path).fileName() + " …");
-  opener_.run([this, path = path.toStdString()]() -> Background::Completion {
-    try {
-      return [this, opened = openOrUpgrade(path)] {
-        statusBar()->clearMessage();
-        takeOpened(opened.document, opened.upgraded);
-      };
-    } catch (const std::exception& error) {
-      return [this, text = QString::fromStdString(problemText(error))] {
-        statusBar()->clearMessage();
-        showProblem(text);
-      };
-    }
+  opener_.run([this, path = path.toStdString()] {
+    return [this, opened = openOrUpgrade(path)] {
+      statusBar()->clearMessage();
+      takeOpened(opened);
+    };
   });
 }
 
 bool DashboardWindow::createDatabase(const QString& path) {
-  try {
-    const analytics::CohortDatabase made(path.toStdString(), analytics::CohortDatabase::Access::create);
-  } catch (const Error& error) {
-    showProblem(QString::fromStdString(problemText(error)));
-    return false;
-  }
-  return openDatabase(path);
+  const QString fault = faultOf(
+      [&] { const analytics::CohortDatabase made(path.toStdString(), analytics::CohortDatabase::Access::create); });
+  if (fault.isEmpty()) return openDatabase(path);
+  showProblem(fault);
+  return false;
 }
 
 void DashboardWindow::reload() {
   if (!document_) return;
-  loader_.run([this, path = document_->path()]() -> Background::Completion {
-    try {
-      auto document = std::make_shared<const CohortDocument>(path);
-      return [this, document] { setDocument(document); };
-    } catch (const std::exception& error) {
-      return [this, text = QString::fromStdString(problemText(error))] { showProblem(text); };
-    }
+  loader_.run([this, path = document_->path()] {
+    std::shared_ptr<const CohortDocument> document;
+    const QString fault = faultOf([&] { document = std::make_shared<const CohortDocument>(path); });
+    return [this, document, fault] {
+      if (document)
+        setDocument(document);
+      else
+        showProblem(fault);
+    };
   });
 }
 
@@ -303,7 +296,7 @@ void DashboardWindow::importRecordings(const QStringList& paths) {
   }
   if (!imports_.busy())
     imports_.configure(settings::calotProgram(), QString::fromStdString(document_->path()), settings::importThreads());
-  // Where recordings come from is where their replays are looked for.
+  // Replays are looked for in the folders of the imported recordings.
   for (const QString& file : files) settings::rememberRecordingFolder(QFileInfo(file).absolutePath());
   importDock_->show();
   imports_.add(files);

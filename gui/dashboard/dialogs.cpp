@@ -128,7 +128,7 @@ QFormLayout* NormDialog::buildForm() {
   }
   fields_.offer(document_->attempts());
   connect(fields_.by, &QComboBox::currentIndexChanged, this, [this] { fields_.offerGroups(document_->attempts()); });
-  rule_->addItems({"all figures that count are passed", "at least so many of them are passed"});
+  rule_->addItems({"all figures that count are passed", "at least this many of them are passed"});
   least_->setRange(1, 1000);
   least_->setEnabled(false);
   connect(rule_, &QComboBox::currentIndexChanged, least_, [this](int index) { least_->setEnabled(index == 1); });

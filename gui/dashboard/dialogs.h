@@ -4,7 +4,6 @@
 #include <QDialog>
 
 #include "gui/attempt/long_work.h"
-#include "gui/dashboard/cohort_document.h"
 #include "gui/dashboard/page_parts.h"
 
 class QFormLayout;

@@ -9,8 +9,6 @@
 #include "gui/attempt/figure_standing.h"
 #include "gui/attempt/figure_text.h"
 #include "gui/dashboard/page_parts.h"
-#include "gui/words/problem_words.h"
-#include "recorder/base/errors.h"
 
 namespace calot::gui {
 namespace {
@@ -124,13 +122,11 @@ void FigurePanel::setAttempt(std::shared_ptr<const CohortDocument> document, con
   clear();
   document_ = std::move(document);
   attempt_ = attempt;
-  try {
-    values_ = document_->values(attempt.uuid);
+  const QString fault = faultOf([&] {
     intervals_ = document_->intervals(attempt.uuid);
-  } catch (const Error& error) {
-    values_.clear();
-    emit problem(QString::fromStdString(problemText(error)));
-  }
+    values_ = document_->values(attempt.uuid);
+  });
+  if (!fault.isEmpty()) emit problem(fault);
   figures_.setValues(values_, intervals_);
   figureTable_->expandAll();
   figureTable_->setColumnHidden(CheckpointTableModel::intervalColumn, intervals_.empty());

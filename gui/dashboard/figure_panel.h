@@ -74,7 +74,7 @@ class FigurePanel : public QWidget {
   void summaryChanged();
   /// The attempt is to be written: on one page, or against the norm that is chosen.
   void sheetRequested(bool onePage);
-  /// Where a figure arose: beginnings and ends (s).
+  /// Intervals in which a figure arose: beginnings and ends (s).
   void windowsChosen(const std::vector<std::pair<double, double>>& windows);
 
  private:

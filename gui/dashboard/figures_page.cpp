@@ -2,13 +2,11 @@
 #include "gui/dashboard/figures_page.h"
 
 #include <algorithm>
-#include <exception>
 
 #include "analytics/assessment/grade.h"
 #include "gui/attempt/figure_standing.h"
 #include "gui/attempt/figure_text.h"
 #include "gui/dashboard/plot_view.h"
-#include "gui/words/problem_words.h"
 
 namespace calot::gui {
 
@@ -28,12 +26,7 @@ void FiguresPage::read() {
   caption_->setText("Reading the values …");
   background_.run([this, document = document_]() -> Background::Completion {
     std::shared_ptr<const FigureValues> values;
-    QString fault;
-    try {
-      values = document->figureValues();
-    } catch (const std::exception& error) {
-      fault = QString::fromStdString(problemText(error));
-    }
+    const QString fault = faultOf([&] { values = document->figureValues(); });
     return [this, values, fault] {
       if (!fault.isEmpty()) emit problem(fault);
       values_ = values;

@@ -158,12 +158,9 @@ void ImportQueue::finishCurrent(ImportResult result) {
   emit fileDone(result);
   emit progressed();
   // Not from within the process's own signal.
-  QMetaObject::invokeMethod(
-      this,
-      [this] {
-        if (current_.isEmpty()) startNext();
-      },
-      Qt::QueuedConnection);
+  QTimer::singleShot(0, this, [this] {
+    if (current_.isEmpty()) startNext();
+  });
 }
 
 ImportPanel::ImportPanel(ImportQueue& queue, QWidget* parent)
@@ -224,32 +221,32 @@ void ImportPanel::addResult(const ImportResult& result) {
 GreetingPage::GreetingPage(AssessProgram program, QWidget* parent)
     : QWidget(parent),
       program_(std::move(program)),
-      title_(new QLabel),
-      text_(parts::plainLabel("greeting")),
-      import_(nullptr) {
-  auto* layout = new QVBoxLayout(this);
-  layout->addStretch(1);
+      title_(parts::plainLabel("greeting-title", false)),
+      text_(parts::plainLabel("greeting")) {
   QFont large = font();
   large.setPointSizeF(1.8 * large.pointSizeF());
   title_->setFont(large);
   title_->setAlignment(Qt::AlignHCenter);
-  title_->setTextFormat(Qt::PlainText);
   text_->setAlignment(Qt::AlignHCenter);
   text_->setTextInteractionFlags(Qt::TextSelectableByMouse | Qt::TextSelectableByKeyboard);
-  auto* open = parts::named("open", new QPushButton("&Open a cohort database …"));
-  connect(open, &QPushButton::clicked, this, &GreetingPage::openRequested);
+  auto* buttons = new QHBoxLayout;
+  buttons->addStretch(1);
+  const auto add = [&](const char* name, const char* text, auto wish) {
+    auto* button = parts::named(name, new QPushButton(text));
+    connect(button, &QPushButton::clicked, this, wish);
+    buttons->addWidget(button);
+    return button;
+  };
+  import_ = add("import-recordings", "&Import recordings …", &GreetingPage::importRequested);
+  add("open", "&Open a cohort database …", &GreetingPage::openRequested);
+  add("new", "&Make a new one …", &GreetingPage::newRequested);
+  buttons->addStretch(1);
+  auto* layout = new QVBoxLayout(this);
+  layout->addStretch(1);
   layout->addWidget(title_);
   layout->addSpacing(12);
   layout->addWidget(text_);
   layout->addSpacing(18);
-  auto* fresh = parts::named("new", new QPushButton("&Make a new one …"));
-  connect(fresh, &QPushButton::clicked, this, &GreetingPage::newRequested);
-  import_ = parts::named("import-recordings", new QPushButton("&Import recordings …"));
-  connect(import_, &QPushButton::clicked, this, &GreetingPage::importRequested);
-  auto* buttons = new QHBoxLayout;
-  buttons->addStretch(1);
-  for (QPushButton* button : {import_, open, fresh}) buttons->addWidget(button);
-  buttons->addStretch(1);
   layout->addLayout(buttons);
   layout->addStretch(2);
   explainNoDatabase();

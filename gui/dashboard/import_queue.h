@@ -110,13 +110,6 @@ class ImportPanel : public QWidget {
   QElapsedTimer clock_;  ///< since the queue last began
 };
 
-}  // namespace calot::gui
-
-class QLabel;
-class QPushButton;
-
-namespace calot::gui {
-
 /// Page shown without a database, or with an empty one. Greets and says what to do.
 class GreetingPage : public QWidget {
   Q_OBJECT

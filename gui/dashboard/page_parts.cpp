@@ -10,8 +10,6 @@
 
 #include "gui/attempt/figure_text.h"
 #include "gui/dashboard/study_view.h"
-#include "gui/words/problem_words.h"
-#include "recorder/base/errors.h"
 
 namespace calot::gui {
 namespace {
@@ -89,12 +87,6 @@ QSplitter* makeSplitter(Qt::Orientation orientation, const std::vector<std::pair
   return splitter;
 }
 
-QStringList textsOf(const std::vector<std::string>& texts) {
-  QStringList made;
-  for (const std::string& text : texts) made += QString::fromStdString(text);
-  return made;
-}
-
 void refill(QComboBox& choice, const QStringList& entries) {
   const QSignalBlocker quiet(choice);
   const QString before = choice.currentText();
@@ -163,13 +155,9 @@ void CohortPage::outdate() {
 }
 
 bool CohortPage::tryTo(const std::function<void()>& call) {
-  try {
-    call();
-    return true;
-  } catch (const Error& error) {
-    emit problem(QString::fromStdString(problemText(error)));
-    return false;
-  }
+  const QString fault = faultOf(call);
+  if (!fault.isEmpty()) emit problem(fault);
+  return fault.isEmpty();
 }
 
 AttemptBanner::AttemptBanner(QWidget* parent) : QWidget(parent) {

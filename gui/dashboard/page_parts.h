@@ -17,14 +17,12 @@
 #include <utility>
 #include <vector>
 
-#include "analytics/cohort/cohort_database.h"
 #include "analytics/report/study.h"
 #include "gui/attempt/theme.h"
 #include "gui/attempt/widget_parts.h"
+#include "gui/dashboard/cohort_document.h"
 
 namespace calot::gui {
-
-class CohortDocument;
 
 /// A table to look at: whole rows are selected, nothing is edited, Tab leaves it and arrows move in it.
 /// @param name of the object; @param spokenName for screen readers
@@ -50,7 +48,6 @@ void setWidths(View& view, std::initializer_list<int> widths) {
 /// Widgets that share a space, each with its stretch factor; none can be closed.
 QSplitter* makeSplitter(Qt::Orientation orientation, const std::vector<std::pair<QWidget*, int>>& parts);
 
-[[nodiscard]] QStringList textsOf(const std::vector<std::string>& texts);
 /// Gives a choice other entries, quietly. The chosen one stays so where it is among them; else it is the first.
 void refill(QComboBox& choice, const QStringList& entries);
 
@@ -89,9 +86,9 @@ class CohortPage : public QWidget {
   void showEvent(QShowEvent* event) override;
   /// Shows what the document holds. @pre document_ is not null
   virtual void read() = 0;
-  /// What is shown is out of date: read() follows, at once or when the page is seen next.
+  /// The page is out of date: read() follows, at once or when the page is seen next.
   void outdate();
-  /// Calls, and reports an Error as a problem. @return false if there was one
+  /// Calls, and reports a fault as a problem. @return false if there was one
   bool tryTo(const std::function<void()>& call);
 
   std::shared_ptr<const CohortDocument> document_;
@@ -101,7 +98,7 @@ class CohortPage : public QWidget {
   bool outdated_ = false;
 };
 
-/// Who and what an attempt is, its verification badge, and whether a performer made it. Stands over everything that is
+/// Identity of an attempt, its verification badge, and whether a performer made it. Stands over everything that is
 /// shown of one attempt.
 class AttemptBanner : public QWidget {
   Q_OBJECT

@@ -33,6 +33,7 @@ PairSide::PairSide(const QString& name, QWidget* parent)
   auto* rows = static_cast<QBoxLayout*>(layout());
   rows->insertWidget(0, choice_);
   rows->insertWidget(1, banner_);
+  setTabOrder(choice_, &timeline());
   connect(choice_, &QComboBox::currentIndexChanged, this, [this] { openChosen(); });
 }
 

@@ -5,7 +5,6 @@
 #include <chrono>
 #include <optional>
 
-#include "gui/dashboard/cohort_document.h"
 #include "gui/dashboard/page_parts.h"
 #include "gui/dashboard/recording_view.h"
 
@@ -27,7 +26,7 @@ class PairSide : public RecordingView {
   void setDocument(std::shared_ptr<const CohortDocument> document);
   /// Chooses an attempt; while this is hidden, at the next setDocument().
   void choose(const std::string& uuid);
-  /// Where none is chosen: the n-th of the list, from 1 on.
+  /// If none is chosen: the n-th of the list, from 1 on.
   void chooseAnother(int n);
   [[nodiscard]] QComboBox* choiceBox() const { return choice_; }
 
@@ -77,7 +76,7 @@ class PairPage : public CohortPage {
   explicit PairPage(QWidget* parent = nullptr);
   /// Puts an attempt on one side: 0 left, 1 right.
   void setAttempt(std::size_t side, const std::string& uuid);
-  /// Where a side is still free: puts the newest attempts on both.
+  /// If a side is still free: puts the newest attempts on both.
   void chooseTwo();
   void showMiddle();  ///< the middle of what both show, where both are open
   /// True if both are at their targets, with their timelines.

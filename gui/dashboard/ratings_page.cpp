@@ -10,104 +10,88 @@
 #include <QSettings>
 
 #include "gui/dashboard/settings.h"
-#include "gui/words/problem_words.h"
 #include "recorder/base/errors.h"
 
 namespace calot::gui {
 
-namespace fs = std::filesystem;
-
-KnownForms readForms(const std::vector<fs::path>& folders) {
-  std::map<std::string, fs::path> byName;
-  for (const fs::path& root : folders) {
-    std::error_code fault;
-    for (fs::directory_iterator it(root / "forms", fault), end; !fault && it != end; it.increment(fault)) {
-      if (it->path().extension() == ".json") byName.emplace(it->path().stem().string(), it->path());
-    }
-  }
-  KnownForms known;
-  for (const auto& entry : byName) {
-    try {
-      known.forms.push_back(analytics::readRatingForm(entry.second));
-    } catch (const Error& error) {
-      known.faults.emplace_back(problemText(error));
-    }
-  }
-  return known;
-}
-
-void RatingDraft::store(const std::string& database, const std::string& attempt, const std::string& rater,
-                        const std::string& participant, bool replace) const {
-  if (form_.ofAttempts && attempt.empty()) throw Error(ErrorKind::invalid, "Choose the attempt that is rated.");
-  if (form_.ofAttempts && rater.empty()) throw Error(ErrorKind::invalid, "Say who rates, by a pseudonym.");
-  if (!form_.ofAttempts && participant.empty())
-    throw Error(ErrorKind::invalid, "Choose the participant who fills in the form.");
-  std::vector<std::pair<std::string, std::string>> given;
-  for (const auto& [item, score] : answers_) given.emplace_back(item, score ? std::to_string(*score) : "-");
-  analytics::Rating rating;
-  rating.attempt = form_.ofAttempts ? attempt : std::string();
-  rating.rater = form_.ofAttempts ? rater : std::string();
-  rating.participant = form_.ofAttempts ? std::string() : participant;
-  rating.answers = analytics::answersOf(form_, given);
-  analytics::AssessmentDatabase(database, analytics::CohortDatabase::Access::write)
-      .storeRating({form_.name, form_.version, form_.sha256, form_.text}, rating, replace);
-}
-
-std::optional<analytics::Rating> earlierRating(const std::vector<analytics::Rating>& ratings,
-                                               const analytics::RatingForm& form, const std::string& attempt,
-                                               const std::string& rater, const std::string& participant) {
-  const auto at = std::find_if(ratings.begin(), ratings.end(), [&](const analytics::Rating& r) {
-    if (r.form != form.name || r.formVersion != form.version) return false;
-    return form.ofAttempts ? r.attempt == attempt && r.rater == rater
-                           : r.attempt.empty() && r.participant == participant;
-  });
-  if (at == ratings.end()) return std::nullopt;
-  return *at;
-}
+/// Identity of a rating, and of its draft: attempt and rater of a form about attempts, the participant of the others.
+struct RatingPage::Subject {
+  std::string database, form;
+  std::uint32_t formVersion = 1;
+  std::string attempt, rater, participant;
+};
 
 namespace {
 
+namespace fs = std::filesystem;
+using Answers = std::map<std::string, std::optional<int>>;  // by item
+
+/// Drafts that are not stored yet are kept among the user's settings: a rater who is called away goes on where they
+/// were.
 QSettings drafts() { return {QSettings::IniFormat, QSettings::UserScope, "calot", "drafts"}; }
 
 /// A group of the settings: no name stands there.
-QString groupOf(const DraftSubject& s) {
+QString groupOf(const auto& subject) {
   QCryptographicHash hash(QCryptographicHash::Sha256);
-  for (const std::string& part :
-       {s.database, s.form, std::to_string(s.formVersion), s.attempt, s.rater, s.participant}) {
+  for (const std::string& part : {subject.database, subject.form, std::to_string(subject.formVersion), subject.attempt,
+                                  subject.rater, subject.participant}) {
     hash.addData(QByteArray::fromStdString(part));
     hash.addData(QByteArray(1, '\0'));
   }
   return QString::fromLatin1(hash.result().toHex());
 }
 
-constexpr const char* blankMark = "-";
+std::string textOf(std::optional<int> score) { return score ? std::to_string(*score) : "-"; }
 
-}  // namespace
-
-void keepDraft(const DraftSubject& subject, const DraftAnswers& answers) {
+void keepDraft(const QString& group, const Answers& answers) {
   QSettings store = drafts();
-  store.beginGroup(groupOf(subject));
+  store.beginGroup(group);
   store.remove("");
   for (const auto& [item, score] : answers)
-    store.setValue(QString::fromStdString(item), score ? QString::number(*score) : QString(blankMark));
+    store.setValue(QString::fromStdString(item), QString::fromStdString(textOf(score)));
 }
 
-DraftAnswers keptDraft(const DraftSubject& subject) {
+/// Empty: there is none.
+Answers keptDraft(const QString& group) {
   QSettings store = drafts();
-  store.beginGroup(groupOf(subject));
-  DraftAnswers answers;
+  store.beginGroup(group);
+  Answers answers;
   for (const QString& item : store.childKeys()) {
     const QString text = store.value(item).toString();
     bool number = false;
     const int score = text.toInt(&number);
-    if (number || text == blankMark) answers[item.toStdString()] = number ? std::optional(score) : std::nullopt;
+    if (number || text == "-") answers[item.toStdString()] = number ? std::optional(score) : std::nullopt;
   }
   return answers;
 }
 
-void dropDraft(const DraftSubject& subject) { drafts().remove(groupOf(subject)); }
+/// Stores a rating as `calot rate` does. @throws Error (invalid) for an item without answer, all blank, or a missing
+/// name; (refused) as AssessmentDatabase::storeRating
+void storeRating(const analytics::RatingForm& form, const auto& subject, const Answers& answers, bool replace) {
+  if (form.ofAttempts && subject.attempt.empty()) throw Error(ErrorKind::invalid, "Choose the attempt that is rated.");
+  if (form.ofAttempts && subject.rater.empty()) throw Error(ErrorKind::invalid, "Say who rates, by a pseudonym.");
+  if (!form.ofAttempts && subject.participant.empty())
+    throw Error(ErrorKind::invalid, "Choose the participant who fills in the form.");
+  std::vector<std::pair<std::string, std::string>> given;
+  for (const auto& [item, score] : answers) given.emplace_back(item, textOf(score));
+  analytics::Rating rating;
+  rating.attempt = subject.attempt;
+  rating.rater = subject.rater;
+  rating.participant = subject.participant;
+  rating.answers = analytics::answersOf(form, given);
+  analytics::AssessmentDatabase(subject.database, analytics::CohortDatabase::Access::write)
+      .storeRating({form.name, form.version, form.sha256, form.text}, rating, replace);
+}
 
-namespace {
+/// Earlier answers of this rater or participant, which are to be changed.
+std::optional<analytics::Rating> earlierRating(const std::vector<analytics::Rating>& ratings,
+                                               const analytics::RatingForm& form, const auto& subject) {
+  for (const analytics::Rating& r : ratings) {
+    if (r.form != form.name || r.formVersion != form.version || r.attempt != subject.attempt) continue;
+    if (form.ofAttempts ? r.rater == subject.rater : r.participant == subject.participant) return r;
+  }
+  return std::nullopt;
+}
 
 constexpr int blank = -1000;  // button of an item that is left blank: no form's score
 
@@ -179,15 +163,23 @@ void RatingPage::connectParts() {
   onKey(*this, Qt::Key_Period, [this] { replay_->replay().stepBy(1); });
 }
 
-void RatingPage::setForms(KnownForms forms) {
-  draft_.reset();  // it names a form of the former list
-  forms_ = std::move(forms);
-  {
-    const QSignalBlocker quiet(choice_);
-    choice_->clear();
-    for (const analytics::RatingForm& form : forms_.forms)
-      choice_->addItem(QString::fromStdString(form.name + ": " + form.title));
+void RatingPage::readForms(const std::vector<fs::path>& folders) {
+  std::map<std::string, fs::path> byName;
+  for (const fs::path& root : folders) {
+    std::error_code fault;
+    for (fs::directory_iterator it(root / "forms", fault), end; !fault && it != end; it.increment(fault)) {
+      if (it->path().extension() == ".json") byName.emplace(it->path().stem().string(), it->path());
+    }
   }
+  QStringList titles;
+  for (const auto& entry : byName) {
+    const QString fault = faultOf([&] {
+      const analytics::RatingForm& form = forms_.emplace_back(analytics::readRatingForm(entry.second));
+      titles += QString::fromStdString(form.name + ": " + form.title);
+    });
+    if (fault_.isEmpty()) fault_ = fault;
+  }
+  refill(*choice_, titles);
   showForm();
 }
 
@@ -197,7 +189,7 @@ void RatingPage::openReplay() {
   replay_->open(*attempt_, *document_);
 }
 
-DraftSubject RatingPage::draftSubject() const {
+RatingPage::Subject RatingPage::subject() const {
   const analytics::RatingForm& shown = *form();
   return {document_ ? document_->path() : std::string(),
           shown.name,
@@ -209,16 +201,12 @@ DraftSubject RatingPage::draftSubject() const {
 
 void RatingPage::read() {
   if (rater_->text().isEmpty()) rater_->setText(settings::person());
-  {
-    const QSignalBlocker quiet(participant_);
-    const QString before = participant_->currentText();
-    participant_->clear();
-    tryTo([this] {
-      for (const analytics::Participant& person : document_->participants())
-        participant_->addItem(QString::fromStdString(person.pseudonym));
-    });
-    participant_->setCurrentIndex(std::max(0, participant_->findText(before)));
-  }
+  QStringList people;
+  tryTo([&] {
+    for (const analytics::Participant& person : document_->participants())
+      people += QString::fromStdString(person.pseudonym);
+  });
+  refill(*participant_, people);
   showEarlier();
   openReplay();
 }
@@ -236,7 +224,7 @@ void RatingPage::chooseForm(const QString& name) {
 
 const analytics::RatingForm* RatingPage::form() const {
   const int at = choice_->currentIndex();
-  return at < 0 ? nullptr : &forms_.forms[static_cast<std::size_t>(at)];
+  return at < 0 ? nullptr : &forms_[static_cast<std::size_t>(at)];
 }
 
 void RatingPage::showSubject() {
@@ -253,16 +241,13 @@ void RatingPage::showSubject() {
 
 void RatingPage::showForm() {
   groups_.clear();
-  draft_.reset();
   auto* content = new QWidget;
   auto* layout = new QVBoxLayout(content);
   const analytics::RatingForm* shown = form();
   if (shown == nullptr) {
-    source_->setText(forms_.faults.empty() ? QString("No forms were found (CALOT_ASSETS).")
-                                           : QString::fromStdString(forms_.faults.front()));
+    source_->setText(fault_.isEmpty() ? "No forms were found (CALOT_ASSETS)." : fault_);
   } else {
     source_->setText(QString("Version %1. %2").arg(shown->version).arg(QString::fromStdString(shown->source)));
-    draft_.emplace(*shown);
     for (const analytics::FormSection& section : shown->sections) {
       auto* box = new QGroupBox(QString::fromStdString(section.name));
       auto* boxLayout = new QVBoxLayout(box);
@@ -313,32 +298,27 @@ void RatingPage::addItem(QVBoxLayout& layout, const analytics::FormItem& item) {
   layout.addSpacing(6);
   groups_.emplace_back(item.key, buttons);
   connect(buttons, &QButtonGroup::idClicked, this, [this, key = item.key](int id) {
-    draft_->answer(key, id == blank ? std::nullopt : std::optional(id));
-    keepDraft(draftSubject(), draft_->answers());
+    answers_[key] = id == blank ? std::nullopt : std::optional(id);
+    keepDraft(groupOf(subject()), answers_);
     showState();
   });
 }
 
 void RatingPage::showEarlier() {
   replaces_ = false;
-  if (!draft_) {
+  answers_.clear();
+  const analytics::RatingForm* const shown = form();
+  if (shown == nullptr) {
     showState();
     return;
   }
-  const analytics::RatingForm& shown = *form();
   std::optional<analytics::Rating> earlier;
-  if (document_) {
-    tryTo([&] {
-      earlier = earlierRating(document_->assessment().ratings(), shown, attempt_ ? attempt_->uuid : std::string(),
-                              rater_->text().toStdString(), participant_->currentText().toStdString());
-    });
-  }
+  if (document_) tryTo([&] { earlier = earlierRating(document_->assessment().ratings(), *shown, subject()); });
   replaces_ = earlier.has_value();
-  draft_.emplace(shown);
-  // What was begun and not stored is newer than what was stored.
-  DraftAnswers answers = keptDraft(draftSubject());
+  // Answers that were begun and not stored are newer than the stored ones.
+  Answers answers = keptDraft(groupOf(subject()));
   if (answers.empty() && earlier) {
-    for (const analytics::FormItem& item : shown.items()) {
+    for (const analytics::FormItem& item : shown->items()) {
       const auto at = earlier->answers.find(item.key);
       answers[item.key] = at == earlier->answers.end() ? std::nullopt : std::optional(at->second);
     }
@@ -353,29 +333,26 @@ void RatingPage::showEarlier() {
     QAbstractButton* button = buttons->button(at->second.value_or(blank));
     if (button == nullptr) continue;  // a score of another scale
     button->setChecked(true);
-    draft_->answer(key, at->second);
+    answers_[key] = at->second;
   }
   showState();
 }
 
 void RatingPage::showState() {
-  store_->setEnabled(draft_ && document_ && draft_->complete());
+  const std::size_t items = form() == nullptr ? 0 : form()->items().size();
+  store_->setEnabled(items > 0 && document_ && answers_.size() == items);
   next_->setEnabled(store_->isEnabled());
   store_->setText(replaces_ ? "Replace what was &stored" : "&Store");
-  if (!draft_) {
-    state_->clear();
-    return;
-  }
-  QString text = QString("%1 of %2 items are answered.").arg(draft_->answered()).arg(draft_->form().items().size());
+  QString text;
+  if (items > 0) text = QString("%1 of %2 items are answered.").arg(answers_.size()).arg(items);
   if (replaces_) text += " This form was filled in before; storing replaces it.";
   state_->setText(text);
 }
 
 bool RatingPage::store() {
   return tryTo([this] {
-    draft_->store(document_->path(), attempt_ ? attempt_->uuid : std::string(), rater_->text().toStdString(),
-                  participant_->currentText().toStdString(), replaces_);
-    dropDraft(draftSubject());
+    storeRating(*form(), subject(), answers_, replaces_);
+    drafts().remove(groupOf(subject()));
     replaces_ = true;
     showState();
     state_->setText("Stored. " + state_->text());

@@ -16,19 +16,6 @@ namespace {
 
 struct BrokenOff {};
 
-/// Calls on the view's thread, unless it shows something else by then.
-template <class Call>
-void tell(const std::shared_ptr<Link<RecordingView>>& back, Call call) {
-  back->pass([&](RecordingView& view) {
-    QMetaObject::invokeMethod(
-        &view,
-        [&view, back, call = std::move(call)] {
-          if (back->stands()) call(view);
-        },
-        Qt::QueuedConnection);
-  });
-}
-
 }  // namespace
 
 RecordingView::RecordingView(Parts with, QWidget* parent)
@@ -120,7 +107,7 @@ void RecordingView::read(const Back& back, const std::filesystem::path& file, co
     if (!wanted) throw BrokenOff();
     const int percent = static_cast<int>(100 * done / std::max<std::uint64_t>(1, of));
     if (percent == std::exchange(shown, percent)) return;
-    tell(back, [percent](RecordingView& view) {
+    Link<RecordingView>::post(back, [percent](RecordingView& view) {
       if (!view.track_) view.timeline_->setText(QString("Reading the recording … %1 %").arg(percent));
     });
   };
@@ -128,19 +115,20 @@ void RecordingView::read(const Back& back, const std::filesystem::path& file, co
     recorder::Recording recording(file);
     AttemptTrack track = readTrack(recording, progress);
     const bool results = track.none.empty();
-    tell(back, [track = std::move(track)](RecordingView& view) {
+    Link<RecordingView>::post(back, [track = std::move(track)](RecordingView& view) {
       view.timeline_->setTrack(track);
       emit view.trackRead(view.track_.emplace(track));
     });
     std::vector<analytics::FigureMoments> moments;
     if (results && !figures.empty()) moments = analytics::findMoments(recording, figures, progress);
-    tell(back, [moments = std::move(moments)](RecordingView& view) {
+    Link<RecordingView>::post(back, [moments = std::move(moments)](RecordingView& view) {
       view.busy_ = false;
       emit view.momentsFound(moments);
     });
   } catch (const BrokenOff&) {
   } catch (const std::exception& error) {
-    tell(back, [text = QString::fromStdString(problemText(error))](RecordingView& view) { view.fail(text); });
+    Link<RecordingView>::post(
+        back, [text = QString::fromStdString(problemText(error))](RecordingView& view) { view.fail(text); });
   }
 }
 

@@ -59,7 +59,7 @@ Comparison comparisonOf(const analytics::Study& study, const analytics::StudyRow
   return made;
 }
 
-/// What a text shows under forestAddress; null where the study has none. Any thread.
+/// The study's forest plot, shown under forestAddress; null where the study has none. Any thread.
 QImage forestPicture(const analytics::Study& study, const QFont& font, double ratio) {
   const std::optional<analytics::Drawing> forest = analytics::forestOf(study);
   if (!forest) return {};

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "gui/attempt/long_work.h"
-#include "gui/dashboard/cohort_document.h"
 #include "gui/dashboard/page_parts.h"
 #include "gui/dashboard/study_view.h"
 

@@ -10,8 +10,8 @@
 #include "analytics/design/design_report.h"
 #include "analytics/report/masked_study.h"
 #include "analytics/report/report_document.h"
-#include "analytics/report/study_coverage.h"
 #include "analytics/report/study_output.h"
+#include "analytics/report/study_rows.h"
 #include "gui/words/problem_words.h"
 #include "recorder/base/errors.h"
 #include "recorder/base/text_output.h"
@@ -52,7 +52,7 @@ std::string tableText(const analytics::ReportTable& table) {
 
 std::string paragraph(const std::string& text) { return "<p>" + analytics::escaped(text) + "</p>"; }
 
-/// What of the database went out. @return a warning, or empty
+/// Registers the attempts that were exported. @return a warning, or empty
 std::string noteExport(const analytics::Study& study, const std::string& database, const std::string& kind,
                        const std::string& target) {
   try {

@@ -73,16 +73,14 @@ TimelineBar::TimelineBar(QWidget* parent) : QWidget(parent) {
 
 void TimelineBar::setTrack(AttemptTrack track) {
   track_ = std::move(track);
-  text_ = QString::fromStdString(track_.none);
   marked_.clear();
   update();
 }
 
 void TimelineBar::setText(const QString& text) {
-  track_ = {};
-  marked_.clear();
-  text_ = text;
-  update();
+  AttemptTrack nothing;
+  nothing.none = text.toStdString();
+  setTrack(std::move(nothing));
 }
 
 void TimelineBar::setPosition(double time) {
@@ -109,9 +107,10 @@ void TimelineBar::paintEvent(QPaintEvent*) {
     painter.setPen(QPen(theme::surface(), 1.0));
     painter.drawLine(box.topRight(), box.bottomRight());
   }
-  if (!text_.isEmpty()) {
+  if (!track_.none.empty()) {
     painter.setPen(theme::muted());
-    painter.drawText(rect().adjusted(12, 0, -12, 0), Qt::AlignCenter | Qt::TextWordWrap, text_);
+    painter.drawText(rect().adjusted(12, 0, -12, 0), Qt::AlignCenter | Qt::TextWordWrap,
+                     QString::fromStdString(track_.none));
     return;
   }
   if (track_.seconds <= 0.0) return;
@@ -158,7 +157,7 @@ const TrackEvent* TimelineBar::eventAt(const QPoint& at) const {
   double nearest = reach + 1.0;
   for (const TrackEvent& event : track_.events) {
     const double away = std::abs(s.x(event.time) - at.x());
-    // Of those that stand together the error is meant.
+    // Among marks that stand together, the error is chosen.
     const bool better =
         away < nearest - 1.0 || (away < nearest + 1.0 && event.error && best != nullptr && !best->error);
     if (away <= reach && (best == nullptr || better)) {

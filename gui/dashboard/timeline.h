@@ -64,7 +64,6 @@ class TimelineBar : public QWidget {
   [[nodiscard]] const TrackEvent* eventAt(const QPoint& at) const;
 
   AttemptTrack track_;
-  QString text_;
   double position_ = 0.0;
   std::vector<std::pair<double, double>> marked_;
 };

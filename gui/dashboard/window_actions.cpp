@@ -17,7 +17,6 @@
 #include "gui/attempt/attempt_recording.h"
 #include "gui/dashboard/attempt_page.h"
 #include "gui/dashboard/attempts_page.h"
-#include "gui/dashboard/cohort_document.h"
 #include "gui/dashboard/dashboard_window.h"
 #include "gui/dashboard/dialogs.h"
 #include "gui/dashboard/figure_panel.h"
@@ -27,7 +26,6 @@
 #include "gui/dashboard/ratings_page.h"
 #include "gui/dashboard/settings.h"
 #include "gui/dashboard/study_page.h"
-#include "gui/words/problem_words.h"
 #include "recorder/base/errors.h"
 
 namespace calot::gui {
@@ -71,7 +69,7 @@ class DecisionCommand : public QUndoCommand {
   std::shared_ptr<std::atomic<bool>> failed_ = std::make_shared<std::atomic<bool>>(false);  ///< by the writer's thread
 };
 
-/// Who decides, and about which attempts of which database.
+/// The person who decides, the attempts and their database.
 struct Decision {
   std::string database, by;
   std::vector<analytics::AttemptRow> attempts;
@@ -207,9 +205,7 @@ void DashboardWindow::askForTag(bool add) {
   if (add) {
     words = document_->lines()->tags();
   } else {
-    for (const analytics::AttemptRow& attempt : chosen) {
-      for (const std::string& tag : attempt.tags) words += QString::fromStdString(tag);
-    }
+    for (const analytics::AttemptRow& attempt : chosen) words += textsOf(attempt.tags);
     words.removeDuplicates();
     words.sort();
     if (words.isEmpty()) {
@@ -226,10 +222,8 @@ void DashboardWindow::askForTag(bool add) {
                                             words, 0, add, &agreed)
                           .trimmed();
   if (!agreed || tag.isEmpty()) return;
-  try {
-    analytics::checkTag(tag.toStdString());
-  } catch (const Error& error) {
-    showProblem(QString::fromStdString(problemText(error)));
+  if (const QString fault = faultOf([&] { analytics::checkTag(tag.toStdString()); }); !fault.isEmpty()) {
+    showProblem(fault);
     return;
   }
   settings::setPerson(by);
@@ -253,7 +247,7 @@ constexpr int settleTime = 1500;       // ms for pictures and animations to be o
 void waitFor(const std::function<bool()>& condition) {
   QElapsedTimer clock;
   clock.start();
-  // What was wished for a moment ago may not have begun: the condition must hold for a while.
+  // Recently requested work may not have begun: the condition must hold for a while.
   qint64 since = -1;
   while (clock.elapsed() < maxWaiting && (since < 0 || clock.elapsed() < since + settleTime)) {
     QCoreApplication::processEvents(QEventLoop::AllEvents, 50);
@@ -264,13 +258,13 @@ void waitFor(const std::function<bool()>& condition) {
   }
 }
 
-}  // namespace
-
-void DashboardWindow::savePicture(QWidget& page, const QString& file) {
+void savePicture(QWidget& page, const QString& file) {
   QCoreApplication::processEvents();
   if (!page.grab().save(file, "PNG"))
     throw Error(ErrorKind::failure, Where{file.toStdString()}, "cannot write the picture; does the folder exist?");
 }
+
+}  // namespace
 
 void DashboardWindow::savePictures(const QString& folder) {
   const auto save = [&](QWidget* page, const char* name, const std::function<bool()>& ready) {
@@ -301,15 +295,16 @@ void DashboardWindow::savePictures(const QString& folder) {
   save(pair_, "pair.png", [this] { return pair_->settled(); });
   rating_->chooseForm("goals");
   save(rating_, "ratings.png", [this] { return rating_->settled(); });
+  const auto saveDialog = [&](QDialog& dialog, const char* name) {
+    dialog.show();
+    waitFor(atOnce);
+    savePicture(dialog, folder + '/' + name);
+    dialog.hide();
+  };
   NormDialog norm(document_, {}, this);
-  norm.show();
-  waitFor(atOnce);
-  savePicture(norm, folder + "/norm.png");
-  norm.hide();
+  saveDialog(norm, "norm.png");
   SettingsDialog settings(this);
-  settings.show();
-  waitFor(atOnce);
-  savePicture(settings, folder + "/settings.png");
+  saveDialog(settings, "settings.png");
 }
 
 }  // namespace calot::gui

@@ -8,13 +8,11 @@
 #include <cstddef>
 #include <memory>
 #include <string>
-#include <system_error>
-#include <utility>
 #include <vector>
 
 #include "gui/film/film_writer.h"
 #include "gui/film/look_ahead.h"
-#include "gui/film/moment_track.h"
+#include "gui/film/overlay.h"
 #include "gui/render/image.h"
 #include "gui/render/renderer.h"
 #include "recorder/base/errors.h"
@@ -165,20 +163,16 @@ class Cutter {
 
   [[nodiscard]] Image draw(const Scenes& scenes) {
     const int width = settings_.size.width / static_cast<int>(scenes.size()), height = settings_.size.height;
-    RenderSettings quality;
-    quality.quality = settings_.quality;
-    Image whole;
+    Image whole{settings_.size.width, height, {}};
+    if (scenes.size() > 1)
+      whole.rgba.resize(4 * static_cast<std::size_t>(whole.width) * static_cast<std::size_t>(height));
     for (std::size_t s = 0; s < scenes.size(); ++s) {
-      Image image = renderer_.render(scenes[s].view, width, height, quality, scenes[s].moment.smoke);
+      Image image =
+          renderer_.render(scenes[s].view, width, height, {.quality = settings_.quality}, scenes[s].moment.smoke);
       Captions captions = captions_[s];
       captions.doubt = scenes[s].doubt.empty() ? settings_.doubt : scenes[s].doubt;
       letters_.paint(image, settings_.overlays, scenes[s].moment, scenes[s].view, captions);
       if (scenes.size() == 1) return image;
-      if (s == 0) {
-        whole.width = settings_.size.width;
-        whole.height = height;
-        whole.rgba.resize(4 * static_cast<std::size_t>(whole.width) * static_cast<std::size_t>(height));
-      }
       paste(image, static_cast<int>(s) * width, whole);
     }
     return whole;

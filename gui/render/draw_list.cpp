@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "gui/render/draw_list.h"
 
 #include <algorithm>
@@ -10,7 +9,6 @@
 #include <cstring>
 #include <map>
 #include <numbers>
-#include <utility>
 #include <vector>
 
 #include "gui/render/instrument_mesh.h"
@@ -112,7 +110,7 @@ Sight sightOf(int width, int height, double verticalFieldOfView, bool field) {
   sight.up = std::tan(0.5 * verticalFieldOfView);
   sight.aside = sight.up * w / h;
   if (!field) return sight;
-  // What lies around the field is black, and costs nothing. Wide pictures cut it above and below.
+  // The picture outside the field is black, and costs nothing. Wide pictures cut it above and below.
   const double rim = 0.5 * std::min(w, h) * (width == height ? 0.985 : 1.12);
   constexpr double feather = 1.5;
   constexpr double beyond = 8.0;  // pixels, so that passes of half the size have neighbours at the rim
@@ -274,9 +272,7 @@ void DrawListMaker::addSurface(const SurfaceView& surface, SurfaceForm& form, st
     addVertex(point(surface.position[v]), direction(normal[v]), surface.rest[v], form.restNormal[v],
               surface.charred.empty() ? 0.0F : std::clamp(surface.charred[v], 0.0F, maxCharred),
               stained(surface.face.empty() ? 0.0F : surface.face[v], surface.position[v], open, time));
-  DrawPart part;
-  part.appearance = appearanceOf(surface.appearance);
-  part.oneSided = form.closed;
+  DrawPart part{.appearance = appearanceOf(surface.appearance), .oneSided = form.closed};
   if (surface.charred.empty() && surface.face.empty() && open.empty()) {
     addPart(part, surface.triangle);
     return;
@@ -301,10 +297,7 @@ void DrawListMaker::addMesh(const Mesh& mesh, Appearance appearance, const Pose&
   for (std::size_t v = 0; v < mesh.position.size(); ++v)
     addVertex(point(pose.position + q * mesh.position[v]), direction(q * mesh.normal[v]), brushed(mesh.position[v]),
               brushed(mesh.normal[v]));
-  DrawPart part;
-  part.appearance = appearance;
-  part.oneSided = true;
-  addPart(part, mesh.triangle);
+  addPart({.appearance = appearance, .oneSided = true}, mesh.triangle);
 }
 
 const DrawList& DrawListMaker::make(const SceneView& view, const Sight& sight, bool surroundings,

@@ -9,9 +9,8 @@
 #include <vector>
 
 #include "gui/render/mesh.h"
-#include "gui/render/sheet_list.h"
-#include "gui/render/smoke.h"
 #include "gui/render/surroundings.h"
+#include "gui/render/translucent.h"
 #include "sim/math/linear.h"
 #include "sim/scene/scene_view.h"
 

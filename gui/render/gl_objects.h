@@ -8,28 +8,25 @@
 #include <cstddef>
 #include <cstdint>
 #include <initializer_list>
-#include <string>
 #include <vector>
 
 #include "gui/render/graphics.h"
 
+// clang-format off
 /// The OpenGL 4.5 functions that the renderer uses.
-#define CALOT_GL_FUNCTIONS(ENTRY)                                                                                      \
-  ENTRY(ActiveTexture)                                                                                                 \
-  ENTRY(AttachShader)                                                                                                  \
-  ENTRY(BindBuffer) ENTRY(BindFramebuffer) ENTRY(BindTexture) ENTRY(BindVertexArray) ENTRY(BlendFunc)                  \
-      ENTRY(BufferData) ENTRY(CheckFramebufferStatus) ENTRY(Clear) ENTRY(ClearColor) ENTRY(CompileShader)              \
-          ENTRY(CreateProgram) ENTRY(CreateShader) ENTRY(DeleteBuffers) ENTRY(DeleteFramebuffers) ENTRY(DeleteProgram) \
-              ENTRY(DeleteShader) ENTRY(DeleteTextures) ENTRY(DeleteVertexArrays) ENTRY(DepthFunc) ENTRY(DepthMask)    \
-                  ENTRY(Disable) ENTRY(DrawArrays) ENTRY(DrawBuffers) ENTRY(DrawElements) ENTRY(Enable)                \
-                      ENTRY(EnableVertexAttribArray) ENTRY(FramebufferTexture2D) ENTRY(FrontFace) ENTRY(GenBuffers)    \
-                          ENTRY(GenFramebuffers) ENTRY(GenTextures) ENTRY(GenVertexArrays) ENTRY(GenerateMipmap)       \
-                              ENTRY(GetError) ENTRY(GetProgramInfoLog) ENTRY(GetProgramiv) ENTRY(GetShaderInfoLog)     \
-                                  ENTRY(GetShaderiv) ENTRY(GetString) ENTRY(GetUniformLocation) ENTRY(LinkProgram)     \
-                                      ENTRY(PixelStorei) ENTRY(ReadPixels) ENTRY(Scissor) ENTRY(ShaderSource)          \
-                                          ENTRY(TexImage2D) ENTRY(TexImage3D) ENTRY(TexParameteri) ENTRY(TexStorage2D) \
-                                              ENTRY(Uniform1f) ENTRY(Uniform1i) ENTRY(Uniform2f) ENTRY(Uniform3f)      \
-                                                  ENTRY(UseProgram) ENTRY(VertexAttribPointer) ENTRY(Viewport)
+#define CALOT_GL_FUNCTIONS(ENTRY)                                                                                     \
+  ENTRY(ActiveTexture) ENTRY(AttachShader) ENTRY(BindBuffer) ENTRY(BindFramebuffer) ENTRY(BindTexture)                \
+  ENTRY(BindVertexArray) ENTRY(BlendFunc) ENTRY(BufferData) ENTRY(CheckFramebufferStatus) ENTRY(Clear)                \
+  ENTRY(ClearColor) ENTRY(CompileShader) ENTRY(CreateProgram) ENTRY(CreateShader) ENTRY(DeleteBuffers)                \
+  ENTRY(DeleteFramebuffers) ENTRY(DeleteProgram) ENTRY(DeleteShader) ENTRY(DeleteTextures)                            \
+  ENTRY(DeleteVertexArrays) ENTRY(DepthFunc) ENTRY(DepthMask) ENTRY(Disable) ENTRY(DrawArrays) ENTRY(DrawBuffers)     \
+  ENTRY(DrawElements) ENTRY(Enable) ENTRY(EnableVertexAttribArray) ENTRY(FramebufferTexture2D) ENTRY(FrontFace)       \
+  ENTRY(GenBuffers) ENTRY(GenFramebuffers) ENTRY(GenTextures) ENTRY(GenVertexArrays) ENTRY(GenerateMipmap)            \
+  ENTRY(GetError) ENTRY(GetProgramInfoLog) ENTRY(GetProgramiv) ENTRY(GetShaderInfoLog) ENTRY(GetShaderiv)             \
+  ENTRY(GetString) ENTRY(GetUniformLocation) ENTRY(LinkProgram) ENTRY(PixelStorei) ENTRY(ReadPixels) ENTRY(Scissor)   \
+  ENTRY(ShaderSource) ENTRY(TexImage2D) ENTRY(TexImage3D) ENTRY(TexParameteri) ENTRY(TexStorage2D) ENTRY(Uniform1f)   \
+  ENTRY(Uniform1i) ENTRY(Uniform2f) ENTRY(Uniform3f) ENTRY(UseProgram) ENTRY(VertexAttribPointer) ENTRY(Viewport)
+// clang-format on
 
 namespace calot::gui {
 

@@ -34,7 +34,7 @@ enum class Graphics {
 /// @throws calot::Error (invalid) for another word
 [[nodiscard]] Graphics graphicsFrom(std::string_view word);
 
-/// Of a card or of EGL's software, a context on the first device that has what is needed.
+/// A context of a card or of EGL's software, on the first device that has what is needed.
 /// @param graphics not automatic
 /// @throws calot::Error (failure) where this machine has no such context, saying what the last device lacks
 [[nodiscard]] std::unique_ptr<GraphicsContext> createContext(Graphics graphics);

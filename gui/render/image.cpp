@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "gui/render/image.h"
 
 #include <fmt/format.h>
@@ -37,17 +36,20 @@ void writePng(const Image& image, const std::string& file) {
   if (error) fail(error.message());
 }
 
-PictureSize parsePictureSize(const std::string& text) {
+std::optional<PictureSize> readSize(const std::string& text) {
   PictureSize size;
   const char* const end = text.data() + text.size();
-  const auto [afterWidth, widthError] = std::from_chars(text.data(), end, size.width);
-  const bool cross = widthError == std::errc() && afterWidth != end && *afterWidth == 'x';
-  const auto [afterHeight, heightError] = cross ? std::from_chars(afterWidth + 1, end, size.height)
-                                                : std::from_chars_result{end, std::errc::invalid_argument};
-  if (!cross || heightError != std::errc() || afterHeight != end)
-    throw Error(ErrorKind::invalid, "picture size '" + text + "': write WIDTHxHEIGHT, as in 1280x720");
-  checkPictureSize(size.width, size.height);
-  return size;
+  const auto [cross, widthError] = std::from_chars(text.data(), end, size.width);
+  if (widthError != std::errc() || cross == end || *cross != 'x') return std::nullopt;
+  const auto [after, heightError] = std::from_chars(cross + 1, end, size.height);
+  return heightError == std::errc() && after == end ? std::optional(size) : std::nullopt;
+}
+
+PictureSize parsePictureSize(const std::string& text) {
+  const std::optional<PictureSize> size = readSize(text);
+  if (!size) throw Error(ErrorKind::invalid, "picture size '" + text + "': write WIDTHxHEIGHT, as in 1280x720");
+  checkPictureSize(size->width, size->height);
+  return *size;
 }
 
 }  // namespace calot::gui

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,7 +33,9 @@ struct PictureSize {
   int width = 1280;  ///< pixels
   int height = 720;  ///< pixels
 };
-/// "1280x720". @throws calot::Error (invalid) for anything else, or for a size outside the renderer's limits.
+/// "1280x720"; none for anything else.
+[[nodiscard]] std::optional<PictureSize> readSize(const std::string& text);
+/// The same. @throws calot::Error (invalid) where there is none, or for a size outside the renderer's limits.
 [[nodiscard]] PictureSize parsePictureSize(const std::string& text);
 
 }  // namespace calot::gui

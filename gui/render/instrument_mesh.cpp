@@ -28,18 +28,21 @@ Mesh barrel(double from, double to, double radius, double bevel) {
                superellipse({0, 0, to}, radius - bevel, radius - bevel, 2, around)});
 }
 
+/// Skin over steps + 1 rings. @param ring of a share, 0 to 1
+template <class RingAt>
+Mesh swept(int steps, RingAt ring) {
+  std::vector<Ring> rings;
+  for (int i = 0; i <= steps; ++i) rings.push_back(ring(static_cast<double>(i) / steps));
+  return loft(rings);
+}
+
 // From a round shaft to the flat fork that holds the hinge.
 Mesh clevis(double from, double hinge, double scale) {
-  std::vector<Ring> rings;
-  constexpr int steps = 12;
-  for (int i = 0; i <= steps; ++i) {
-    const double u = static_cast<double>(i) / steps;
+  return swept(12, [&](double u) {
     const double narrow = u * u * (3.0 - 2.0 * u);
-    rings.push_back(superellipse({0, 0, from + u * (hinge + 1.4 * mm * scale - from)},
-                                 (2.3 - 0.2 * narrow) * mm * scale, (2.3 - 1.0 * narrow) * mm * scale,
-                                 2.0 + 1.5 * narrow, around));
-  }
-  return loft(rings);
+    return superellipse({0, 0, from + u * (hinge + 1.4 * mm * scale - from)}, (2.3 - 0.2 * narrow) * mm * scale,
+                        (2.3 - 1.0 * narrow) * mm * scale, 2.0 + 1.5 * narrow, around);
+  });
 }
 
 Mesh hingePin(double hinge, double scale) {
@@ -89,19 +92,15 @@ struct InstrumentParts {
 
 // A bar that first leaves the axis and then runs parallel to it, its tip turned inward.
 Mesh clipJaw(double length, double scale) {
-  std::vector<Ring> rings;
-  constexpr int steps = 36;
-  for (int i = 0; i <= steps; ++i) {
-    const double u = static_cast<double>(i) / steps;
+  return swept(36, [&](double u) {
     const double rise = std::min(1.0, u / 0.35);
     const double lift = 1.7 * mm * scale * rise * rise * (3.0 - 2.0 * rise);
     const double tip = u > 0.9 ? (u - 0.9) / 0.1 : 0.0;
     Ring ring = superellipse({0, 0, u * length}, (1.9 - 0.35 * u - 0.3 * tip) * mm * scale,
                              (0.95 - 0.2 * tip) * mm * scale, 3.5, around);
     for (Vec3& p : ring) p.y() += lift + 0.2 * mm * scale - 0.7 * mm * scale * tip * tip;
-    rings.push_back(ring);
-  }
-  return loft(rings);
+    return ring;
+  });
 }
 
 namespace drawing {
@@ -186,10 +185,7 @@ void probe(InstrumentParts& parts) {
 
 // A curved, pointed blade; side is +1 or -1: which side of the hinge plane it lies on.
 Mesh scissorBlade(double length, double side, double scale) {
-  std::vector<Ring> rings;
-  constexpr int steps = 30;
-  for (int i = 0; i <= steps; ++i) {
-    const double u = static_cast<double>(i) / steps;
+  return swept(30, [&](double u) {
     const double height = (2.3 * (1.0 - u) + 0.35) * mm * scale * (u < 0.97 ? 1.0 : 0.5);
     const double thickness = (0.62 - 0.3 * u) * mm * scale;
     const double bend = 2.6 * mm * scale * u * u;
@@ -198,9 +194,8 @@ Mesh scissorBlade(double length, double side, double scale) {
       if (p.y() < 0.0) p.y() *= 0.25;
       p.x() += side * 0.55 * mm * scale * (1.0 - 0.6 * u) + bend;
     }
-    rings.push_back(ring);
-  }
-  return loft(rings);
+    return ring;
+  });
 }
 
 void scissors(InstrumentParts& parts) {

@@ -7,7 +7,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <numbers>
-#include <utility>
 
 #include "sim/math/elementary.h"
 #include "sim/math/linear.h"

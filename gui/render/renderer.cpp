@@ -46,7 +46,8 @@ class Renderer::Worker {
     perform([&] {
       const Sight sight = sightOf(width, height, view.verticalFieldOfView, settings.endoscopeMask);
       const DrawList& list = drawLists_.make(view, sight, settings.cavity, smoke);
-      const auto alone = looks_.note(list, settings) ? std::unique_lock(compiling()) : std::unique_lock<std::mutex>();
+      const auto alone =
+          noteLooks(looks_, list, settings) ? std::unique_lock(compiling()) : std::unique_lock<std::mutex>();
       image = painter_->paint(list, sight, view.verticalFieldOfView, width, height, settings);
     });
     return image;

@@ -57,7 +57,6 @@ class ScenePainter {
   /// Draws all that may come, nowhere.
   void makeReady(const DrawList& list, const Frame& frame);
   void compose(const Frame& frame) const;
-  [[nodiscard]] Image read() const;
 
   GlFunctions gl_;
   std::unique_ptr<ScenePrograms> film_, interactive_;

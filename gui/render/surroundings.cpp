@@ -220,7 +220,7 @@ constexpr double cell = 0.0035;          // m
 constexpr double ligamentReach = 0.050;  // how far it goes to the sides, where it has long left the picture below (m)
 constexpr double behind = 0.0055;  // its crest, below the upper side of a vessel: as deep as the bile duct is thick (m)
 constexpr double crest = 0.015;    // radius of its crest (m)
-// What can be injured is not to be hidden: wherever another vessel lies deeper, the fold gives way.
+// Vessels that can be injured must stay visible: wherever another vessel lies deeper, the fold gives way.
 constexpr double under = 0.001;   // below the lower side of every vessel (m)
 constexpr double trough = 0.005;  // radius of the trough that it lies in (m)
 

@@ -39,7 +39,7 @@ struct Surroundings {
   Mesh wall, ligament;
   Viscera viscera;
 
-  /// Makes the meshes anew where the view's organs at rest are others than before.
+  /// Rebuilds the meshes where the view's organs at rest are others than before.
   void update(const SceneView& view);
 
  private:

@@ -66,7 +66,7 @@ void checkConnective(const ConnectiveView& connective) {
           "connective tissue '{}', strand {}: a coordinate is not finite or over 1 km; the step behind it is not valid",
           connective.name, s);
     if (connective.condition[s] > StrandCondition::torn)
-      refuse("connective tissue '{}', strand {}: condition {} is none of attached, burned, torn", connective.name, s,
+      refuse("connective tissue '{}', strand {}: condition {} is not one of attached, burned, torn", connective.name, s,
              static_cast<int>(connective.condition[s]));
     if (!(connective.alpha[s] >= 0.0F && connective.alpha[s] <= 1.0F))
       refuse("connective tissue '{}', strand {}: alpha {}; give one between 0 and 1", connective.name, s,

@@ -22,14 +22,9 @@ namespace calot::gui {
 
 using parts::button;
 using parts::say;
+using parts::selectableLabel;
 
 namespace {
-
-QLabel* words(const char* name) {
-  QLabel* const label = parts::plainLabel(name);
-  label->setTextInteractionFlags(Qt::TextSelectableByMouse | Qt::TextSelectableByKeyboard);
-  return label;
-}
 
 QString figureWords(const FigureReport& figure) {
   QString text = figure.title + ": " + figure.now;
@@ -38,7 +33,7 @@ QString figureWords(const FigureReport& figure) {
   return text;
 }
 
-/// Where the recording is stored, or why it is not.
+/// Path of the stored recording, or the reason why it is not stored.
 QString putIntoCohort(const std::filesystem::path& file, const std::filesystem::path& cohort, unsigned threads,
                       LongWork::Control& control) {
   analytics::AssessSettings settings;
@@ -59,15 +54,15 @@ QString putIntoCohort(const std::filesystem::path& file, const std::filesystem::
 EndPage::EndPage(Setup setup, QWidget* parent)
     : QWidget(parent),
       setup_(std::move(setup)),
-      title_(words("endTitle")),
-      syntheticMark_(words("endSynthetic")),
-      outcome_(words("endOutcome")),
-      verdict_(words("endVerdict")),
-      norm_(words("endNorm")),
-      previous_(words("endPrevious")),
-      figures_(words("endFigures")),
-      momentsTitle_(words("momentsTitle")),
-      storeText_(words("storeText")),
+      title_(selectableLabel("endTitle")),
+      syntheticMark_(selectableLabel("endSynthetic")),
+      outcome_(selectableLabel("endOutcome")),
+      verdict_(selectableLabel("endVerdict")),
+      norm_(selectableLabel("endNorm")),
+      previous_(selectableLabel("endPrevious")),
+      figures_(selectableLabel("endFigures")),
+      momentsTitle_(selectableLabel("momentsTitle")),
+      storeText_(selectableLabel("storeText")),
       moments_(parts::named("moments", new QListWidget)),
       store_(button("&Put into the cohort", "store")),
       back_(button("Go &back to 2 s before it", "endBack")),

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "gui/trainer/operation_view.h"
 
 #include <fmt/format.h>

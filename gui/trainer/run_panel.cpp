@@ -80,7 +80,7 @@ RunPanel::RunPanel(recorder::Mode mode, bool mouse, bool scope, QWidget* parent)
       score_(plainLabel("score")),
       hint_(plainLabel("hint")),
       pointer_(plainLabel("pointer")),
-      result_(plainLabel("result")),
+      result_(parts::selectableLabel("result")),
       hand_{plainLabel("left"), plainLabel("right")},
       assistant_(plainLabel("assistant")),
       progress_(parts::named("progress", new QProgressBar)),
@@ -100,7 +100,6 @@ RunPanel::RunPanel(recorder::Mode mode, bool mouse, bool scope, QWidget* parent)
   parts::embolden(phase_);
   parts::enlarge(time_, 2.0);
   hint_->setStyleSheet(hintStyle);
-  result_->setTextInteractionFlags(Qt::TextSelectableByMouse | Qt::TextSelectableByKeyboard);
   progress_->setRange(0, 100);
   list_->setAccessibleName("Mistakes");
   list_->setWordWrap(true);

@@ -20,7 +20,7 @@ namespace calot::gui {
 
 /// Fills a list with mistakes. @param stepSeconds of the scene
 void listMistakes(QListWidget& list, const std::vector<Mistake>& mistakes, double stepSeconds);
-/// Where a branch before the chosen one leaves (s); none: none is chosen.
+/// Fork of a branch before the chosen one (s); none: none is chosen.
 [[nodiscard]] std::optional<double> chosenBranch(const QListWidget& list);
 
 /// Beside the picture: what the attempt is at, what to do next, the keys; paused and afterwards the mistakes to go back

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "gui/trainer/scenes_page.h"
 
 #include <algorithm>

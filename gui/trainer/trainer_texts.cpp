@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "gui/trainer/trainer_texts.h"
 
 #include <fmt/format.h>

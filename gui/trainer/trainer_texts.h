@@ -30,7 +30,7 @@ struct PanelText {
   QString result;  ///< of an attempt that has ended: outcome and file
 };
 
-/// Where the mouse is, while it drives a hand.
+/// Position of the mouse, while it drives a hand.
 enum class Pointer {
   elsewhere,   ///< another device drives, or nothing runs
   held,        ///< the picture holds it

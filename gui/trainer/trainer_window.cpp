@@ -32,7 +32,7 @@ constexpr int faultShown = 10000;  // ms, of what stops no attempt
 TrainerWindow::TrainerWindow(TrainerSetup setup, QWidget* parent)
     : QMainWindow(parent),
       setup_(std::move(setup)),
-      problem_(parts::plainLabel("problem")),
+      problem_(parts::selectableLabel("problem")),
       stack_(new QStackedWidget),
       scenes_(
           new ScenesPage(setup_.settings.attempt.mode == recorder::Mode::practice,
@@ -42,7 +42,6 @@ TrainerWindow::TrainerWindow(TrainerSetup setup, QWidget* parent)
       panel_(new RunPanel(setup_.settings.attempt.mode, setup_.mouse != nullptr, setup_.scope != nullptr)),
       end_(new EndPage({setup_.settings.attempt.mode, setup_.cohort, setup_.settings.threads})) {
   setWindowTitle("Calot trainer");
-  problem_->setTextInteractionFlags(Qt::TextSelectableByMouse | Qt::TextSelectableByKeyboard);
   problem_->setStyleSheet(
       "QLabel { background: #fbe3d6; color: #5a1e00; border-left: 6px solid #d55e00; padding: 8px; }");
   problem_->hide();

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "gui/attempt/long_work.h"
-#include "gui/trainer/picture_timing.h"
+#include "gui/trainer/attempt_monitor.h"
 #include "gui/trainer/scenes_page.h"
 #include "gui/trainer/trainer_texts.h"
 #include "gui/trainer/training_session.h"

@@ -35,7 +35,7 @@ class PictureScale {
 
   /// Share of width and height of the next picture, one of `sides`.
   [[nodiscard]] double side() const { return sides[level_]; }
-  /// A picture of this share was drawn in so many seconds of wall time. One of another share than the present one was
+  /// A picture of this share was drawn in `seconds` of wall time. One of another share than the present one was
   /// begun before it changed, and is not counted.
   void drew(double side, double seconds);
 

@@ -8,7 +8,7 @@
 namespace calot::gui {
 namespace {
 
-/// What can be done in a window. The other remedies are the command line's.
+/// Remedies of a window. The other remedies are the command line's.
 constexpr std::pair<Remedy, const char*> advice[] = {
     {Remedy::replaceExisting, "choose another name, or allow it to be replaced"},
     {Remedy::recover, "what it holds can be recovered on the command line"},

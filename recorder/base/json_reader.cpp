@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "recorder/base/json_reader.h"
 
 #include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <regex>
 #include <set>
+#include <string_view>
 
 #include "recorder/base/errors.h"
 #include "recorder/base/nearest_word.h"
@@ -116,14 +117,14 @@ JsonPlace JsonPlace::at(const std::string& key) const {
 }
 
 std::vector<std::string> JsonPlace::keys() const {
-  if (!value_->is_object()) fail(fmt::format("an object is wanted, not {}", value_->type_name()));
+  if (!value_->is_object()) fail(fmt::format("an object is expected, not {}", value_->type_name()));
   std::vector<std::string> out;
   for (const auto& entry : value_->items()) out.push_back(entry.key());
   return out;
 }
 
 std::vector<JsonPlace> JsonPlace::list(std::size_t least, std::size_t most) const {
-  if (!value_->is_array()) fail(fmt::format("a list is wanted, not {}", value_->type_name()));
+  if (!value_->is_array()) fail(fmt::format("a list is expected, not {}", value_->type_name()));
   if (value_->size() < least || value_->size() > most) {
     fail(fmt::format("{} entries; from {} to {} are allowed", value_->size(), least, most));
   }
@@ -134,7 +135,7 @@ std::vector<JsonPlace> JsonPlace::list(std::size_t least, std::size_t most) cons
 }
 
 std::string JsonPlace::text(std::size_t longest) const {
-  if (!value_->is_string()) fail(fmt::format("text is wanted, not {}", value_->type_name()));
+  if (!value_->is_string()) fail(fmt::format("text is expected, not {}", value_->type_name()));
   auto text = value_->get<std::string>();
   if (text.empty()) fail("the text is empty");
   if (text.size() > longest) fail(fmt::format("the text has {} bytes; at most {} are allowed", text.size(), longest));
@@ -157,25 +158,25 @@ std::uint32_t JsonPlace::word(const FieldWords& words) const {
     if (name == given) return number;
     known.push_back(name);
   }
-  if (known.size() == 1) fail(fmt::format("\"{}\" is wanted", known[0]));
+  if (known.size() == 1) fail(fmt::format("\"{}\" is expected", known[0]));
   std::sort(known.begin(), known.end());
   fail(fmt::format("unknown word{}; known are {}", didYouMean(given, known), fmt::join(known, ", ")));
 }
 
 bool JsonPlace::boolean() const {
-  if (!value_->is_boolean()) fail(fmt::format("true or false is wanted, not {}", value_->type_name()));
+  if (!value_->is_boolean()) fail(fmt::format("true or false is expected, not {}", value_->type_name()));
   return value_->get<bool>();
 }
 
 double JsonPlace::number(const Range& range) const {
-  if (!value_->is_number()) fail(fmt::format("a number is wanted, not {}", value_->type_name()));
+  if (!value_->is_number()) fail(fmt::format("a number is expected, not {}", value_->type_name()));
   const auto value = value_->get<double>();
   if (!inside(value, range)) fail(fmt::format("{} is not in {}", value, rangeOf(range)));
   return value;
 }
 
 std::uint32_t JsonPlace::integer(const Range& range) const {
-  if (!value_->is_number_integer()) fail("a whole number is wanted");
+  if (!value_->is_number_integer()) fail("a whole number is expected");
   const double value = number(range);
   return static_cast<std::uint32_t>(value);
 }
@@ -183,6 +184,35 @@ std::uint32_t JsonPlace::integer(const Range& range) const {
 Vec3 JsonPlace::vector(const Range& range) const {
   const std::vector<JsonPlace> parts = list(3, 3);
   return {parts[0].number(range), parts[1].number(range), parts[2].number(range)};
+}
+
+namespace {
+
+thread_local JsonFaults* noting = nullptr;
+
+}  // namespace
+
+JsonFaults::JsonFaults() : outer_(noting) { noting = this; }
+
+JsonFaults::~JsonFaults() { noting = outer_; }
+
+void JsonFaults::note(const Error& fault) {
+  const bool known = std::any_of(found_.begin(), found_.end(),
+                                 [&](const Error& e) { return std::string_view(e.what()) == fault.what(); });
+  if (!known) found_.push_back(fault);
+}
+
+bool JsonFaults::at(std::initializer_list<std::string_view> pointers) {
+  return noting != nullptr && std::any_of(noting->found_.begin(), noting->found_.end(), [&](const Error& fault) {
+           const std::string place = fault.where().place + "/";
+           return std::any_of(pointers.begin(), pointers.end(),
+                              [&](std::string_view p) { return place.starts_with(std::string(p) + "/"); });
+         });
+}
+
+void JsonFaults::report(const Error& fault) {
+  if (noting == nullptr) throw fault;
+  noting->note(fault);
 }
 
 }  // namespace calot::recorder

@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Strict reading of JSON: every error is one line that names file and JSON pointer.
+// All faults of a JSON file at once, rather than the first.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <initializer_list>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
+#include "recorder/base/errors.h"
 #include "sim/math/linear.h"
 #include "sim/math/record.h"
 
@@ -40,7 +44,7 @@ class JsonPlace {
   [[nodiscard]] JsonPlace at(const std::string& key) const;
   /// An item of a list. @pre it is a list of more than i items
   [[nodiscard]] JsonPlace at(std::size_t i) const { return list(i + 1, static_cast<std::size_t>(-1))[i]; }
-  /// Keys of an object. @throws Error (damaged) where it is none
+  /// Keys of an object. @throws Error (damaged) if it is not an object
   [[nodiscard]] std::vector<std::string> keys() const;
   /// Place of a key, which may be absent, for messages.
   [[nodiscard]] JsonPlace named(const std::string& key) const;
@@ -60,6 +64,38 @@ class JsonPlace {
   static constexpr std::size_t maxWord = 64;
   const nlohmann::json* value_;
   std::string file_, pointer_;
+};
+
+/// While one lives, objects that this thread reads note faults where reading can go on, instead of throwing the first:
+/// unknown and missing keys, and values out of their range, which stay at their defaults.
+class JsonFaults {
+ public:
+  JsonFaults();
+  ~JsonFaults();
+  JsonFaults(const JsonFaults&) = delete;
+  JsonFaults& operator=(const JsonFaults&) = delete;
+
+  /// In the order in which they were found, each once.
+  [[nodiscard]] const std::vector<Error>& found() const { return found_; }
+  void note(const Error& fault);
+
+  /// Has this thread noted a fault at one of these places of a file, or within it?
+  [[nodiscard]] static bool at(std::initializer_list<std::string_view> pointers);
+  /// Notes the fault where faults are noted. @throws the fault where they are not
+  static void report(const Error& fault);
+  /// Runs a part of the reading whose fault does not keep other parts from being read.
+  template <class Work>
+  static void part(Work&& work) {
+    try {
+      work();
+    } catch (const Error& fault) {
+      report(fault);
+    }
+  }
+
+ private:
+  JsonFaults* outer_;
+  std::vector<Error> found_;
 };
 
 }  // namespace calot::recorder

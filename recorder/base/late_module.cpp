@@ -20,7 +20,7 @@ const void* lateModule(const std::string& name) {
   const void* const functions = ::dlsym(library, "calotModule");
   if (version == nullptr || functions == nullptr || std::string(*version) != CALOT_VERSION)
     throw Error(ErrorKind::failure, Where{file},
-                "this part belongs to another version of the program; install both anew");
+                "this part belongs to another version of the program; install both again");
   return functions;
 }
 

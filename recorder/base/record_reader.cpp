@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "recorder/base/json_faults.h"
+#include "recorder/base/json_reader.h"
 #include "recorder/base/nearest_word.h"
 
 namespace calot::recorder {
@@ -54,7 +54,7 @@ void readValue(const JsonPlace& place, const Field& field, const Access& access,
       const std::vector<JsonPlace> parts = place.list(4, 4);
       for (std::size_t i = 0; i < 4; ++i) q[i] = parts[i].number(within(-1, 1));
       const Quat given(q[0], q[1], q[2], q[3]);
-      if (!(std::abs(given.norm() - 1.0) <= 1e-6)) place.fail("is no unit quaternion w x y z");
+      if (!(std::abs(given.norm() - 1.0) <= 1e-6)) place.fail("is not a unit quaternion w x y z");
       const Quat rotation = given.normalized();
       return store(&rotation, access.size, value);
     }

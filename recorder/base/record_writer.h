@@ -8,8 +8,8 @@
 
 namespace calot::recorder {
 
-/// What readRecord() reads. A value that is stored nowhere is null, for the caller to fill in, unless its field admits
-/// one value alone.
+/// JSON that readRecord() reads. A value that is stored nowhere is null, for the caller to fill in, unless its field
+/// admits one value alone.
 nlohmann::ordered_json writeRecord(const Record& record, const void* object);
 
 template <class T>

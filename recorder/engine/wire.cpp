@@ -12,14 +12,8 @@ namespace calot::recorder::wire {
 
 namespace {
 
-Rotation rotationOf(const Quat& q) { return {q.w(), q.x(), q.y(), q.z()}; }
-Quat quatOf(const Rotation& r) { return {r[0], r[1], r[2], r[3]}; }
-
 /// Recorded samples lie on a grid: their norm is near 1 only (schemas/recording.md).
-bool isRotation(const Rotation& r) {
-  const double norm = std::sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2] + r[3] * r[3]);
-  return std::abs(norm - 1.0) <= 1e-3;
-}
+bool isRotation(const Quat& q) { return std::abs(q.norm() - 1.0) <= 1e-3; }
 
 bool fits(const Surface& s) {
   const std::size_t vertices = s.position.size();
@@ -40,43 +34,17 @@ bool fits(const Bed& b) {
          std::all_of(b.sheet.begin(), b.sheet.end(), isSheet);
 }
 
+bool fits(const Instrument& i) { return isInstrumentNumber(static_cast<unsigned>(i.kind)); }
+
 }  // namespace
 
-void toWire(std::span<const TickSamples> samples, std::span<const TickOutcome> logged, std::vector<Tick>& out) {
-  out.resize(samples.size());
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    Tick& tick = out[i];
-    for (std::size_t h = 0; h < handCount; ++h) {
-      const InstrumentSample& s = samples[i].hand[h];
-      tick.hand[h] = {s.position,
-                      rotationOf(s.orientation),
-                      s.jaw,
-                      static_cast<std::uint8_t>(s.instrument),
-                      s.buttons,
-                      static_cast<std::uint8_t>(s.valid ? 1 : 0),
-                      logged[i].hand[h].contactSet};
-    }
-    tick.cameraPosition = samples[i].camera.position;
-    tick.cameraOrientation = rotationOf(samples[i].camera.orientation);
-    tick.lateness = logged[i].lateness;
-  }
-}
-
-bool fromWire(const Tick& tick, TickSamples& samples, TickOutcome& logged) {
-  for (std::size_t h = 0; h < handCount; ++h) {
-    const HandSample& hand = tick.hand[h];
-    if (!hand.position.allFinite() || !isRotation(hand.orientation) || !std::isfinite(hand.jaw) ||
-        !isInstrumentNumber(hand.instrument) || hand.valid > 1)
-      return false;
-    samples.hand[h] = {hand.position, quatOf(hand.orientation), hand.jaw, static_cast<InstrumentKind>(hand.instrument),
-                       hand.buttons,  hand.valid == 1};
-    logged.hand[h].contactSet = hand.set;
-  }
-  if (!tick.cameraPosition.allFinite() || !isRotation(tick.cameraOrientation) || !std::isfinite(tick.lateness))
-    return false;
-  samples.camera = {tick.cameraPosition, quatOf(tick.cameraOrientation)};
-  logged.lateness = tick.lateness;
-  return true;
+bool isValid(const Tick& tick) {
+  const bool hands = std::all_of(tick.samples.hand.begin(), tick.samples.hand.end(), [](const InstrumentSample& hand) {
+    return hand.position.allFinite() && isRotation(hand.orientation) && std::isfinite(hand.jaw) &&
+           isInstrumentNumber(static_cast<unsigned>(hand.instrument));
+  });
+  const CameraSample& camera = tick.samples.camera;
+  return hands && camera.position.allFinite() && isRotation(camera.orientation) && std::isfinite(tick.logged.lateness);
 }
 
 Event toWire(const calot::Event& event) {
@@ -93,46 +61,26 @@ View toWire(const SceneView& view) {
   out.time = view.time;
   for (const SurfaceView& surface : view.surface) out.surface.push_back({surface});
   for (const ConnectiveView& bed : view.connective) out.bed.push_back({bed});
-  for (const ClipView& c : view.clip)
-    out.clip.push_back({c.pose.position, rotationOf(c.pose.orientation), c.width, c.legs, c.halfGap});
-  for (std::size_t h = 0; h < handCount; ++h) {
-    const InstrumentView& i = view.instrument[h];
-    out.instrument[h] = {static_cast<std::uint8_t>(i.kind),
-                         i.pose.position,
-                         rotationOf(i.pose.orientation),
-                         i.port,
-                         i.radius,
-                         i.jaw,
-                         static_cast<std::uint8_t>(i.touching ? 1 : 0)};
-  }
-  out.cameraPosition = view.camera.position;
-  out.cameraOrientation = rotationOf(view.camera.orientation);
+  for (const ClipView& clip : view.clip) out.clip.push_back({clip});
+  for (std::size_t h = 0; h < handCount; ++h) out.instrument[h] = {view.instrument[h]};
+  out.camera = view.camera;
   out.fieldOfView = view.verticalFieldOfView;
   return out;
 }
 
 bool fromWire(View view, SceneView& out) {
+  const auto fitsAll = [](const auto& parts) {
+    return std::all_of(parts.begin(), parts.end(), [](const auto& part) { return fits(part); });
+  };
+  if (!fitsAll(view.surface) || !fitsAll(view.bed) || !fitsAll(view.instrument)) return false;
   out = {};
   out.step = view.step;
   out.time = view.time;
-  const auto allFit = [](const auto& parts) {
-    return std::all_of(parts.begin(), parts.end(), [](const auto& part) { return fits(part); });
-  };
-  if (!allFit(view.surface) || !allFit(view.bed)) return false;
   out.surface.assign(std::make_move_iterator(view.surface.begin()), std::make_move_iterator(view.surface.end()));
   out.connective.assign(std::make_move_iterator(view.bed.begin()), std::make_move_iterator(view.bed.end()));
-  for (const Clip& c : view.clip) out.clip.push_back({{c.position, quatOf(c.orientation)}, c.width, c.legs, c.halfGap});
-  for (std::size_t h = 0; h < handCount; ++h) {
-    const Instrument& i = view.instrument[h];
-    if (!isInstrumentNumber(i.instrument) || i.touching > 1) return false;
-    out.instrument[h] = {static_cast<InstrumentKind>(i.instrument),
-                         {i.position, quatOf(i.orientation)},
-                         i.port,
-                         i.radius,
-                         i.jaw,
-                         i.touching == 1};
-  }
-  out.camera = {view.cameraPosition, quatOf(view.cameraOrientation)};
+  out.clip.assign(view.clip.begin(), view.clip.end());
+  std::copy(view.instrument.begin(), view.instrument.end(), out.instrument.begin());
+  out.camera = view.camera;
   out.verticalFieldOfView = view.fieldOfView;
   return true;
 }

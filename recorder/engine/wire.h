@@ -9,6 +9,7 @@
 #include <cstring>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "recorder/engine/observer.h"
@@ -32,8 +33,25 @@ inline constexpr std::uint8_t wantAll = wantKeyframe | wantContactSets | wantVie
 
 enum class FaultCode : std::uint32_t { message = 1, protocol = 2, scene = 3, contactSet = 4, other = 5 };
 
+/// Visits a value in the protocol's form: an orientation as w, x, y, z, a flag as a byte (anything but 0 is true).
+template <class T>
+void visitOne(auto& visit, T& value) {
+  using Value = std::remove_const_t<T>;
+  if constexpr (std::is_same_v<Value, Quat>) {
+    Rotation form{value.w(), value.x(), value.y(), value.z()};
+    visit("", form);
+    if constexpr (!std::is_const_v<T>) value = Quat(form[0], form[1], form[2], form[3]);
+  } else if constexpr (std::is_same_v<Value, bool>) {
+    auto form = static_cast<std::uint8_t>(value ? 1 : 0);
+    visit("", form);
+    if constexpr (!std::is_const_v<T>) value = form != 0;
+  } else {
+    visit("", value);
+  }
+}
+
 /// Visits fields in their order, which is all that the protocol knows of them.
-void visitAll(auto& visit, auto&... field) { (visit("", field), ...); }
+void visitAll(auto& visit, auto&... field) { (visitOne(visit, field), ...); }
 
 // Requests
 
@@ -75,24 +93,17 @@ struct Restore {
   static void fields(auto& self, auto& visit) { visitAll(visit, self.keyframe, self.known, self.named); }
 };
 
-struct HandSample {
-  Vec3 position = Vec3::Zero();
-  Rotation orientation{1.0, 0.0, 0.0, 0.0};
-  double jaw = 0.0;
-  std::uint8_t instrument = 0, buttons = 0, valid = 1;
-  std::int64_t set = -1;
-  static void fields(auto& self, auto& visit) {
-    visitAll(visit, self.position, self.orientation, self.jaw, self.instrument, self.buttons, self.valid, self.set);
-  }
-};
-
+/// A tick's inputs; of its outcome, which contact sets it uses and how late it ran.
 struct Tick {
-  std::array<HandSample, 2> hand;
-  Vec3 cameraPosition = Vec3::Zero();
-  Rotation cameraOrientation{1.0, 0.0, 0.0, 0.0};
-  float lateness = 0.0F;
+  TickSamples samples;
+  TickOutcome logged;
   static void fields(auto& self, auto& visit) {
-    visitAll(visit, self.hand, self.cameraPosition, self.cameraOrientation, self.lateness);
+    for (std::size_t h = 0; h < handCount; ++h) {
+      auto& hand = self.samples.hand[h];
+      visitAll(visit, hand.position, hand.orientation, hand.jaw, hand.instrument, hand.buttons, hand.valid,
+               self.logged.hand[h].contactSet);
+    }
+    visitAll(visit, self.samples.camera.position, self.samples.camera.orientation, self.logged.lateness);
   }
 };
 
@@ -210,24 +221,16 @@ struct Bed : ConnectiveView {
   }
 };
 
-struct Clip {
-  Vec3 position = Vec3::Zero();
-  Rotation orientation{1.0, 0.0, 0.0, 0.0};
-  double width = 0.0, legs = 0.0, halfGap = 0.0;
+struct Clip : ClipView {
   static void fields(auto& self, auto& visit) {
-    visitAll(visit, self.position, self.orientation, self.width, self.legs, self.halfGap);
+    visitAll(visit, self.pose.position, self.pose.orientation, self.width, self.legs, self.halfGap);
   }
 };
 
-struct Instrument {
-  std::uint8_t instrument = 0;
-  Vec3 position = Vec3::Zero();
-  Rotation orientation{1.0, 0.0, 0.0, 0.0};
-  Vec3 port = Vec3::Zero();
-  double radius = 0.0, jaw = 0.0;
-  std::uint8_t touching = 0;
+struct Instrument : InstrumentView {
   static void fields(auto& self, auto& visit) {
-    visitAll(visit, self.instrument, self.position, self.orientation, self.port, self.radius, self.jaw, self.touching);
+    visitAll(visit, self.kind, self.pose.position, self.pose.orientation, self.port, self.radius, self.jaw,
+             self.touching);
   }
 };
 
@@ -238,13 +241,12 @@ struct View {
   std::vector<Surface> surface;
   std::vector<Bed> bed;
   std::vector<Clip> clip;
-  std::array<Instrument, 2> instrument;
-  Vec3 cameraPosition = Vec3::Zero();
-  Rotation cameraOrientation{1.0, 0.0, 0.0, 0.0};
+  std::array<Instrument, handCount> instrument;
+  CameraSample camera;
   double fieldOfView = 0.0;
   static void fields(auto& self, auto& visit) {
-    visitAll(visit, self.step, self.time, self.surface, self.bed, self.clip, self.instrument, self.cameraPosition,
-             self.cameraOrientation, self.fieldOfView);
+    visitAll(visit, self.step, self.time, self.surface, self.bed, self.clip, self.instrument, self.camera.position,
+             self.camera.orientation, self.fieldOfView);
   }
 };
 
@@ -264,11 +266,8 @@ struct Fault {
 
 // Samples, events, keyframes and scene views in the protocol's form, and back.
 
-/// The ticks of a step's request, into memory that is used again. @param logged names contact sets, and how late each
-/// tick ran @pre as many outcomes as samples
-void toWire(std::span<const TickSamples> samples, std::span<const TickOutcome> logged, std::vector<Tick>& out);
 /// @return false where something in it is no number, no rotation or no instrument that there is
-bool fromWire(const Tick& tick, TickSamples& samples, TickOutcome& logged);
+bool isValid(const Tick& tick);
 
 Event toWire(const calot::Event& event);
 calot::Event fromWire(const Event& event);

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "recorder/base/json_faults.h"
+#include "recorder/base/json_reader.h"
 #include "sim/geometry/brick_lattice.h"
 #include "sim/geometry/closest_point.h"
 
@@ -73,7 +73,7 @@ void checkAnchors(const JsonPlace& organs, const SceneDescription& scene) {
     for (std::size_t a = 0; a < organ.anchors.size(); ++a) {
       const JsonPlace place = organs.at(i).at("anchors").at(a);
       if (place.has("sphere") == place.has("nearOrgan"))
-        JsonFaults::part([&] { place.fail("one of \"sphere\" and \"nearOrgan\" is wanted"); });
+        JsonFaults::part([&] { place.fail("one of \"sphere\" and \"nearOrgan\" is expected"); });
     }
   }
 }

@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "recorder/kept/engine_process.h"
 
 #include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <stdexcept>
 #include <utility>
 #include <vector>
 
+#include "recorder/base/child_process.h"
+#include "recorder/base/errors.h"
+#include "recorder/base/file_bytes.h"
 #include "recorder/base/text_words.h"
 #include "recorder/engine/wire.h"
 #include "recorder/formats/scene_assets.h"
@@ -18,6 +22,9 @@
 namespace calot::recorder {
 
 namespace {
+
+/// How long an engine may take over one answer. A step takes milliseconds, the largest scene seconds.
+constexpr std::chrono::seconds enginePatience{120};
 
 /// Golden recordings hold no results; engines send them all the same.
 AttemptHeader withResults(AttemptHeader header) {
@@ -42,15 +49,16 @@ std::string ResultReader::fault(const std::vector<wire::Column>& declared) const
   }
   if (ours == declared) return "";
   const auto differing = std::mismatch(ours.begin(), ours.end(), declared.begin(), declared.end());
-  return differing.first == ours.end() ? fmt::format("{} is no result of the recording", differing.second->path)
-                                       : fmt::format("{} is no result of the engine", differing.first->path);
+  return differing.first == ours.end() ? fmt::format("{} is not a result of the recording", differing.second->path)
+                                       : fmt::format("{} is not a result of the engine", differing.first->path);
 }
 
-std::string ResultReader::read(std::span<const std::byte> row, StepResult& result, RecordedProcedure& procedure) const {
+std::string ResultReader::read(std::uint64_t step, std::span<const std::byte> row, StepResult& result,
+                               RecordedProcedure& procedure) const {
   if (row.size() != offset_.back())
     return fmt::format("results have {} bytes instead of {}", row.size(), offset_.back());
   const auto place = [&](std::size_t column) { return row.data() + offset_[column - layout_.results]; };
-  RowVisitor<decltype(place)> visit{layout_, place, layout_.results, false, {}};
+  RowVisitor<decltype(place)> visit{layout_, place, step, layout_.results, false, {}};
   visitResult(result, visit);
   if (layout_.procedure) visitProcedure(procedure, visit);
   return visit.fault;
@@ -62,7 +70,7 @@ template <class Request>
 void EngineProcess::send(const Request& request) {
   request_.clear();
   appendMessage(request, request_);
-  // Where it has ended, receive() says so, after what it said before.
+  // If it has ended, receive() reports it, after its earlier answers.
   static_cast<void>(child_.channel().send(request_));
 }
 
@@ -77,7 +85,7 @@ std::span<const std::byte> EngineProcess::receive(std::uint32_t kind, std::uint3
     if (fault.code == wire::FaultCode::contactSet) throw std::out_of_range(fault.message);
     fail(fault.message);
   }
-  if (kind == wire::IsHello::kind) fail("is no engine");
+  if (kind == wire::IsHello::kind) fail("is not an engine");
   if (got == nullptr) fail(fmt::format("the engine answered with a message of kind {}, not {}", parsed.kind, kind));
   return payload_;
 }
@@ -93,15 +101,15 @@ template <class Answer, class Request>
 Answer EngineProcess::ask(const Request& request) {
   Answer answer;
   if (!decode(ask(request, Answer::kind), answer))
-    fail(fmt::format("the engine's answer {} has not the bytes that it must have", Answer::kind));
+    fail(fmt::format("the engine's answer {} does not have the expected number of bytes", Answer::kind));
   return answer;
 }
 
 EngineProcess::EngineProcess(const std::vector<std::string>& command, std::uint32_t simulationVersion)
     : program_(command.back()), child_(command), where_{program_} {
   const auto answer = ask<wire::IsHello>(wire::Hello{});
-  if (answer.magic != wire::magic || answer.protocol != wire::protocol) fail("is no engine");
-  if (answer.confined > static_cast<std::uint8_t>(Confinement::byHost)) fail("is no engine");
+  if (answer.magic != wire::magic || answer.protocol != wire::protocol) fail("is not an engine");
+  if (answer.confined > static_cast<std::uint8_t>(Confinement::byHost)) fail("is not an engine");
   if (answer.simulation != simulationVersion)
     fail(fmt::format("is an engine of simulation version {}, not {}", answer.simulation, simulationVersion));
   identity_ = {answer.simulation, answer.result, answer.software, static_cast<Confinement>(answer.confined)};
@@ -152,7 +160,8 @@ bool EngineProcess::restore(const Keyframe& keyframe, const std::optional<NamedS
 
 void EngineProcess::announce(const StepInput& input) {
   stepRequest_.lateness = input.lateness;
-  wire::toWire(input.samples, input.logged, stepRequest_.ticks);
+  stepRequest_.ticks.resize(input.samples.size());
+  for (std::size_t i = 0; i < input.samples.size(); ++i) stepRequest_.ticks[i] = {input.samples[i], input.logged[i]};
   send(stepRequest_);
   ++announced_;
 }
@@ -173,7 +182,8 @@ EngineStep EngineProcess::step(const StepInput& input) {
   }
   digest_.component = answer.components;
   digest_.field = answer.digested;
-  if (const std::string fault = results_->read(answer.results, result_, procedure_); !fault.empty()) fail(fault);
+  if (const std::string fault = results_->read(answer.step, answer.results, result_, procedure_); !fault.empty())
+    fail(fault);
   result_.step = answer.step;
   result_.events.clear();
   for (const wire::Event& event : answer.events) result_.events.push_back(wire::fromWire(event));
@@ -249,6 +259,136 @@ std::string nameFault(const AttemptHeader& header, const Model& model) {
     }
   });
   return fault.empty() ? nameFault(header.layout, model.layout()) : fault;
+}
+
+namespace {
+
+constexpr std::size_t maxTranscript = std::size_t{1} << 28U;
+
+/// An engine that is given whole messages.
+class RawEngine {
+ public:
+  explicit RawEngine(const std::vector<std::string>& command) : name_(command.back()), child_(command) {}
+
+  std::vector<std::byte> ask(const std::vector<std::byte>& request) {
+    // If it has ended, receiveMessage() reports how.
+    static_cast<void>(child_.channel().send(request));
+    MessageHead head;
+    wire::Bytes answer;
+    if (const std::string fault = receiveMessage(child_, head, answer); !fault.empty())
+      throw Error(ErrorKind::failure, Where{name_}, fault);
+    wire::Bytes message;
+    ByteWriter writer(message);
+    writer.write(head.kind);
+    writer.write(head.length);
+    message.insert(message.end(), answer.begin(), answer.end());
+    return message;
+  }
+
+ private:
+  std::string name_;
+  ChildProcess child_;
+};
+
+std::vector<std::byte> payloadOf(const std::vector<std::byte>& message) {
+  return {message.begin() + messageHead, message.end()};
+}
+
+wire::Step stepOf(const RecordedStep& recorded, std::uint8_t wanted) {
+  wire::Step step{wanted, recorded.lateness, {}};
+  for (std::size_t i = 0; i < recorded.samples.size(); ++i)
+    step.ticks.push_back({recorded.samples[i], recorded.ticks[i]});
+  return step;
+}
+
+/// Two programs that are the same engine may differ in what they are called and how they are confined.
+bool isSame(const std::vector<std::byte>& a, const std::vector<std::byte>& b) {
+  if (a == b) return true;
+  if (parseHead(a).kind != wire::IsHello::kind || parseHead(b).kind != wire::IsHello::kind) return false;
+  wire::IsHello first;
+  wire::IsHello second;
+  if (!decode(payloadOf(a), first) || !decode(payloadOf(b), second)) return false;
+  return first.magic == second.magic && first.protocol == second.protocol && first.simulation == second.simulation &&
+         first.result == second.result;
+}
+
+}  // namespace
+
+Transcript makeTranscript(const std::vector<std::string>& command, Recording& recording, std::uint64_t steps) {
+  RawEngine engine(command);
+  Transcript transcript;
+  const auto ask = [&](const auto& request) {
+    transcript.push_back({encode(request), {}});
+    transcript.back().answer = engine.ask(transcript.back().request);
+  };
+  wire::Scene scene;
+  for (const Asset& asset : recording.header().assets) scene.files.push_back({asset.name, asset.bytes});
+  ask(wire::Hello{});
+  ask(scene);
+  ask(wire::Start{recording.header().seed});
+  ask(wire::AskView{});
+  const std::uint64_t half = steps / 2;
+  wire::Keyframe keyframe;
+  for (std::uint64_t n = 0; n < steps; ++n) {
+    ask(stepOf(recording.step(n), n == half ? wire::wantAll : std::uint8_t{0}));
+    wire::IsStep answer;
+    if (n != half || !decode(payloadOf(transcript.back().answer), answer)) continue;
+    static_cast<void>(decode(answer.keyframe, keyframe));
+  }
+  ask(wire::AskKeyframe{});
+  ask(wire::Explain{keyframe});
+  wire::Keyframe broken = keyframe;
+  if (!broken.state.empty()) broken.state.pop_back();
+  ask(wire::Restore{broken, 0, {}});
+  ask(wire::Restore{keyframe, 0, {}});
+  for (std::uint64_t n = half + 1; n < steps; ++n) ask(stepOf(recording.step(n), 0));
+  ask(wire::AskView{});
+  ask(wire::Step{});  // without its ticks: a fault, and the end
+  return transcript;
+}
+
+std::string compareWith(const Transcript& transcript, const std::vector<std::string>& command) {
+  RawEngine engine(command);
+  for (std::size_t i = 0; i < transcript.size(); ++i) {
+    const std::vector<std::byte> answer = engine.ask(transcript[i].request);
+    if (isSame(answer, transcript[i].answer)) continue;
+    const auto differing =
+        std::mismatch(answer.begin(), answer.end(), transcript[i].answer.begin(), transcript[i].answer.end());
+    return fmt::format("its answer {} (to a request of kind {}) differs from byte {} on", i,
+                       parseHead(transcript[i].request).kind, differing.first - answer.begin());
+  }
+  return "";
+}
+
+std::vector<std::byte> bytesOf(const Transcript& transcript) {
+  std::vector<std::byte> bytes;
+  for (const Exchange& exchange : transcript) {
+    bytes.insert(bytes.end(), exchange.request.begin(), exchange.request.end());
+    bytes.insert(bytes.end(), exchange.answer.begin(), exchange.answer.end());
+  }
+  return bytes;
+}
+
+Transcript readTranscript(const std::filesystem::path& file) {
+  const std::vector<std::byte> bytes = readFileBytes(file, file.string(), maxTranscript);
+  std::span<const std::byte> rest(bytes);
+  const auto next = [&] {
+    if (rest.size() < messageHead || parseHead(rest).length > rest.size() - messageHead)
+      throw Error(ErrorKind::damaged, Where{file.string(), fmt::format("byte {}", bytes.size() - rest.size())},
+                  "is not a message of an engine's transcript");
+    const std::size_t size = messageHead + static_cast<std::size_t>(parseHead(rest).length);
+    std::vector<std::byte> message(rest.begin(), rest.begin() + static_cast<std::ptrdiff_t>(size));
+    rest = rest.subspan(size);
+    return message;
+  };
+  Transcript transcript;
+  while (!rest.empty()) {
+    Exchange exchange;
+    exchange.request = next();
+    exchange.answer = next();
+    transcript.push_back(std::move(exchange));
+  }
+  return transcript;
 }
 
 }  // namespace calot::recorder

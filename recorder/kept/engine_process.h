@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// An engine that is another program, and transcripts: requests to an engine and its answers, recorded once, prove that
+// a program is the engine that it claims to be (schemas/engine.md, "Transcripts").
 #pragma once
 
-#include <chrono>
+#include <cstddef>
+#include <filesystem>
 #include <optional>
 #include <span>
 #include <string>
@@ -13,6 +16,7 @@
 #include "recorder/engine/engine.h"
 #include "recorder/engine/wire.h"
 #include "recorder/recording/layout.h"
+#include "recorder/recording/reader.h"
 #include "sim/scene/model.h"
 #include "sim/scene/scene_view.h"
 
@@ -27,7 +31,7 @@ class ResultReader {
   [[nodiscard]] std::string fault(const std::vector<wire::Column>& declared) const;
   /// Reads a row. @param procedure of version 3 alone
   /// @return what of it no engine makes, or nothing @pre fault() had nothing to say
-  [[nodiscard]] std::string read(std::span<const std::byte> row, StepResult& result,
+  [[nodiscard]] std::string read(std::uint64_t step, std::span<const std::byte> row, StepResult& result,
                                  RecordedProcedure& procedure) const;
   /// The scene has a procedure that this version of StepResult judged.
   [[nodiscard]] bool hasProcedure() const { return layout_.procedure; }
@@ -80,7 +84,7 @@ class EngineProcess final : public Engine {
   EngineIdentity identity_;
   DigestLayout layout_;
   std::optional<ResultReader> results_;
-  Vec3 down_ = SceneView().down;  ///< no engine tells of it
+  Vec3 down_ = SceneView().down;  ///< no engine reports it
   std::uint64_t steps_ = 0;
   std::size_t ticksPerStep_ = 0;
   std::size_t announced_ = 0;  ///< steps whose answers were not taken yet
@@ -93,9 +97,6 @@ class EngineProcess final : public Engine {
   RecordedProcedure procedure_;
 };
 
-/// How long an engine may take over one answer. A step takes milliseconds, the largest scene seconds.
-inline constexpr std::chrono::seconds enginePatience{120};
-
 /// Takes an engine's next message. @returns why there is none: "ended: exit code 7"; empty where there is one
 std::string receiveMessage(ChildProcess& child, MessageHead& head, wire::Bytes& payload);
 
@@ -106,5 +107,23 @@ std::string nameFault(const AttemptHeader& header, const Model& model);
 
 /// The same of digests alone, for an engine that is another program.
 std::string nameFault(const DigestLayout& recorded, const DigestLayout& engine);
+
+/// Requests and answers, each a whole message.
+struct Exchange {
+  std::vector<std::byte> request, answer;
+};
+using Transcript = std::vector<Exchange>;
+
+/// Has an engine greet, take a recording's scene, do its first steps with all that a step can come with, go back to a
+/// keyframe and on again, and refuse one. @param command starts the engine
+/// @throws Error as ChildProcess; (failure) where the engine ends before its time
+Transcript makeTranscript(const std::vector<std::string>& command, Recording& recording, std::uint64_t steps);
+
+/// Asks an engine what was asked then. @returns what the first other answer is, or nothing @throws as makeTranscript()
+std::string compareWith(const Transcript& transcript, const std::vector<std::string>& command);
+
+std::vector<std::byte> bytesOf(const Transcript& transcript);
+/// @throws Error (damaged)
+Transcript readTranscript(const std::filesystem::path& file);
 
 }  // namespace calot::recorder

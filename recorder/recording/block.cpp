@@ -37,23 +37,6 @@ std::string take(std::span<const std::byte> bytes, Row& out) {
   return fields.fault;
 }
 
-/// Where a row of a block's columns lies.
-struct BlockRow {
-  const Layout& layout;
-  const Block& block;
-  std::uint64_t row = 0;
-  const std::byte* operator()(std::size_t column) const {
-    return block.column[column].data() + static_cast<std::size_t>(row) * layout.columns[column].rowBytes();
-  }
-};
-
-/// Puts the row's number in the file into a fault.
-std::string named(const std::string& fault, std::uint64_t row) {
-  std::string text = fault;
-  if (const auto at = text.find("{row}"); at != std::string::npos) text.replace(at, 5, std::to_string(row));
-  return text;
-}
-
 }  // namespace
 
 std::string parseRow(std::span<const std::byte> bytes, Event& out) { return take(bytes, out); }
@@ -139,25 +122,29 @@ void appendKeyframe(const Layout& layout, const Keyframe& keyframe, std::span<co
 }
 
 std::string extractStep(const Layout& layout, const Block& block, std::uint64_t at, RecordedStep& out) {
+  std::uint64_t row = at * layout.ticksPerStep;
+  const auto place = [&](std::size_t column) {
+    return block.column[column].data() + static_cast<std::size_t>(row) * layout.columns[column].rowBytes();
+  };
+  using Visitor = RowVisitor<decltype(place)>;
   out.samples.resize(layout.ticksPerStep);
   out.ticks.resize(layout.ticksPerStep);
-  for (std::size_t t = 0; t < layout.ticksPerStep; ++t) {
-    const std::uint64_t row = at * layout.ticksPerStep + t;
-    RowVisitor<BlockRow> visit{layout, BlockRow{layout, block, row}, 0, true, {}};
+  for (std::size_t t = 0; t < layout.ticksPerStep; ++t, ++row) {
+    const std::uint64_t tick = out.step * layout.ticksPerStep + t;
+    Visitor visit{layout, place, tick, 0, true, {}};
     visitTick(out.samples[t], out.ticks[t], visit);
-    if (!visit.fault.empty()) return named(visit.fault, out.step * layout.ticksPerStep + t);
+    if (!visit.fault.empty()) return visit.fault;
     for (const HandTick& hand : out.ticks[t].hand) {
-      if (hand.contactSet < -1 || hand.contactSet > static_cast<std::int64_t>(out.step)) {
-        return fmt::format("/ticks: contact_set[{}] names a step that is not there",
-                           out.step * layout.ticksPerStep + t);
-      }
+      if (hand.contactSet < -1 || hand.contactSet > static_cast<std::int64_t>(out.step))
+        return fmt::format("/ticks: contact_set[{}] names a step that is not there", tick);
     }
   }
-  RowVisitor<BlockRow> visit{layout, BlockRow{layout, block, at}, layout.tickColumns, false, {}};
+  row = at;
+  Visitor visit{layout, place, out.step, layout.tickColumns, false, {}};
   visitStep(out.digest, out.brief, out.forces, out.lateness, out.result, out.procedure, visit);
   out.result.step = out.step;
   const bool ranAway = (out.result.misses & miss::runaway) != 0;
-  return named(visit.fault.empty() && !ranAway ? visit.unfinite : visit.fault, out.step);
+  return visit.fault.empty() && !ranAway ? visit.unfinite : visit.fault;
 }
 
 namespace {

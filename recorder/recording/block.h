@@ -165,7 +165,8 @@ struct AppendVisitor {
 template <class Place>
 struct RowVisitor {
   const Layout& layout;
-  Place place;  ///< where the row of a column lies, by its number
+  Place place;            ///< where the row of a column lies, by the column's number
+  std::uint64_t row = 0;  ///< its number, for faults
   std::size_t index = 0;
   bool input = false;  ///< samples must be finite; results too, but where the simulation ran away (unfinite)
   std::string fault;
@@ -224,19 +225,19 @@ struct RowVisitor {
     if constexpr (std::is_floating_point_v<T>) {
       if (!std::isfinite(value)) failUnfinite();
     } else if constexpr (std::is_same_v<T, InstrumentKind>) {
-      if (!isInstrumentNumber(code)) fail("is no known instrument");
+      if (!isInstrumentNumber(code)) fail("is not a known instrument");
     } else if constexpr (std::is_same_v<T, Cautery>) {
-      if (value > Cautery::onTissue) fail("is no known state of the cautery");
+      if (value > Cautery::onTissue) fail("is not a known state of the cautery");
     } else if constexpr (std::is_same_v<T, Phase>) {
-      if (value > Phase::done) fail("is no known phase");
+      if (value > Phase::done) fail("is not a known phase");
     }
   }
   void failUnfinite() {
     std::string& whose = input ? fault : unfinite;
-    if (whose.empty()) whose = fmt::format("{}[{{row}}] is not finite", layout.columns[index].path);
+    if (whose.empty()) whose = fmt::format("{}[{}] is not finite", layout.columns[index].path, row);
   }
   void fail(const char* why) {
-    if (fault.empty()) fault = fmt::format("{}[{{row}}] {}", layout.columns[index].path, why);
+    if (fault.empty()) fault = fmt::format("{}[{}] {}", layout.columns[index].path, row, why);
   }
 };
 

@@ -139,7 +139,7 @@ void ColumnReader::readRaw(const StatusRow& before, const StatusRow& after, Bloc
       const auto row = std::span(bytes).subspan(static_cast<std::size_t>(i) * rawSampleBytes);
       raw.sample.hand = static_cast<Hand>(h);
       std::string fault = parseRow(row, raw);
-      if (raw.tick < before.ticks || raw.tick >= after.ticks) fault = "is of a tick outside its flush";
+      if (raw.tick < before.ticks || raw.tick >= after.ticks) fault = "belongs to a tick outside its flush";
       if (sequence && raw.sample.sequence <= *sequence) fault = "is out of order";
       sequence = raw.sample.sequence;
       if (!fault.empty()) throw damaged(path_, column.path, fmt::format("row {} {}", before.rawSamples[h] + i, fault));

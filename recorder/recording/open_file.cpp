@@ -21,23 +21,21 @@ namespace calot::recorder {
 using hdf5::Id;
 
 Superblock readSuperblock(const std::filesystem::path& path) {
+  const auto refuse = [&](const char* why) { throw Error(ErrorKind::damaged, Where{path.string()}, why); };
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
-  if (!std::filesystem::exists(status)) throw Error(ErrorKind::damaged, Where{path.string()}, "no such file");
-  if (std::filesystem::is_directory(status))
-    throw Error(ErrorKind::damaged, Where{path.string()}, "is a folder, not a recording");
-  if (!std::filesystem::is_regular_file(status))
-    throw Error(ErrorKind::damaged, Where{path.string()}, "is not a regular file");
+  if (!std::filesystem::exists(status)) refuse("no such file");
+  if (std::filesystem::is_directory(status)) refuse("is a folder, not a recording");
+  if (!std::filesystem::is_regular_file(status)) refuse("is not a regular file");
   std::ifstream in(path, std::ios::binary);
-  if (!in) throw Error(ErrorKind::damaged, Where{path.string()}, "cannot be opened; check its permissions");
+  if (!in) refuse("cannot be opened; check its permissions");
   std::array<char, 36> head{};
   in.read(head.data(), head.size());
-  if (in.gcount() == 0) throw Error(ErrorKind::damaged, Where{path.string()}, "is empty");
-  constexpr std::array<char, 8> signature{'\x89', 'H', 'D', 'F', '\r', '\n', '\x1a', '\n'};
+  if (in.gcount() == 0) refuse("is empty");
+  constexpr std::string_view signature = "\x89HDF\r\n\x1a\n";
   if (in.gcount() < static_cast<std::streamsize>(head.size()) ||
-      !std::equal(signature.begin(), signature.end(), head.begin())) {
-    throw Error(ErrorKind::damaged, Where{path.string()}, "is not an HDF5 file, so not a recording");
-  }
+      !std::string_view(head.data(), 8).starts_with(signature))
+    refuse("is not an HDF5 file, so not a recording");
   // HDF5 File Format Specification 3.0, II.A: byte 8 version, 9 size of offsets, 11 consistency flags, 28 end of file.
   Superblock s;
   s.version = static_cast<unsigned char>(head[8]);
@@ -60,7 +58,7 @@ hdf5::Id openForReading(const std::filesystem::path& path, Access access) {
   const Superblock superblock = readSuperblock(path);
   const Id how = hdf5::fileAccess(access == Access::settled ? 1 : 0);
   const unsigned swmr = superblock.writing ? H5F_ACC_SWMR_READ : 0U;
-  // Who has the file open already in this process decides how it is closed: another library of files has the default.
+  // An existing handle of the file in this process decides how it is closed: another file library has the default.
   for (const H5F_close_degree_t degree : {H5F_CLOSE_DEFAULT, H5F_CLOSE_STRONG}) {
     H5Pset_fclose_degree(how.get(), degree);
     const auto open = [&] { return hdf5::file(H5Fopen(path.c_str(), H5F_ACC_RDONLY | swmr, how.get())); };
@@ -68,7 +66,7 @@ hdf5::Id openForReading(const std::filesystem::path& path, Access access) {
     if (!file.valid()) continue;
     checkShape(path, file, sizeOfFile(path));
     if (!superblock.writing) return file;
-    // What was looked at is remembered with the extents that it had then, and the file grows: it is forgotten.
+    // Cached objects keep the extents that they had then, and the file grows: they are discarded.
     file.reset();
     file = open();
     if (file.valid()) return file;
@@ -85,8 +83,12 @@ hdf5::Id openForReading(const std::filesystem::path& path, Access access) {
 namespace {
 
 using hdf5::damaged;
-using hdf5::Id;
 
+/// Names that one group may hold, and attributes of one object. The format has 130 and at most 999 assets, and 29.
+constexpr std::uint64_t maxLinks = 4096;
+constexpr std::uint64_t maxAttributes = 256;
+/// Stored together, and so unfolded together (bytes). Those of the format have 64 KiB, names more.
+constexpr std::uint64_t maxChunkBytes = std::uint64_t{4} << 20U;
 constexpr int maxDepth = 8;
 constexpr std::size_t maxLinkName = 255;
 /// Deflate cannot shrink more than 1032 to 1.
@@ -170,7 +172,7 @@ class ShapeCheck {
     const Id how = hdf5::properties(H5Dget_create_plist(dataset));
     if (!how.valid()) return;
     const H5D_layout_t layout = H5Pget_layout(how.get());
-    // Of such a one not even the extent may be asked: that opens what it is made of.
+    // Even querying the extent of such a data set opens its sources.
     if (layout == H5D_VIRTUAL) refuse(place, "is made of other data sets");
     for (int i = 0; i < H5Pget_nfilters(how.get()); ++i) {
       unsigned flags = 0, config = 0;

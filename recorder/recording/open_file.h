@@ -23,18 +23,12 @@ struct Superblock {
 Superblock readSuperblock(const std::filesystem::path& path);
 
 /// Opens a file for reading: the SWMR way if its writer did not close it, plainly otherwise. Refuses one that has not
-/// the shape of a recording (shape.h) before any of its data is read.
+/// the shape of a recording (checkShape) before any of its data is read.
 hdf5::Id openForReading(const std::filesystem::path& path, Access access);
-
-/// Names that one group may hold, and attributes of one object. The format has 130 and at most 999 assets, and 29.
-inline constexpr std::uint64_t maxLinks = 4096;
-inline constexpr std::uint64_t maxAttributes = 256;
-/// Stored together, and so unfolded together (bytes). Those of the format have 64 KiB, names more.
-inline constexpr std::uint64_t maxChunkBytes = std::uint64_t{4} << 20U;
 
 /// Looks at every link and every data set's description, and reads no data: links to other places, second names of an
 /// object, data kept in other files or made of other data sets, filters from elsewhere, values of variable length,
-/// chunks that unfold to more than maxChunkBytes, and extents that the file cannot hold.
+/// chunks that unfold to more than 4 MiB, and extents that the file cannot hold.
 /// Skips objects that it cannot describe; the reader reports them. The caller holds the HDF5 session.
 /// @throws Error damaged naming the object
 void checkShape(const std::filesystem::path& path, const hdf5::Id& file, std::uint64_t fileBytes);

@@ -78,16 +78,16 @@ struct Recording::Impl {
       const auto refuse = [&](const char* why) {
         throw hdf5::damaged(path, "/events", fmt::format("row {} {}", before.events + i, why));
       };
-      if (e.step < before.steps || e.step >= status[row].steps) refuse("is of a step outside its flush");
-      if (i > 0 && e.step < latest) refuse("is of a step before that of the row before it");
-      if (e.hand >= handCount && e.hand != 255) refuse("is of no hand");
+      if (e.step < before.steps || e.step >= status[row].steps) refuse("belongs to a step outside its flush");
+      if (i > 0 && e.step < latest) refuse("belongs to an earlier step than the row before it");
+      if (e.hand >= handCount && e.hand != 255) refuse("belongs to no hand");
       latest = e.step;
       events[static_cast<std::size_t>(e.step - before.steps)].push_back(e);
     }
     blockRow = row;
   }
 
-  /// What ran away may be no number any more; nothing else.
+  /// Only results of a runaway step may hold numbers that are not finite.
   void refuseUnfinite(const StepResult& result) const {
     if ((result.misses & miss::runaway) != 0) return;
     for (const Event& event : result.events) {

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <deque>
 #include <exception>
+#include <mutex>
 #include <system_error>
 #include <thread>
 
@@ -61,8 +62,8 @@ struct RecordingWriter::Impl {
   // Between the two threads.
   SpscQueue<Block*> full, empty;
   std::atomic<std::uint32_t> handedOver{0};
-  std::atomic<std::uint64_t> flushes{0}, steps{0}, blocksGrown{0};
-  std::atomic<double> writerSeconds{0.0}, maxFlush{0.0};
+  std::mutex statisticsLock;
+  WriterStatistics statistics;
 
   // The writing thread's side; read by others after join.
   KeyframeCoder coder;
@@ -76,7 +77,8 @@ struct RecordingWriter::Impl {
     if (!empty.pop(block)) {
       pool.emplace_back(layout);
       block = &pool.back();
-      blocksGrown.fetch_add(1, std::memory_order_relaxed);
+      const std::lock_guard lock(statisticsLock);
+      ++statistics.blocksGrown;
     }
     return block;
   }
@@ -113,8 +115,9 @@ struct RecordingWriter::Impl {
       // A block without rows is written only if it carries the outcome.
       if (block.rows[static_cast<std::size_t>(Stream::steps)] > 0 || block.completed) {
         file->append(block, wallNow());
-        flushes.fetch_add(1, std::memory_order_relaxed);
-        steps.store(file->last().steps, std::memory_order_relaxed);
+        const std::lock_guard lock(statisticsLock);
+        ++statistics.flushes;
+        statistics.steps = file->last().steps;
       }
       if (last && key) file->sign(signHead(*key, file->last().chain));
       if (last) file->close();
@@ -123,8 +126,9 @@ struct RecordingWriter::Impl {
       failed.store(true, std::memory_order_release);
     }
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    if (seconds > maxFlush.load(std::memory_order_relaxed)) maxFlush.store(seconds, std::memory_order_relaxed);
-    writerSeconds.store(threadSeconds(), std::memory_order_relaxed);
+    const std::lock_guard lock(statisticsLock);
+    statistics.maxFlushSeconds = std::max(statistics.maxFlushSeconds, seconds);
+    statistics.writerSeconds = threadSeconds();
   }
 
   /// Moves what the device measured up to the end of the last step into the block.
@@ -221,13 +225,8 @@ void RecordingWriter::finish() {
 bool RecordingWriter::failed() const { return impl_->failed.load(std::memory_order_acquire); }
 
 WriterStatistics RecordingWriter::statistics() const {
-  WriterStatistics s;
-  s.flushes = impl_->flushes.load(std::memory_order_relaxed);
-  s.steps = impl_->steps.load(std::memory_order_relaxed);
-  s.blocksGrown = impl_->blocksGrown.load(std::memory_order_relaxed);
-  s.writerSeconds = impl_->writerSeconds.load(std::memory_order_relaxed);
-  s.maxFlushSeconds = impl_->maxFlush.load(std::memory_order_relaxed);
-  return s;
+  const std::lock_guard lock(impl_->statisticsLock);
+  return impl_->statistics;
 }
 
 namespace {

@@ -24,7 +24,7 @@ constexpr double clipApart = 0.0024;    // a clip nearer than this to another on
 constexpr double fromJunction = 0.004;  // and one nearer to where vessels meet, or to the specimen (m)
 constexpr std::uint32_t maxTries = 10;
 
-/// Where a vessel is cut, as a share of its length.
+/// Position of a vessel's cut, as a share of its length.
 constexpr double cutAt = 0.52;
 
 /// The station of a vessel's course that is nearest to an arc length (m).
@@ -35,7 +35,7 @@ std::size_t stationAt(double place, std::size_t stations) {
 
 }  // namespace
 
-/// Where the next clip on a side of the cut goes (m from the first station); below zero where there is none to set.
+/// Position of the next clip on a side of the cut (m from the first station); below zero if there is none to set.
 /// Clips that sit badly are made good while there are enough for what is still to be clipped.
 double WorkingMind::placeForClip(const Sight& sight, std::size_t side) const {
   const std::vector<PerformerSight::VesselPlan>& plans = tools_.anatomy.vessels();
@@ -191,7 +191,7 @@ void WorkingMind::window(Sight sight) {
     for (const Vec3& centre : sight.vessel[v].centre) vessels.emplace_back(centre, tools_.anatomy.vessels()[v].radius);
   }
   const double off = windowWire + operation.keepOff;
-  // What cannot be taken without harm to a vessel does not count.
+  // Tissue that cannot be removed without harm to a vessel does not count.
   for (std::size_t c = 0; c < plan.size() && c < sight.column.size(); ++c) {
     SeenColumn& column = sight.column[c];
     const bool next = c + 1 < plan.size() && plan[c + 1].row == plan[c].row;

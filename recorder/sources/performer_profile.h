@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "recorder/base/json_reader.h"
-#include "recorder/sources/scope/scope_assistant.h"
+#include "recorder/sources/scope/scope_source.h"
 
 namespace calot::recorder {
 

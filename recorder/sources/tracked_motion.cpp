@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 #include "recorder/sources/tracked_motion.h"
+#include "recorder/base/record_reader.h"
 
 #include <fmt/format.h>
 #include <charconv>
@@ -11,6 +12,7 @@
 #include "recorder/base/csv.h"
 #include "recorder/base/errors.h"
 #include "recorder/base/file_bytes.h"
+#include "recorder/base/record_reader.h"
 #include "recorder/sources/pointing.h"
 
 namespace calot::recorder {
@@ -23,6 +25,21 @@ constexpr std::size_t maxBytes = std::size_t{1} << 30U;
 constexpr std::size_t maxRows = 1000000;
 
 bool isBlank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
+
+/// @param fail throws with this fault @param hint on what may be wrong
+template <class Fail>
+void checkPosition(const Vec3& position, const char* hint, const Fail& fail) {
+  if (!(position.cwiseAbs().maxCoeff() <= maxPosition))
+    fail(fmt::format("a position farther than {} m{}", maxPosition, hint));
+}
+
+template <class Fail>
+Quat checkedRotation(const Mat3& matrix, const Fail& fail) {
+  const double off = rotationDefect(matrix);  // rounding in the format of kinematics is below 1e-4
+  if (!(off <= rotationTolerance))
+    fail(fmt::format("no rotation matrix (off by {:.2g}; {:.2g} is allowed)", off, rotationTolerance));
+  return quaternionOf(matrix);
+}
 
 class LineReader {
  public:
@@ -46,26 +63,18 @@ class LineReader {
       ++count;
       at = end;
     }
-    if (count != columns) fail(fmt::format("{} columns; {} are wanted", count, columns));
+    if (count != columns) fail(fmt::format("{} columns; {} are expected", count, columns));
   }
 
   [[nodiscard]] KinematicsPose pose(const std::array<double, columns>& v, std::size_t first) const {
     KinematicsPose pose;
     pose.position = Vec3(v[first], v[first + 1], v[first + 2]);
-    if (!(pose.position.cwiseAbs().maxCoeff() <= maxPosition)) {
-      fail(fmt::format("columns {} to {}: a position farther than {} m; positions are in metres", first + 1, first + 3,
-                       maxPosition));
-    }
-    Mat3 rotation;
-    for (int r = 0; r < 3; ++r) {
-      for (int c = 0; c < 3; ++c) rotation(r, c) = v[first + 3 + static_cast<std::size_t>(3 * r + c)];
-    }
-    const double off = rotationDefect(rotation);  // the format's own rounding is below 1e-4
-    if (!(off <= rotationTolerance)) {
-      fail(fmt::format("columns {} to {}: no rotation matrix (off by {:.2g}; {:.2g} is allowed)", first + 4, first + 12,
-                       off, rotationTolerance));
-    }
-    pose.orientation = quaternionOf(rotation);
+    const auto failAt = [&](std::size_t from, std::size_t to) {
+      return [=, this](const std::string& fault) { fail(fmt::format("columns {} to {}: {}", from, to, fault)); };
+    };
+    checkPosition(pose.position, "; positions are in metres", failAt(first + 1, first + 3));
+    using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+    pose.orientation = checkedRotation(Eigen::Map<const RowMajor>(v.data() + first + 3), failAt(first + 4, first + 12));
     pose.gripper = v[first + 18];
     return pose;
   }
@@ -152,7 +161,7 @@ constexpr double maxMotion = 1e6;  // s
 constexpr double unitLength = 1e-2;
 constexpr double root = 0.70710678118654752440;  // of 1/2
 
-constexpr TextRule columnName{200}, word{60, "[!-~]+", "a word without blanks is wanted"};
+constexpr TextRule columnName{200}, word{60, "^[!-~]+$", "a word without blanks is expected"};
 
 const FieldWords lengths{{"m", 0}, {"cm", 1}, {"mm", 2}}, times{{"s", 0}, {"ms", 1}, {"us", 2}, {"ns", 3}},
     axes{{"z", 0}, {"-z", 1}, {"x", 2}, {"-x", 3}, {"y", 4}, {"-y", 5}};
@@ -203,7 +212,7 @@ std::vector<Field> ColumnMap::fields() {
                "Rate of rows, where there is no column of times. Either this or time"),
       optional("time", keyGroup<S, timeFields>, "Column of times"),
       optional("left", at<S, &S::hand, 0>, "Left hand"),
-      optional("right", at<S, &S::hand, 1>, "Right hand; at least one hand is wanted"),
+      optional("right", at<S, &S::hand, 1>, "Right hand; at least one hand is expected"),
   };
 }
 
@@ -214,7 +223,7 @@ double toPicosecond(double seconds) { return std::round(seconds * 1e12) / 1e12; 
 
 void checkHand(const JsonPlace& place, ColumnMap::HandColumns& hand) {
   if (place.has("quaternion") && place.has("matrix"))
-    place.fail("has a quaternion and a matrix; one of them is wanted");
+    place.fail("has a quaternion and a matrix; one of them is expected");
   if (!place.has("axis")) return;
   if (hand.orientation.empty()) place.at("axis").fail("an axis without an orientation");
   const Quat rotations[] = {Quat::Identity(),
@@ -246,9 +255,7 @@ class RowReader {
 
   [[nodiscard]] Vec3 position(std::size_t first, std::size_t row, double metres) const {
     const Vec3 p(metres * at(first, row), metres * at(first + 1, row), metres * at(first + 2, row));
-    if (!(p.cwiseAbs().maxCoeff() <= maxPosition)) {
-      fail(row, fmt::format("a position farther than {} m: the map's unit of length may be wrong", maxPosition));
-    }
+    checkPosition(p, ": the map's unit of length may be wrong", [&](const std::string& fault) { fail(row, fault); });
     return p;
   }
 
@@ -257,15 +264,12 @@ class RowReader {
       const Quat q(at(first, row), at(first + 1, row), at(first + 2, row), at(first + 3, row));
       const double length = std::sqrt(q.w() * q.w() + q.x() * q.x() + q.y() * q.y() + q.z() * q.z());
       if (!(std::abs(length - 1.0) <= unitLength))
-        fail(row, fmt::format("a quaternion of length {:.3g}; 1 is wanted", length));
+        fail(row, fmt::format("a quaternion of length {:.3g}; 1 is expected", length));
       return {q.w() / length, q.x() / length, q.y() / length, q.z() / length};
     }
     Mat3 rotation;
     for (int i = 0; i < 9; ++i) rotation(i / 3, i % 3) = at(first + static_cast<std::size_t>(i), row);
-    const double off = rotationDefect(rotation);
-    if (!(off <= rotationTolerance))
-      fail(row, fmt::format("no rotation matrix (off by {:.2g}; {:.2g} is allowed)", off, rotationTolerance));
-    return quaternionOf(rotation);
+    return checkedRotation(rotation, [&](const std::string& fault) { fail(row, fault); });
   }
 
  private:
@@ -288,12 +292,12 @@ ColumnMap parseColumnMap(std::span<const std::byte> bytes, const std::string& fi
   readRecord(place, map);
   map.metres = metres[place.at("length").word(lengths)];
   if (place.has("rate") == place.has("time"))
-    place.fail("either \"rate\" (rows a second) or \"time\" (a column) is wanted");
+    place.fail("either \"rate\" (rows a second) or \"time\" (a column) is expected");
   if (place.has("time")) map.seconds = seconds[place.at("time").at("unit").word(times)];
   for (std::size_t h = 0; h < map.hand.size(); ++h) {
     if (map.hand[h]) checkHand(place.at(handNames[h]), *map.hand[h]);
   }
-  if (!map.hand[0] && !map.hand[1]) place.fail("neither \"left\" nor \"right\": a hand is wanted");
+  if (!map.hand[0] && !map.hand[1]) place.fail("neither \"left\" nor \"right\": a hand is expected");
   return map;
 }
 

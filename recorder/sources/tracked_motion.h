@@ -95,7 +95,7 @@ ColumnMap parseColumnMap(std::span<const std::byte> bytes, const std::string& fi
 
 /// Reads a CSV file by its map.
 /// @throws Error (damaged) naming the file's base name and the line: as readCsvNumbers(); times that do not increase,
-/// or go beyond 1e6 s; positions beyond 5 m; orientations that are none (quaternions of a length off 1 by more than
+/// or go beyond 1e6 s; positions beyond 5 m; invalid orientations (quaternions of a length off 1 by more than
 /// 1e-2, matrices off a rotation by more than 1e-3); one row alone.
 TrackedMotion readCsvMotion(const std::filesystem::path& file, const ColumnMap& map);
 TrackedMotion parseCsvMotion(std::span<const std::byte> bytes, const std::string& file, const ColumnMap& map);

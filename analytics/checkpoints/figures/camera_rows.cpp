@@ -8,7 +8,7 @@
 #include <numbers>
 #include <optional>
 
-#include "recorder/sources/scope/picture_geometry.h"
+#include "recorder/sources/scope/endoscope.h"
 #include "sim/scene/measurement.h"
 
 namespace calot::analytics {

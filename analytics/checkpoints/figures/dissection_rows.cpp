@@ -86,7 +86,7 @@ struct GallbladderBed {
   }
 };
 
-/// What is left of the connective tissue once the gallbladder is off its bed: strands that tore instead of being
+/// Connective tissue that remains once the gallbladder is off its bed: strands that tore instead of being
 /// burned.
 struct ConnectiveRemaining {
   const AttemptContext& context;
@@ -237,7 +237,7 @@ struct FatRemaining {
     const double share = left / first;
     std::string note;
     if (clipped) {
-      // What was taken later is no part of identification, though the operator went back to it.
+      // Later grasps are not part of identification, even if the operator returned to it.
       const double later = (left - last) / first;
       if (later > 0.0) note = fmt::format("{:.1f} % more were taken after the first clip", later * 100.0);
     } else if (end.outcome == recorder::Outcome::completed) {

@@ -43,7 +43,7 @@ constexpr ForceMeasure rate{
 struct HandForce {
   ForceMeasure measure;
 
-  /// Of a hand, or of a hand in a phase.
+  /// The figure of a hand, or of a hand in a phase.
   [[nodiscard]] Measured figure(const AttemptEnd& end, std::size_t subject,
                                 const CheckpointDefinition& declared) const {
     const bool inPhase = declared.aggregation == Aggregation::handAndPhase;

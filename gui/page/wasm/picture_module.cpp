@@ -14,7 +14,7 @@
 #include "gui/render/gl_objects.h"
 #include "gui/render/graphics.h"
 #include "gui/render/scene_painter.h"
-#include "gui/render/smoke.h"
+#include "gui/render/translucent.h"
 #include "gui/render/view_check.h"
 #include "recorder/engine/wire.h"
 #include "sim/scene/scene_view.h"
@@ -49,7 +49,7 @@ struct Pictures {
   gui::ScenePainter painter{context};
   std::array<gui::DrawListMaker, 2> lists;  ///< the endoscope's, and another camera's: both remember surfaces
   SceneView view;
-  Vec3 down = SceneView().down;  ///< of the scene, which no view of an engine tells
+  Vec3 down = SceneView().down;  ///< of the scene, which no view of an engine contains
   std::vector<gui::Puff> smoke;
 };
 
@@ -58,7 +58,7 @@ Pictures& pictures() {
   return one;
 }
 
-/// Where another camera's turning point is, and how far what is to be seen reaches around it.
+/// Pivot of another camera, and the radius of the visible scene around it.
 std::array<double, 4>& extent() {
   static std::array<double, 4> centreAndRadius{};
   return centreAndRadius;
@@ -100,7 +100,7 @@ __attribute__((export_name("calot_gravity"))) void calot_gravity(double x, doubl
   pictures().down = downOf(Vec3(x, y, z));
 }
 
-/// Takes the placed payload of an engine's scene view. @return 1, or 0 if it is none
+/// Takes the placed payload of an engine's scene view. @return 1, or 0 if it is invalid
 __attribute__((export_name("calot_view"))) int calot_view() {
   recorder::wire::View wire;
   SceneView view;

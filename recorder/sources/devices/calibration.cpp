@@ -4,8 +4,8 @@
 
 #include <fmt/format.h>
 #include <algorithm>
-#include <chrono>
 #include <cmath>
+#include <ctime>
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/SVD>
@@ -76,7 +76,7 @@ std::vector<Field> CalibrationLimits::fields() {
 
 std::vector<Field> Calibration::fields() {
   using S = Calibration;
-  static constexpr TextRule date{32, "[0-9]{4}-[0-9]{2}-[0-9]{2}T[0-9]{2}:[0-9]{2}:[0-9]{2}Z",
+  static constexpr TextRule date{32, "^[0-9]{4}-[0-9]{2}-[0-9]{2}T[0-9]{2}:[0-9]{2}:[0-9]{2}Z$",
                                  "is no date like 2026-01-31T23:59:59Z"};
   return {
       object("",
@@ -103,20 +103,18 @@ std::vector<Field> Calibration::fields() {
 
 namespace {
 
+/// Since 1970. @pre isDate(date)
 std::int64_t secondsOf(const std::string& date) {
-  const auto number = [&](std::size_t at, std::size_t length) { return std::stoi(date.substr(at, length)); };
-  const std::chrono::sys_days day = std::chrono::year(number(0, 4)) /
-                                    std::chrono::month(static_cast<unsigned>(number(5, 2))) /
-                                    std::chrono::day(static_cast<unsigned>(number(8, 2)));
-  return std::int64_t{day.time_since_epoch().count()} * 86400 + number(11, 2) * 3600 + number(14, 2) * 60 +
-         number(17, 2);
+  std::tm time{};
+  strptime(date.c_str(), "%Y-%m-%dT%H:%M:%SZ", &time);
+  return timegm(&time);
 }
 
 }  // namespace
 
 std::int64_t ageInDays(const Calibration& calibration, const std::string& now) {
-  const std::int64_t seconds = secondsOf(now) - secondsOf(calibration.date);
-  return seconds >= 0 ? seconds / 86400 : -((-seconds + 86399) / 86400);
+  return static_cast<std::int64_t>(
+      std::floor(static_cast<double>(secondsOf(now) - secondsOf(calibration.date)) / 86400.0));
 }
 
 std::vector<std::string> shortcomings(const Calibration& calibration) {

@@ -73,7 +73,7 @@ std::vector<std::string> shortcomings(const Calibration& calibration);
 std::int64_t ageInDays(const Calibration& calibration, const std::string& now);
 
 /// The file's text; what is copied into each recording is its compact form, on one line.
-std::string calibrationText(Calibration calibration, bool compact);
+std::string calibrationText(const Calibration& calibration, bool compact);
 
 /// @throws Error (damaged) with file and JSON pointer.
 Calibration readCalibration(const std::filesystem::path& file);
@@ -116,8 +116,8 @@ std::optional<StrokeFit> fitStrokes(const std::array<Vec3, 3>& strokes, double l
 /// @pre samples is not empty
 Vec3 strokeOf(std::span<const DeviceSample> samples, const Vec3& tipOffset);
 
-/// All that a stream with phases (device_script.h) tells of each hand: "rest" (noise), "pivot", "stroke right", "stroke
-/// down", "stroke away"; rate, intervals and invalid share over the whole of it.
+/// Measurements of each hand in a stream with phases (device_script.h): "rest" (noise), "pivot", "stroke right",
+/// "stroke down", "stroke away"; rate, intervals and invalid share over the whole of it.
 /// @param strokeLength m, as stated by who moved the tool.
 /// @throws Error (damaged) where the stream has no phase "rest", or fewer than 20 samples in it for every hand; where a
 /// phase "pivot" does not turn the tool enough or the strokes are not three axes.
@@ -126,7 +126,7 @@ Calibration measureCalibration(const DeviceScript& stream, double strokeLength, 
 /// Nothing is measured for a mouse: its counts are exact, and how far the hand moves for one is the system's
 /// setting. Whoever sets the station up says it. Rate and intervals are the device's by its making.
 /// @param pixel how far the hand moves for a pixel (m)
-/// @throws Error (invalid) for a device of another class, or a length that is none of a mouse
+/// @throws Error (invalid) for a device of another class, or a length that no mouse has
 Calibration declaredCalibration(const DeviceInfo& device, double pixel);
 
 }  // namespace calot::recorder

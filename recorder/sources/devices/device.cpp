@@ -31,16 +31,16 @@ void DeviceRequest::readAddress(std::string& host, int& port) const {
   host = argument.substr(bracketed ? 1 : 0, bracketed ? end - 1 : end);
   const std::string rest = end == std::string::npos ? "" : argument.substr(bracketed ? end + 1 : end);
   if (bracketed && (end == std::string::npos || (!rest.empty() && rest.front() != ':')))
-    refuse("[HOST]:PORT is wanted");
+    refuse("[HOST]:PORT is expected");
   if (host.empty() || host.size() > 253)
     refuse(fmt::format("a host is missing: {}:HOST:PORT", name.substr(0, name.find(':'))));
   if (std::any_of(host.begin(), host.end(), [](char c) { return c <= 0x20 || c >= 0x7f || c == '/'; }))
-    refuse("the host is no name or address");
+    refuse("the host is not a name or address");
   if (rest.empty()) return;
   if (rest.size() == 1) refuse("a port is missing behind the colon");
   const auto [last, fault] = std::from_chars(rest.data() + 1, rest.data() + rest.size(), port);
   if (fault != std::errc() || last != rest.data() + rest.size() || port < 1 || port > 65535)
-    refuse("the port is no number from 1 to 65535");
+    refuse("the port is not a number from 1 to 65535");
 }
 
 void ReopeningDevice::connectFirst(const std::string& called) {

@@ -44,15 +44,14 @@ struct DeviceCapabilities {
   int hands = 1;  ///< that it can drive at the same time
   int sensedRotations = 3;
   bool sensesGripper = false;
-  int actuated = 0;               ///< degrees of freedom with a motor; 0: it shows no force
-  double maxForce = 0.0;          ///< N, each hand
-  double maxTorque = 0.0;         ///< N m
-  std::array<Vec3, 2> workspace;  ///< lower and upper corner in D (m); both zero: without bounds
-  double rate = 0.0;              ///< nominal, samples a second and hand; 0: the sender decides
-  bool realTime = true;           ///< false: its clock is the tick clock, so that a run is the same every time
-  bool absolute = true;           ///< false: its frame begins where the device was when it was opened
-
-  DeviceCapabilities() { workspace.fill(Vec3::Zero()); }
+  int actuated = 0;        ///< degrees of freedom with a motor; 0: it shows no force
+  double maxForce = 0.0;   ///< N, each hand
+  double maxTorque = 0.0;  ///< N m
+  /// Lower and upper corner in D (m); both zero: without bounds.
+  std::array<Vec3, 2> workspace{Vec3::Zero(), Vec3::Zero()};
+  double rate = 0.0;     ///< nominal, samples a second and hand; 0: the sender decides
+  bool realTime = true;  ///< false: its clock is the tick clock, so that a run is the same every time
+  bool absolute = true;  ///< false: its frame begins where the device was when it was opened
 };
 
 struct DeviceInfo {

@@ -73,7 +73,7 @@ DeviceSample sampleAt(const JsonPlace& place, std::array<std::uint64_t, handCoun
   for (int i = 0; i < 3; ++i) s.position[i] = number(2 + static_cast<std::size_t>(i), -farthest, farthest);
   Quat q(number(5, -2, 2), number(6, -2, 2), number(7, -2, 2), number(8, -2, 2));
   if (!(std::abs(q.norm() - 1.0) <= unitTolerance)) {
-    place.fail(fmt::format("numbers 6 to 9 are no unit quaternion (norm {:.4g})", q.norm()));
+    place.fail(fmt::format("numbers 6 to 9 are not a unit quaternion (norm {:.4g})", q.norm()));
   }
   s.orientation = q.normalized();
   s.gripper = number(9, -4, 4);

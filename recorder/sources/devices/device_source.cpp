@@ -13,8 +13,7 @@
 #include "sim/math/linear.h"
 
 namespace calot::recorder {
-namespace {
-}
+namespace {}
 
 DeviceMapping::DeviceMapping(const HandDescription& hand, const CameraSample& camera,
                              const HandCalibration* calibration, const HandCalibration* shared)
@@ -147,7 +146,7 @@ void DeviceSource::gather() {
       }
       lost_ = event.text;
     } else if (event.kind == DeviceEvent::Kind::connected) {
-      // What failed stays failed, and keeps its reason.
+      // A failed source stays failed, and keeps its reason.
       if (!failed_) lost_.clear();
     }
   }

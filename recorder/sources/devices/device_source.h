@@ -170,7 +170,7 @@ class DeviceSource final : public SampleSource {
   [[nodiscard]] const Provenance& provenance() const override { return provenance_; }
   bool next(std::uint64_t tick, TickSamples& out) override;
   SourceStatus status() override;
-  /// Forgets what the device measures meanwhile; each hand is anchored anew when the run goes on.
+  /// Discards the device's samples meanwhile; each hand is anchored again when the run goes on.
   void rest() override;
   [[nodiscard]] std::string statusText() const override { return lost_; }
   [[nodiscard]] DeviceSource* device() override { return this; }

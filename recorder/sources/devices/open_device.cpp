@@ -101,11 +101,7 @@ void NullDevice::poll(std::chrono::nanoseconds, DeviceInput& out) {
   next_ = std::max(next_, now - maxAtOnce * period);
   for (; next_ <= now; next_ += period, ++sequence_) {
     for (const Hand hand : {Hand::left, Hand::right}) {
-      DeviceSample sample;
-      sample.deviceTime = sample.hostTime = next_;
-      sample.sequence = sequence_;
-      sample.hand = hand;
-      out.samples.push_back(sample);
+      out.samples.push_back({.deviceTime = next_, .hostTime = next_, .sequence = sequence_, .hand = hand});
     }
   }
 }

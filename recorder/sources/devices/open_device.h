@@ -26,7 +26,7 @@ std::string deviceUsage(std::string_view last = "or");
 
 /// Opens a device by its name, or two by "left=NAME,right=NAME".
 /// @param tools of an OpenIGTLink server: left and right, an empty one for none; ignored for others.
-/// @throws Error: invalid, for a name that is none, a wrong port, no tool or the same one twice; damaged, for a bad
+/// @throws Error: invalid, for an unknown name, a wrong port, no tool or the same one twice; damaged, for a bad
 /// script; failure, for a gamepad that is not there. An OpenIGTLink server need not be there yet.
 /// @param calibration of the device, or null; a camera needs one
 /// @param hand the one hand that it is to drive, beside another device

@@ -18,7 +18,7 @@ namespace {
 using openigtlink::Item;
 
 constexpr std::chrono::milliseconds patience{300};
-constexpr std::size_t maxFaults = 16;  // kinds of fault told a connection
+constexpr std::size_t maxFaults = 16;  // kinds of fault reported for a connection
 constexpr double maxGripper = 3.2;     // rad
 constexpr int statusOk = 1;
 
@@ -81,16 +81,14 @@ void OpenIgtLinkDevice::take(const Item& item, DeviceInput& out) {
       return;
     }
     if (item.name != tool) continue;
-    DeviceSample sample;
-    sample.hand = static_cast<Hand>(h);
-    sample.sequence = sequence_[h]++;
-    sample.hostTime = clock_();
-    sample.deviceTime = item.time;
-    sample.valid = item.kind == Item::Kind::pose && item.rotation;
-    sample.position = item.position;
-    sample.orientation = item.orientation;
-    sample.gripper = gripper_[h];
-    out.samples.push_back(sample);
+    out.samples.push_back({.deviceTime = item.time,
+                           .hostTime = clock_(),
+                           .sequence = sequence_[h]++,
+                           .hand = static_cast<Hand>(h),
+                           .position = item.position,
+                           .orientation = item.orientation,
+                           .gripper = gripper_[h],
+                           .valid = item.kind == Item::Kind::pose && item.rotation});
     if (item.kind == Item::Kind::pose && !item.rotation)
       tellOnce(DeviceEvent::Kind::malformed,
                fmt::format("{}: a pose that is not finite, too far, or no rotation", item.name), out);
@@ -101,16 +99,10 @@ void OpenIgtLinkDevice::take(const Item& item, DeviceInput& out) {
 
 void OpenIgtLinkDevice::read(std::chrono::nanoseconds wait, DeviceInput& out) {
   if (wait.count() > 0 && !stream_.readable(wait)) return;
-  std::array<std::byte, 65536> buffer;
-  // Bounded, so that a sender that never stops cannot hold the thread.
-  for (int i = 0; i < 16; ++i) {
-    const std::size_t n = stream_.receive(buffer);
-    if (n == 0) break;
-    if (!decoder_.take(std::span(buffer.data(), n), [&](const Item& item) { take(item, out); })) {
-      lose("disconnected: what the server sends is no OpenIGTLink", out);
-      return;
-    }
-  }
+  const auto decode = [&](std::span<const std::byte> bytes) {
+    return decoder_.take(bytes, [&](const Item& item) { take(item, out); });
+  };
+  if (!stream_.receiveAll(decode)) lose("disconnected: what the server sends is no OpenIGTLink", out);
 }
 
 constinit const DeviceKind openIgtLinkKind{

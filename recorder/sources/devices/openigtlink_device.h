@@ -74,7 +74,7 @@ struct OpenIgtLinkSettings {
 };
 
 /// Client of an OpenIGTLink server (3D Slicer, PLUS, `calot devices serve`): poses of named tools by TRANSFORM, TDATA
-/// or QTDATA; the opening of a tool's gripper (rad) by SENSOR with the tool's name and "Jaw" behind it; STATUS is told
+/// or QTDATA; the opening of a tool's gripper (rad) by SENSOR with the tool's name and "Jaw" behind it; STATUS appears
 /// as an event. Other messages and tools are passed over.
 ///
 /// Connects at the first poll and again after a loss, every half second. Malformed input that names one of the tools

@@ -46,7 +46,7 @@ std::int64_t nanoseconds(std::uint64_t stamp) {
                                    igtl_frac_to_nanosec(static_cast<igtl_uint32>(stamp & 0xffffffffU)));
 }
 
-/// Puts a pose into an item, or nothing where it is none.
+/// Puts a pose into an item, or nothing if it is invalid.
 void setPose(const Vec3& position, bool rotation, const Quat& orientation, Item& item) {
   item.rotation = rotation && position.allFinite() && position.cwiseAbs().maxCoeff() <= farthest;
   item.position = item.rotation ? position : Vec3::Zero();
@@ -79,7 +79,7 @@ void readBody(const std::string& type, const Item& head, std::span<const std::by
   Item item = head;
   const auto fault = [&](std::size_t wanted) {
     item.kind = Item::Kind::fault;
-    item.text = fmt::format("a {} message of {} bytes, where {} are wanted", type, body.size(), wanted);
+    item.text = fmt::format("a {} message of {} bytes, where {} are expected", type, body.size(), wanted);
     tell(item);
   };
   item.kind = Item::Kind::pose;
@@ -179,7 +179,7 @@ bool Decoder::take(std::span<const std::byte> bytes, const Tell& tell) {
     const std::uint64_t size = header.body_size;
     if (header.version < 1 || header.version > 3 || type.empty() || size > maxBody ||
         (isRead(type) && size > maxRead)) {
-      item.text = "what came is no OpenIGTLink header";
+      item.text = "what came is not an OpenIGTLink header";
       tell(item);
       sound = false;
       break;

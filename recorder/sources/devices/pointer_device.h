@@ -56,7 +56,7 @@ class PointerDevice : public ReopeningDevice {
   virtual std::string find() = 0;
   /// Reads the controls. @returns why the device is lost, or an empty text
   virtual std::string readControls() = 0;
-  /// Moves the pointer for so many seconds, and gives a sample.
+  /// Moves the pointer for `seconds`, and gives a sample.
   virtual void advance(double seconds, std::int64_t now, DeviceInput& out) = 0;
 
   std::int64_t last_;  ///< time of the last sample (ns)

@@ -15,10 +15,9 @@ namespace calot {
 std::vector<Field> ConnectiveDescription::fields() {
   using S = ConnectiveDescription;
   return {
-      object(
-          "connective",
-          "Fibrous strands over the bed where the first organ lies on the second: they pull, tear, and burn under the "
-          "energised hook"),
+      object("connective",
+             "Fibrous strands over the bed of the first organ on the second: they pull, tear, and burn under the "
+             "energised hook"),
       {"name", at<S, &S::name>, sceneName, "Name in tables and events"},
       roleField(at<S, &S::role>, {StructureRole::cysticPlate}),
       {"first", at<S, &S::first>, sceneName, "Organ whose surface the bed is part of"},

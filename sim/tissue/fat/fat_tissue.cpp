@@ -128,7 +128,7 @@ std::string addFat(const SceneDescription& scene, const FatDescription& descript
         found = true;
       }
     }
-    if (!found) return what + "hangs on '" + attachment.to + "', which is no organ and no vessel of the scene";
+    if (!found) return what + "hangs on '" + attachment.to + "', which is neither an organ nor a vessel of the scene";
     partners.push_back(std::move(partner));
   }
   std::vector<FatRegion> regions;
@@ -137,7 +137,7 @@ std::string addFat(const SceneDescription& scene, const FatDescription& descript
                          return isOverTriangle(description.triangle, description.triangleDepth, p);
                        }});
   }
-  // What hides a vessel that is to be divided.
+  // Tissue that hides a vessel that is to be divided.
   constexpr double coverDepth = 0.0015;  // m
   for (const DivideDescription& divide : scene.procedure.divide) {
     if (scene.procedure.fat != description.name) break;
@@ -237,7 +237,7 @@ void FatTissue::resize(const Model& model, Results& results) { results.fat.resiz
 
 namespace {
 
-/// What lies this far below the uncarved surface was laid bare by the hook, in cells: from, fully.
+/// Depth below the uncarved surface at which the hook laid tissue bare, in cells: from, fully.
 constexpr double bareFrom = 0.4;
 constexpr double bareFully = 1.6;
 /// Such tissue is seared, not charred through.

@@ -108,7 +108,7 @@ std::string VesselTissue::build(const SceneDescription& scene, Model& model) {
     if (d.start.kind == VesselEndDescription::Kind::vessel) {
       std::size_t parent = 0;
       while (parent < v && scene.vessels[parent].name != d.start.to) ++parent;
-      if (parent == v) return what + "grows out of '" + d.start.to + "', which is no vessel before it";
+      if (parent == v) return what + "grows out of '" + d.start.to + "', which is not a vessel before it";
       home.push_back({home[parent].tree, branches[home[parent].tree].size()});
       branch.join = nearestNode(BeamModel(branches[home[parent].tree]), home[parent].branch, d.path.front());
     } else {
@@ -133,7 +133,8 @@ std::string VesselTissue::build(const SceneDescription& scene, Model& model) {
       std::size_t organ = 0;
       while (organ < organs.size() && organs[organ].name != end.to) ++organ;
       if (organ == organs.size()) {
-        return "vessel '" + scene.vessels[v].name + "': is grown to '" + end.to + "', which is no organ of the scene";
+        return "vessel '" + scene.vessels[v].name + "': is grown to '" + end.to +
+               "', which is not an organ of the scene";
       }
       std::vector<int> grown;
       for (std::size_t i = 0; i < branch.node.size(); ++i) {

@@ -117,7 +117,7 @@ TEST_F(Grades, theRuleIsDeclaredAndRefusedWhereItCannotBe) {
   expectRefusal(ErrorKind::invalid, "norm: a name", [&] { made(); });
   request_.name = "x";
   request_.who.attemptRule = AttemptRule::mean;
-  expectRefusal(ErrorKind::invalid, "a mean of attempts is no attempt", [&] { made(); });
+  expectRefusal(ErrorKind::invalid, "a mean of attempts is not an attempt", [&] { made(); });
 }
 
 TEST_F(Grades, figuresOfPhasesCountWhereTheyAreAskedFor) {

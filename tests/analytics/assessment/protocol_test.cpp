@@ -53,7 +53,7 @@ TEST(Protocol, everyFaultHasItsPlace) {
     for (json& h : p["hypotheses"]) h["primary"] = false;
   });
   fault("/hypotheses/0/direction: unknown key", [](json& p) { p["hypotheses"][0]["direction"] = "up"; });
-  fault("/unit: \"participant\" is wanted", [](json& p) { p["unit"] = "attempt"; });
+  fault("/unit: \"participant\" is expected", [](json& p) { p["unit"] = "attempt"; });
   fault("/attemptRule: unknown word; known are first, mean, single", [](json& p) { p["attemptRule"] = "best"; });
   fault("/missing: unknown word", [](json& p) { p["missing"] = "zero"; });
   fault("/level: 0 is not in (0, 0.5]", [](json& p) { p["level"] = 0; });
@@ -80,7 +80,7 @@ TEST(Protocol, populationsAreCriteriaAndNotLabels) {
   };
   EXPECT_EQ(with("operations", "99"), "operations 99, at least 100 wanted");
   EXPECT_EQ(with("operations", "501"), "operations 501, at most 500 wanted");
-  EXPECT_EQ(with("operations", "many"), "operations is no number");
+  EXPECT_EQ(with("operations", "many"), "operations is not a number");
   EXPECT_EQ(with("level", "resident"), "level resident, attending wanted");
   EXPECT_EQ(whyOutside(p, {{"level", "attending"}}), "operations not recorded");
 }

@@ -36,7 +36,7 @@ TEST(AttemptDecisions, exclusionsAreKeptWithReasonAndAuthorAndAudited) {
   EXPECT_FALSE(database.attempt(uuidOf(1))->excluded);
   expectRefusal(ErrorKind::refused, "no attempt", [&] { database.excludeAttempts({uuidOf(9)}, "x", "y"); });
   expectRefusal(ErrorKind::refused, "not excluded", [&] { database.includeAttempts({uuidOf(1)}, "x", "y"); });
-  expectRefusal(ErrorKind::invalid, "a reason is wanted", [&] { database.excludeAttempts({uuidOf(1)}, " ", "y"); });
+  expectRefusal(ErrorKind::invalid, "a reason is expected", [&] { database.excludeAttempts({uuidOf(1)}, " ", "y"); });
   expectRefusal(ErrorKind::invalid, "name who decides", [&] { database.includeAttempts({uuidOf(1)}, "x", ""); });
   SQLite::Database raw(path, SQLite::OPEN_READWRITE);
   EXPECT_EQ(raw.execAndGet("SELECT count(*) FROM audit WHERE action LIKE 'attempt-%'").getInt(), 3);

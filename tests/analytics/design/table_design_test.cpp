@@ -108,7 +108,8 @@ TEST(TableDesign, learningToACriterion) {
   EXPECT_NEAR(report.json["curves"][1]["mean"][0].get<double>(), 350.0 / 3.0, 1e-12);
   Asked both = asked(Design::learning, {"seconds:lower", "score"});
   both.choices.criterion = 60.0;
-  support::expectRefusal(ErrorKind::invalid, "a criterion is of one figure", [&] { (void)reportOf(attempts, both); });
+  support::expectRefusal(ErrorKind::invalid, "a criterion applies to one figure",
+                         [&] { (void)reportOf(attempts, both); });
   Asked blind = asked(Design::learning, {"seconds"});
   blind.choices.criterion = 60.0;
   support::expectRefusal(ErrorKind::refused, "is not known", [&] { (void)reportOf(attempts, blind); });

@@ -74,9 +74,9 @@ TEST(RatingForm, answersAreCheckedAgainstTheForm) {
     expectRefusal(ErrorKind::invalid, words, [&] { (void)answersOf(form, given); });
   };
   fault("no such item; it has competent", {{"able", "1"}});
-  fault("\"2\" is no whole number from 0 to 1", {{"competent", "2"}});
-  fault("is no whole number", {{"competent", "0.5"}});
-  fault("is no whole number", {{"competent", "\n"}});
+  fault("\"2\" is not a whole number from 0 to 1", {{"competent", "2"}});
+  fault("is not a whole number", {{"competent", "0.5"}});
+  fault("is not a whole number", {{"competent", "\n"}});
   fault("answered twice", {{"competent", "1"}, {"competent", "0"}});
   fault("not answered", {});
   fault("every item was left blank", {{"competent", "-"}});

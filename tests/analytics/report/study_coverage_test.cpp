@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A study whose groups were not measured alike says so.
-#include "analytics/report/study_coverage.h"
+#include "analytics/report/study_rows.h"
 
 #include <gtest/gtest.h>
 

@@ -127,7 +127,7 @@ TEST(RandomIntercept, degenerate) {
   EXPECT_EQ(reason({{0, true, 0, 1}, {0, true, 0, 2}, {1, false, 0, 2}}), "too few participants for the model");
   EXPECT_EQ(
       reason({{0, true, 0, 1}, {0, true, 0, 2}, {1, true, 0, 4}, {2, false, 1, 2}, {2, false, 1, 5}, {3, false, 1, 3}}),
-      "group and site can't be told apart");
+      "group and site cannot be distinguished");
 }
 
 TEST(OnePerParticipant, firstAndMean) {

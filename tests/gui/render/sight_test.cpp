@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "gui/render/instrument_mesh.h"
-#include "recorder/sources/scope/picture_geometry.h"
+#include "recorder/sources/scope/endoscope.h"
 #include "sim/instruments/instruments.h"
 #include "sim/math/random.h"
 #include "tests/gui/render/support/shapes.h"

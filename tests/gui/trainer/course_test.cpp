@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "gui/trainer/scenes_page.h"
+#include "gui/trainer/course.h"
 
 #include <gtest/gtest.h>
 

@@ -123,7 +123,7 @@ TEST(Hints, FollowTheProcedure) {
 TEST(Hints, AreTheSummaryWhereThereIsNoProcedure) {
   EXPECT_EQ(hintFor(SceneDescription{}, "Touch the liver.", AttemptFigures{}), "Touch the liver.");
   AttemptFigures figures;
-  EXPECT_EQ(whatIsUndone(SceneDescription{}, figures), "nothing was touched") << "holding still is no attempt";
+  EXPECT_EQ(whatIsUndone(SceneDescription{}, figures), "nothing was touched") << "holding still is not an attempt";
   figures.touched = true;
   EXPECT_EQ(whatIsUndone(SceneDescription{}, figures), "");
 }

@@ -56,7 +56,7 @@ class Server : public testing::Test {
     const RecordedStep of = recorded(n);
     wire::Step step;
     step.wanted = wanted;
-    wire::toWire(of.samples, of.ticks, step.ticks);
+    for (std::size_t i = 0; i < of.samples.size(); ++i) step.ticks.push_back({of.samples[i], of.ticks[i]});
     return step;
   }
   void begin() {
@@ -221,16 +221,17 @@ TEST_F(Server, RefusesATickThatIsNoneOrNamesWhatIsNotThere) {
   };
   EXPECT_EQ(faultOf([](wire::Step& s) { s.ticks.pop_back(); }), wire::FaultCode::message);
   EXPECT_EQ(faultOf([](wire::Step& s) { s.wanted = 8; }), wire::FaultCode::message);
-  EXPECT_EQ(faultOf([](wire::Step& s) { s.ticks[3].hand[1].set = 5; }), wire::FaultCode::contactSet);
-  EXPECT_EQ(faultOf([](wire::Step& s) { s.ticks[3].hand[1].instrument = 99; }), wire::FaultCode::message);
-  EXPECT_EQ(faultOf([](wire::Step& s) {
-              s.ticks[3].hand[0].orientation = {0.5, 0.0, 0.0, 0.0};
-            }),
+  EXPECT_EQ(faultOf([](wire::Step& s) { s.ticks[3].logged.hand[1].contactSet = 5; }), wire::FaultCode::contactSet);
+  EXPECT_EQ(faultOf([](wire::Step& s) { s.ticks[3].samples.hand[1].instrument = static_cast<InstrumentKind>(99); }),
             wire::FaultCode::message);
-  EXPECT_EQ(faultOf([](wire::Step& s) { s.ticks[9].hand[0].position[1] = std::numeric_limits<double>::quiet_NaN(); }),
+  EXPECT_EQ(faultOf([](wire::Step& s) { s.ticks[3].samples.hand[0].orientation = Quat(0.5, 0.0, 0.0, 0.0); }),
             wire::FaultCode::message);
-  EXPECT_EQ(faultOf([](wire::Step& s) { s.ticks[9].cameraPosition[1] = std::numeric_limits<double>::infinity(); }),
-            wire::FaultCode::message);
+  EXPECT_EQ(
+      faultOf([](wire::Step& s) { s.ticks[9].samples.hand[0].position[1] = std::numeric_limits<double>::quiet_NaN(); }),
+      wire::FaultCode::message);
+  EXPECT_EQ(
+      faultOf([](wire::Step& s) { s.ticks[9].samples.camera.position[1] = std::numeric_limits<double>::infinity(); }),
+      wire::FaultCode::message);
 }
 
 /// Whatever comes in: an answer that is a message, and no memory beyond what came in.

@@ -158,14 +158,14 @@ TEST(SceneFile, everyFaultIsNamedWithItsPlace) {
       {"/organs/0/material/youngModulus", "-5000",
        "scenes/small.json: /organs/0/material/youngModulus: -5000 is not in [10, 1000000000]"},
       {"/organs/0/material/density", "\"heavy\"",
-       "scenes/small.json: /organs/0/material/density: a number is wanted, not string"},
+       "scenes/small.json: /organs/0/material/density: a number is expected, not string"},
       {"/organs/0/material/density", "", "scenes/small.json: /organs/0/material: the key \"density\" is missing"},
       {"/organs/0/colour", "1",
        "scenes/small.json: /organs/0/colour: unknown key; known are name, appearance, role, mesh, tetrahedra, "
        "material, "
        "friction, burnThrough, anchors"},
       {"/organs/0/tetrahedra", "9", "scenes/small.json: /organs/0/tetrahedra: 9 is not in [10, 1000000]"},
-      {"/organs/0/tetrahedra", "100.5", "scenes/small.json: /organs/0/tetrahedra: a whole number is wanted"},
+      {"/organs/0/tetrahedra", "100.5", "scenes/small.json: /organs/0/tetrahedra: a whole number is expected"},
       {"/organs/0/tetrahedra", "-100", "scenes/small.json: /organs/0/tetrahedra: -100 is not in [10, 1000000]"},
       {"/organs/0/tetrahedra", "18446744073709551615",
        "scenes/small.json: /organs/0/tetrahedra: 1.8446744073709552e+19 is not in [10, 1000000]"},
@@ -174,7 +174,7 @@ TEST(SceneFile, everyFaultIsNamedWithItsPlace) {
       {"/organs/1/anchors/0/nearOrgan/organ", "\"gallbladder\"",
        "scenes/small.json: /organs/1/anchors/0/nearOrgan/organ: an organ cannot be anchored to itself"},
       {"/organs/1/anchors/0", "{}",
-       "scenes/small.json: /organs/1/anchors/0: one of \"sphere\" and \"nearOrgan\" is wanted"},
+       "scenes/small.json: /organs/1/anchors/0: one of \"sphere\" and \"nearOrgan\" is expected"},
       {"/organs/0/anchors/0/sphere/radius", "0",
        "scenes/small.json: /organs/0/anchors/0/sphere/radius: 0 is not in (0, 1]"},
       {"/organs/1/name", "\"liver\"", "scenes/small.json: /organs/1/name: another organ has this name"},
@@ -185,9 +185,9 @@ TEST(SceneFile, everyFaultIsNamedWithItsPlace) {
       {"/organs/0/mesh/file", "\"organs/b.obj\"",
        "scenes/small.json: /organs/0/mesh/file: there is no asset \"organs/b.obj\""},
       {"/hands/left", "", "scenes/small.json: /hands: the key \"left\" is missing"},
-      {"/hands", "[]", "scenes/small.json: /hands: an object is wanted, not array"},
+      {"/hands", "[]", "scenes/small.json: /hands: an object is expected, not array"},
       {"/hands/left/port", "[0, 0]", "scenes/small.json: /hands/left/port: 2 entries; from 3 to 3 are allowed"},
-      {"/hands/left/port", "[0, null, 0]", "scenes/small.json: /hands/left/port/1: a number is wanted, not null"},
+      {"/hands/left/port", "[0, null, 0]", "scenes/small.json: /hands/left/port/1: a number is expected, not null"},
       {"/hands/left/port", "[-0.02, 0, -0.02]", "scenes/small.json: /hands/left/home: nearer than 0.01 m to the port"},
       {"/hands/left/port", "[-0.9, 0, 0]",
        "scenes/small.json: /hands/left/port: farther than 0.3 m from the workspace"},
@@ -199,9 +199,9 @@ TEST(SceneFile, everyFaultIsNamedWithItsPlace) {
       {"/camera/target", "[0, 0, -0.1]", "scenes/small.json: /camera/target: the target is the camera's own position"},
       {"/camera/up", "[0, 0, 1]", "scenes/small.json: /camera: \"up\" is zero or along the view"},
       {"/formatVersion", "2", "scenes/small.json: /formatVersion: 2 is not in [1, 1]"},
-      {"/format", "\"calot-performer\"", "scenes/small.json: /format: \"calot-scene\" is wanted"},
+      {"/format", "\"calot-performer\"", "scenes/small.json: /format: \"calot-scene\" is expected"},
       {"/version/major", "0", "scenes/small.json: /version/major: 0 is not in [1, 1000000]"},
-      {"/solver/sleeping", "1", "scenes/small.json: /solver/sleeping: true or false is wanted, not number"},
+      {"/solver/sleeping", "1", "scenes/small.json: /solver/sleeping: true or false is expected, not number"},
   };
   for (const Fault& fault : faults) {
     json scene = validScene();
@@ -221,7 +221,7 @@ TEST(SceneFile, pathsThatLeaveTheAssetsAreRefused) {
     json scene = validScene();
     scene["organs"][0]["mesh"]["file"] = path;
     EXPECT_EQ(faultOf(scene),
-              "scenes/small.json: /organs/0/mesh/file: a path relative to the assets folder is wanted, with / and "
+              "scenes/small.json: /organs/0/mesh/file: a path relative to the assets folder is expected, with / and "
               "without . or ..");
   }
 }
@@ -229,7 +229,7 @@ TEST(SceneFile, pathsThatLeaveTheAssetsAreRefused) {
 TEST(SceneFile, whatIsNotJsonIsNamedWithLineAndColumn) {
   EXPECT_EQ(faultOf([] { load("{\n  \"name\": }"); }), "scenes/small.json: not JSON at line 2, column 11");
   EXPECT_EQ(faultOf([] { load(""); }), "scenes/small.json: the file is empty");
-  EXPECT_EQ(faultOf([] { load("[]"); }), "scenes/small.json: /: an object is wanted, not array");
+  EXPECT_EQ(faultOf([] { load("[]"); }), "scenes/small.json: /: an object is expected, not array");
   EXPECT_EQ(faultOf([] { load("{\"gravity\": [NaN, 0, 0]}"); }).substr(0, 27), "scenes/small.json: not JSON");
   EXPECT_EQ(faultOf([] { load("{\"timeLimit\": 1e999}"); }),
             "scenes/small.json: a number is larger than a double holds");

@@ -52,7 +52,7 @@ TEST(SceneVessels, everyFaultIsNamedWithItsPlace) {
       {"/vessels/0/wall", "0.003", "/vessels/0/wall: not thinner than the radius"},
       {"/vessels/0/wall", "-0.001", "/vessels/0/wall: -0.001 is not in [5e-05, 0.02]"},
       {"/vessels/0/elements", "0", "/vessels/0/elements: 0 is not in [2, 400]"},
-      {"/vessels/0/elements", "2.5", "/vessels/0/elements: a whole number is wanted"},
+      {"/vessels/0/elements", "2.5", "/vessels/0/elements: a whole number is expected"},
       {"/vessels/0/ultimateStrain", "0", "/vessels/0/ultimateStrain: 0 is not in (0, 10]"},
       {"/vessels/0/friction", "-0.1", "/vessels/0/friction: -0.1 is not in [0, 2]"},
       {"/vessels/0/path", "[[0, 0, 0]]", "/vessels/0/path: 1 entries; from 2 to 1000 are allowed"},
@@ -81,7 +81,7 @@ TEST(SceneVessels, everyFaultIsNamedWithItsPlace) {
       {"/vessels/0/colour", "1",
        "/vessels/0/colour: unknown key; known are name, appearance, role, path, elements, radius, wall, material, "
        "ultimateStrain, burnThrough, friction, start, end"},
-      {"/vessels", "{}", "/vessels: a list is wanted, not object"},
+      {"/vessels", "{}", "/vessels: a list is expected, not object"},
   };
   for (const Change& change : changes) EXPECT_EQ(faultOf(change), change.message) << change.pointer;
 }

@@ -313,7 +313,7 @@ TEST_F(RawSamplesChanged, WhatNoWriterMakesIsNamedWithItsRow) {
            {row("r['valid'] = 0; r['used'] = 1"), "/device/left/samples: row 7 was used"},
            {row("r['valid'] = 1; r['position'][1] = numpy.inf"), "/device/left/samples: row 7 is valid and not finite"},
            {row("r['sequence'] = 5"), "/device/left/samples: row 7 is out of order"},
-           {row("r['tick'] = 2**63"), "/device/left/samples: row 7 is of a tick outside its flush"},
+           {row("r['tick'] = 2**63"), "/device/left/samples: row 7 belongs to a tick outside its flush"},
            {"s.resize(199, axis=0)", "/device/left/samples: holds 199 rows"},
            {"c.resize(2, axis=0)", "/device/counts: holds 2 rows"},
            {"r = c[2]; r['left'] = 2**62; c[2] = r", "/device/counts: row 2 claims more"},

@@ -7,7 +7,7 @@
 
 #include "apps/calot-organs/organ_shapes.h"
 #include "recorder/base/file_bytes.h"
-#include "recorder/formats/obj.h"
+#include "recorder/formats/surface_bytes.h"
 #include "sim/geometry/surface_distance.h"
 #include "sim/geometry/surface_report.h"
 

@@ -94,7 +94,7 @@ class Schema {
     std::uint32_t integer = 0;
     switch (field.value.type) {
       case Type::numbers: {
-        if (field.value.count == 0) return numberOf(*numbers);
+        if (field.value.count == 0) return *numbers < field.range.lower ? Json() : numberOf(*numbers);
         Json out = Json::array();
         for (std::size_t i = 0; i < field.value.count; ++i) out.push_back(numberOf(numbers[i]));
         return out;

@@ -16,12 +16,18 @@ std::string interval(const Json& number) {
                      number.at(upperOpen ? "exclusiveMaximum" : "maximum").dump(), upperOpen ? ")" : "]");
 }
 
-std::string valueOf(const Json& property) {
+/// Pages of definitions.
+struct Pages {
+  const OnPage& onPage;
+  const std::string& otherPage;
+};
+
+std::string valueOf(const Json& property, const Pages& pages) {
   if (property.contains("$ref")) {
     const std::string name = property.at("$ref").get<std::string>().substr(8);
     std::string anchor = name;
     std::transform(anchor.begin(), anchor.end(), anchor.begin(), [](unsigned char c) { return std::tolower(c); });
-    return fmt::format("[{}](#{})", name, anchor);
+    return fmt::format("[{}]({}#{})", name, pages.onPage(name) ? "" : pages.otherPage, anchor);
   }
   if (property.contains("const")) return fmt::format("`{}`", property.at("const").get<std::string>());
   if (property.contains("enum")) {
@@ -35,10 +41,10 @@ std::string valueOf(const Json& property) {
   if (type == "boolean") return "true, false";
   if (type == "string") return fmt::format("text, {} bytes at most", property.at("maxLength").dump());
   const std::string least = property.at("minItems").dump(), most = property.at("maxItems").dump();
-  return fmt::format("{} of {}", least == most ? least : least + " to " + most, valueOf(property.at("items")));
+  return fmt::format("{} of {}", least == most ? least : least + " to " + most, valueOf(property.at("items"), pages));
 }
 
-std::string table(const Json& object) {
+std::string table(const Json& object, const Pages& pages) {
   std::string out = "| key | value | default | meaning |\n| --- | --- | --- | --- |\n";
   const Json& required = object.at("required");
   for (const auto& entry : object.at("properties").items()) {
@@ -46,7 +52,7 @@ std::string table(const Json& object) {
     const bool must = std::find(required.begin(), required.end(), entry.key()) != required.end();
     std::string meaning = property.at("description").get<std::string>();
     meaning.pop_back();
-    out += fmt::format("| `{}` | {} | {} | {} |\n", entry.key(), valueOf(property),
+    out += fmt::format("| `{}` | {} | {} | {} |\n", entry.key(), valueOf(property, pages),
                        property.contains("default") ? property.at("default").dump()
                        : must                       ? "required"
                                                     : "",
@@ -57,11 +63,16 @@ std::string table(const Json& object) {
 
 }  // namespace
 
-std::string keyTables(const Json& schema) {
-  std::string out = table(schema);
+std::string rootTable(const Json& schema, const OnPage& onPage, const std::string& otherPage) {
+  return table(schema, {onPage, otherPage});
+}
+
+std::string keyTables(const Json& schema, const OnPage& onPage, const std::string& otherPage) {
+  std::string out;
   for (const auto& entry : schema.at("$defs").items()) {
+    if (!onPage(entry.key())) continue;
     out += fmt::format("\n## {}\n\n{}\n\n{}", entry.key(), entry.value().at("description").get<std::string>(),
-                       table(entry.value()));
+                       table(entry.value(), {onPage, otherPage}));
   }
   return out;
 }

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <fstream>
 #include <iterator>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,7 +15,7 @@
 #include "analytics/assessment/protocol.h"
 #include "analytics/assessment/rating_form.h"
 #include "gui/trainer/course.h"
-#include "recorder/formats/scene_surface.h"
+#include "recorder/formats/scene_assets.h"
 #include "recorder/sources/devices/calibration.h"
 #include "recorder/sources/performer_profile.h"
 #include "recorder/sources/tracked_motion.h"
@@ -37,6 +38,13 @@ Texts texts() {
   // A rule across fields that a schema can state.
   scene["$defs"]["anchor"]["minProperties"] = 1;
   scene["$defs"]["anchor"]["maxProperties"] = 1;
+  const std::string scenePage = "scene-keys.md", tissuePage = "scene-tissue-keys.md";
+  const auto ofTissue = [](const std::string& definition) {
+    return std::set<std::string>{"organ",      "mesh",   "material",  "anchor", "sphere",        "nearOrgan",
+                                 "connective", "vessel", "vesselEnd", "fat",    "fatAttachment", "fatTriangle"}
+        .contains(definition);
+  };
+  const auto ofScene = [&](const std::string& definition) { return !ofTissue(definition); };
   const auto file = [](const ordered_json& schema) { return schema.dump(2) + "\n"; };
   return {
       {"schemas/calibration.schema.json",
@@ -53,10 +61,18 @@ Texts texts() {
        file(jsonSchema("Calot study protocol", "docs/how-to/protocol.md", recordOf<analytics::Protocol>()))},
       {"schemas/scene.schema.json", file(scene)},
       {"docs/reference/scene-keys.md",
-       "# Keys of a scene\n\n<!-- generated: record_texts --write -->\n"
-       "Each key of a [scene file](scenes.md), with its range (round brackets exclude the bound), unit and default.\n"
-       "Generated from the tables that the reader uses.\n\n" +
-           structure::keyTables(scene)},
+       "# Keys of a scene\n\n"
+       "This page lists the keys of a [scene file](scenes.md), with range (a round bracket excludes the bound), unit "
+       "and\n"
+       "default; [another](scene-tissue-keys.md) those of its tissues. Example: `\"timeLimit\": 600` ends attempts "
+       "after\n"
+       "ten minutes. Both are generated from the tables that the reader uses (`record_texts . --write`).\n\n" +
+           structure::rootTable(scene, ofScene, tissuePage) + structure::keyTables(scene, ofScene, tissuePage)},
+      {"docs/reference/scene-tissue-keys.md",
+       "# Keys of a scene's tissues\n\n"
+       "This page lists the keys of organs, connective tissue, vessels and fat of a [scene file](scenes.md);\n"
+       "[another](scene-keys.md) those of the scene. Example: `\"friction\": 0.2` doubles the default of an organ.\n" +
+           structure::keyTables(scene, ofTissue, scenePage)},
   };
 }
 

@@ -9,10 +9,11 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <optional>
+#include <sstream>
 
 #include "recorder/base/errors.h"
+#include "recorder/sources/devices/camera/frame_source.h"
 #include "recorder/sources/devices/camera/lens_calibration.h"
-#include "recorder/sources/devices/camera/live_camera.h"
 #include "recorder/sources/devices/camera/marker_sheets.h"
 
 namespace calot::recorder {
@@ -203,11 +204,9 @@ std::vector<DeviceScript::Phase> parsePhases(const std::string& text) {
                             part.substr(0, 60)));
   };
   std::vector<DeviceScript::Phase> out;
-  std::string_view rest = text;
-  while (!rest.empty()) {
-    std::string_view part = rest.substr(0, rest.find(','));
-    const std::string whole(part);
-    rest.remove_prefix(std::min(rest.size(), part.size() + 1));
+  std::istringstream parts(text);
+  for (std::string whole; std::getline(parts, whole, ',');) {
+    std::string_view part = whole;
     const std::size_t equals = part.find('=');
     if (equals == std::string_view::npos) refuse(whole);
     DeviceScript::Phase phase;

@@ -10,14 +10,14 @@
 #include <unistd.h>
 #include <algorithm>
 #include <cstring>
+#include <sstream>
 #include <thread>
 #include <utility>
 
 #include "recorder/base/errors.h"
 #include "recorder/base/file_bytes.h"
 #include "recorder/sources/devices/calibration.h"
-#include "recorder/sources/devices/camera/live_camera.h"
-#include "recorder/sources/devices/camera/video_file.h"
+#include "recorder/sources/devices/camera/frame_source.h"
 #include "recorder/sources/devices/evdev.h"
 #include "recorder/sources/devices/pointer_device.h"
 
@@ -170,7 +170,7 @@ void CameraDevice::measure(std::int64_t time, DeviceInput& out) {
   std::uint64_t missed = 0;
   for (std::size_t i = 0; i < camera_.size(); ++i) {
     Camera& c = *camera_[i];
-    // Of the same moment: nearer than half a period.
+    // Simultaneous: nearer than half a period.
     if (!c.waiting || c.pending.time > time + period_ / 2) continue;
     c.waiting = false;
     missed = frames.empty() ? c.pending.missed : std::min(missed, c.pending.missed);
@@ -258,7 +258,7 @@ OpenedDevice openCamera(const DeviceRequest& request) {
   const CameraRig& rig = *calibration.camera;
   if (wanted.cameras.size() != rig.cameras.size())
     request.refuse(
-        fmt::format("{} cameras are named, the calibration is of {}", wanted.cameras.size(), rig.cameras.size()));
+        fmt::format("{} cameras are named, the calibration covers {}", wanted.cameras.size(), rig.cameras.size()));
   std::unique_ptr<PedalKeys> keys;
   if (!wanted.keys.empty()) keys = std::make_unique<PedalKeys>(wanted.keys);
   if (!wanted.live) {
@@ -302,11 +302,8 @@ std::string cameraIdentity(const std::vector<std::string>& cards) {
 
 CameraRequest parseCameraRequest(const DeviceRequest& request) {
   CameraRequest out;
-  std::string rest = request.argument;
-  while (!rest.empty()) {
-    const std::size_t comma = std::min(rest.find(','), rest.size());
-    std::string part = rest.substr(0, comma);
-    rest = comma < rest.size() ? rest.substr(comma + 1) : "";
+  std::istringstream parts(request.argument);
+  for (std::string part; std::getline(parts, part, ',');) {
     if (part.empty()) request.refuse("a name is missing beside a comma");
     if (part.starts_with(keysMark)) {
       out.keys = part.substr(keysMark.size());
@@ -352,7 +349,7 @@ std::unique_ptr<CameraDevice> openFilms(const std::vector<std::string>& files, c
     info.sourceFile += sources[i]->name();
     hashes += sha256OfFile(files[i]);
   }
-  // Of one film its hash; of two, that of both hashes' text.
+  // One film: its hash; two: the hash of both hashes' text.
   info.sourceSha256 = files.size() == 1 ? hashes : sha256Hex(std::as_bytes(std::span(hashes)));
   info.detail = "plays " + info.sourceFile;
   info.operatorKind = OperatorKind::kinematics;

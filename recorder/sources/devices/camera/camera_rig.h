@@ -28,7 +28,7 @@ struct CameraLens {
   double focalUncertainty = 0.0;                     ///< standard deviation of the focal length, relative
 };
 
-/// Where a point of the camera's frame K (x right, y down, z away; m) is seen. @pre z > 0
+/// Pixel of a point of the camera's frame K (x right, y down, z away; m). @pre z > 0
 Eigen::Vector2d projected(const CameraLens& lens, const Vec3& point);
 
 /// Direction in K, as (x / z, y / z), in which a pixel looks.

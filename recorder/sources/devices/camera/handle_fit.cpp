@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-#include "recorder/sources/devices/camera/handle_fit.h"
+#include "recorder/sources/devices/camera/handle_tracker.h"
 
 #include <algorithm>
 #include <cmath>
@@ -96,6 +96,12 @@ Quat rotationBy(const Vec3& vector) {
   if (angle < 1e-12) return Quat(1.0, 0.5 * vector.x(), 0.5 * vector.y(), 0.5 * vector.z()).normalized();
   const double s = std::sin(0.5 * angle) / angle;
   return {std::cos(0.5 * angle), s * vector.x(), s * vector.y(), s * vector.z()};
+}
+
+Vec3 rotationVector(const Quat& q) {
+  const Vec3 v = q.w() < 0.0 ? Vec3(-q.vec()) : Vec3(q.vec());
+  const double sine = v.norm();
+  return sine < 1e-12 ? Vec3(2.0 * v) : Vec3(2.0 * std::atan2(sine, std::abs(q.w())) / sine * v);
 }
 
 std::optional<PoseFit> fitPose(const CameraRig& rig, std::span<const CornerSight> corners, const Pose& start,

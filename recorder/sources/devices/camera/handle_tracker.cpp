@@ -22,12 +22,6 @@ constexpr double largestFlap = 1.5;        // rad
 
 double turnBetween(const Quat& a, const Quat& b) { return 2.0 * std::acos(std::min(1.0, std::abs(a.dot(b)))); }
 
-Vec3 turnVector(const Quat& q) {
-  const Vec3 v = q.w() < 0.0 ? Vec3(-q.vec()) : Vec3(q.vec());
-  const double sine = v.norm();
-  return sine < 1e-12 ? Vec3(2.0 * v) : Vec3(2.0 * std::atan2(sine, std::abs(q.w())) / sine * v);
-}
-
 double rowDelay(const CameraLens& lens, double row) { return lens.readout * (row / lens.height - 0.5); }
 
 /// Root mean square error of corners (pixels).
@@ -204,7 +198,7 @@ HandleSight HandleTracker::track(std::span<const SeenFrame> frames) {
   twist_ = {};
   if (seconds > 0.0 && seconds <= rememberedSeconds) {
     twist_.velocity = (now.pose.position - last_->pose.position) / seconds;
-    twist_.angular = turnVector(now.pose.orientation * last_->pose.orientation.conjugate()) / seconds;
+    twist_.angular = rotationVector(now.pose.orientation * last_->pose.orientation.conjugate()) / seconds;
   }
   last_ = now;
   out.jaw = jawOf(frames, out);

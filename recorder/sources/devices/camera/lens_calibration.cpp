@@ -14,7 +14,7 @@
 #include <set>
 
 #include "recorder/base/errors.h"
-#include "recorder/sources/devices/camera/handle_fit.h"
+#include "recorder/sources/devices/camera/handle_tracker.h"
 #include "recorder/sources/devices/camera/marker_sheets.h"
 #include "recorder/sources/pointing.h"
 
@@ -196,10 +196,8 @@ BlockSolution solveBlocks(BlockProblem& problem) {
 }
 
 Block6 vectorOf(const Pose& pose) {
-  const Quat q = pose.orientation.w() < 0.0 ? Quat(-pose.orientation.coeffs()) : pose.orientation;
-  const double sine = q.vec().norm();
   Block6 out;
-  out << (sine < 1e-12 ? Vec3(2.0 * q.vec()) : Vec3(2.0 * std::atan2(sine, q.w()) / sine * q.vec())), pose.position;
+  out << rotationVector(pose.orientation), pose.position;
   return out;
 }
 

@@ -22,7 +22,7 @@ struct BoardView {
 /// @param source is read to its end
 std::vector<BoardView> boardViews(FrameSource& source);
 
-/// Where a corner was seen, and how far from where the lens has it.
+/// Pixel of a corner, and its distance from the lens model's projection.
 struct CornerResidual {
   Eigen::Vector2d pixel, error;
 };

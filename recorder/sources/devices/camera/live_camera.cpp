@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "recorder/sources/devices/camera/live_camera.h"
+#include "recorder/sources/devices/camera/frame_source.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -75,7 +75,7 @@ std::string LiveCamera::start() {
   handle_ = ::open(name_.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
   if (handle_ < 0) return fmt::format("the camera cannot be opened: {}", std::strerror(errno));
   card_ = cardOf(handle_);
-  if (card_.empty()) return "is no camera";
+  if (card_.empty()) return "is not a camera";
   v4l2_format format{};
   for (const std::uint32_t pixels : {V4L2_PIX_FMT_MJPEG, V4L2_PIX_FMT_YUYV}) {
     format = {};

@@ -61,9 +61,9 @@ std::string ForceDevice::connect() {
   if (frames_.empty()) return refuse("it does not say what it is");
   if (const auto* told = std::get_if<forcewire::Fault>(&frames_.front())) return refuse("it says: " + told->text);
   const auto* hello = std::get_if<forcewire::Hello>(&frames_.front());
-  if (hello == nullptr) return refuse("its first frame is no greeting");
+  if (hello == nullptr) return refuse("its first frame is not a greeting");
   if (std::string wrong = forcewire::faultOf(*hello); !wrong.empty()) return refuse(std::move(wrong));
-  if ((hello->hands & settings_.hands) == 0) return refuse("it has not the hand that is wanted");
+  if ((hello->hands & settings_.hands) == 0) return refuse("it does not have the requested hand");
   if (hello_ && (hello_->name != hello->name || hello_->serial != hello->serial || hello_->hands != hello->hands ||
                  hello_->handle.force.maxEffort != hello->handle.force.maxEffort))
     return refuse(fmt::format("another device answers there: {} ({})", hello->name, hello->serial));
@@ -93,29 +93,22 @@ void ForceDevice::take(const forcewire::Pose& pose, DeviceInput& out) {
   }
   out.samples.push_back(sample);
 
-  HandleMeasurement m;
-  m.position = sample.position;
-  m.orientation = sample.orientation;
-  m.deviceTime = pose.deviceTime;
-  m.number = pose.number;
-  m.valid = sample.valid;
-  if (sample.valid) m.shown = pose.shown;
-  m.clutched = (sample.buttons & clutchButton) != 0;
-  const Wrench wrench = measured(h, m, now);
+  const HandleMeasurement measurement{.position = sample.position,
+                                      .orientation = sample.orientation,
+                                      .deviceTime = pose.deviceTime,
+                                      .number = pose.number,
+                                      .shown = sample.valid ? pose.shown : Wrench{},
+                                      .valid = sample.valid,
+                                      .clutched = (sample.buttons & clutchButton) != 0};
+  const Wrench wrench = measured(h, measurement, now);
   stream_.send(forcewire::encode(forcewire::WrenchFrame{pose.hand, output_[h]->number(), pose.deviceTime, wrench}));
 }
 
 void ForceDevice::read(std::chrono::nanoseconds wait, DeviceInput& out) {
   if (wait.count() > 0 && frames_.empty() && !stream_.readable(wait)) return;
-  std::array<std::byte, 16384> buffer;
-  // Bounded, so that a sender that never stops cannot hold the thread.
-  for (int i = 0; i < 16 && stream_.open(); ++i) {
-    const std::size_t n = stream_.receive(buffer);
-    if (n == 0) break;
-    if (!decoder_.take(std::span(buffer.data(), n), frames_)) {
-      lose("disconnected: " + decoder_.fault(), out);
-      return;
-    }
+  if (!stream_.receiveAll([this](std::span<const std::byte> bytes) { return decoder_.take(bytes, frames_); })) {
+    lose("disconnected: " + decoder_.fault(), out);
+    return;
   }
   for (const forcewire::Frame& frame : std::exchange(frames_, {})) {
     if (const auto* pose = std::get_if<forcewire::Pose>(&frame)) {

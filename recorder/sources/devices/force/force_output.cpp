@@ -142,7 +142,7 @@ Wrench ForceOutput::measured(const HandleMeasurement& measurement, std::int64_t 
     const Vec3 wanted = gain_ * asked;
     tank.settle(std::max(wanted.norm(), sent.norm()));
     const Vec3 reached = towards(sent, wanted, slew * seconds);
-    // Where the motion is not known, nor is its energy: the force falls.
+    // If the motion is unknown, so is its energy: the force falls.
     if (!measurement.valid) return limited(reached, sent.norm());
     const Vec3 out = limited(reached, tank.bound());
     if (out.norm() < reached.norm()) ++statistics_.softened;

@@ -132,7 +132,7 @@ class ForceOutput {
   void release() { released_ = true; }
   /// Has it fallen?
   [[nodiscard]] bool idle() const { return sent_.force.isZero() && sent_.torque.isZero(); }
-  /// The device is gone: its motors are off by themselves. When it is back, the force rises anew.
+  /// The device is gone: its motors are off by themselves. When it is back, the force rises again.
   void lost();
 
   [[nodiscard]] const ForceStatistics& statistics() const { return statistics_; }

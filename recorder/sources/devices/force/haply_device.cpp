@@ -158,23 +158,22 @@ void HaplyDevice::sample(std::size_t hand, const Json& device, const Json* grip,
   s.gripper = handle.jaw;
   out.samples.push_back(s);
 
-  HandleMeasurement m;
-  m.position = s.position;
-  m.deviceTime = now;
-  m.valid = s.valid;
-  m.clutched = clutched;
-  // The state answers the last command: until then the one before it was in force.
-  m.number = std::max(1U, output_[hand]->number()) - 1;
-  m.shown = handle.shown;
+  const HandleMeasurement measurement{.position = s.position,
+                                      .deviceTime = now,
+                                      // The state answers the last command: until then the one before it was in force.
+                                      .number = std::max(1U, output_[hand]->number()) - 1,
+                                      .shown = handle.shown,
+                                      .valid = s.valid,
+                                      .clutched = clutched};
   handle.shown = handle.last;
-  handle.last = measured(hand, m, now);
+  handle.last = measured(hand, measurement, now);
 }
 
 void HaplyDevice::take(const std::string& message, DeviceInput& out) {
   const Json state = Json::parse(message, nullptr, false);
   if (state.is_discarded()) {
     if (!std::exchange(toldMalformed_, true))
-      tell(DeviceEvent::Kind::malformed, info_.identity + ": a message that is no JSON", out);
+      tell(DeviceEvent::Kind::malformed, info_.identity + ": a message that is not JSON", out);
     due_ = true;
     return;
   }

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <array>
+#include <chrono>
+#include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
@@ -9,9 +11,28 @@
 
 #include "recorder/sources/devices/device.h"
 #include "recorder/sources/devices/force/force_output.h"
-#include "recorder/sources/devices/force/websocket_stream.h"
 
 namespace calot::recorder {
+
+/// Client's end of a WebSocket (RFC 6455) that carries text, by Boost.Beast. Never blocks longer than asked; nothing
+/// throws: a broken connection is closed, which callers can query.
+class WebSocketStream {
+ public:
+  /// @returns a stream that is not open where nobody answered within `wait`; `fault` then says why.
+  static WebSocketStream connect(const std::string& host, int port, std::chrono::milliseconds wait, std::string& fault);
+
+  [[nodiscard]] bool open() const;
+  /// The next message. @returns false where none came within `wait`, or the stream is closed.
+  bool receive(std::string& text, std::chrono::nanoseconds wait);
+  /// Sends a message; one that waits for the one before it is replaced by a newer one.
+  void send(std::string text);
+  /// Says good-bye and closes.
+  void close() { inside_.reset(); }
+
+ private:
+  struct Inside;
+  std::shared_ptr<Inside> inside_;
+};
 
 struct HaplySettings {
   std::string host = "localhost";

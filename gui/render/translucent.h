@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Smoke of the hook: derived from events, not part of State, and drawn as puffs that drift and fade.
+// What is blended over the surfaces of a picture: connective tissue, and smoke of the hook, which is derived from
+// events, not part of State, and drawn as puffs that drift and fade.
 #pragma once
 
 #include <cstdint>
@@ -8,9 +9,31 @@
 #include <vector>
 
 #include "sim/scene/samples.h"
+#include "sim/scene/scene_view.h"
 #include "sim/scene/step_result.h"
 
 namespace calot::gui {
+
+/// A vertex of connective tissue, in the camera's frame C (x right, y down, z forward).
+struct SheetVertex {
+  float position[3];  ///< m
+  float normal[3];    ///< unit, of the sheet; either side
+  float along[3];     ///< unit, direction of the fibres
+  float look[4];      ///< place in the fibre texture (s, t); opacity; share burnt
+  float erosion;      ///< share of the fibre texture that is gone: 0 whole, 1 nothing; below 0: matted
+};
+
+/// All connective tissue of one picture, back to front for blending.
+struct SheetList {
+  std::vector<SheetVertex> vertex;
+  std::vector<std::uint32_t> index;  ///< of triangles
+};
+
+/// Sheets where both strands of a pair are attached, tufts at both ends of torn strands, dark stumps at both ends of
+/// burned ones. Strands sag slightly, by an amount that depends on their index alone, as does the part of the fibre
+/// texture that a sheet shows. Order: by depth of a piece's centre, then by index.
+/// @pre checkView(view) has passed
+[[nodiscard]] SheetList makeSheetList(const SceneView& view);
 
 /// Lifetime of a puff (s).
 inline constexpr double smokeSeconds = 2.5;
@@ -32,12 +55,7 @@ class SmokeTrail {
   [[nodiscard]] std::vector<Puff> at(double time) const;
 
  private:
-  struct Source {
-    Vec3 p_W = Vec3::Zero();
-    double time = 0.0, strength = 0.0;
-    std::uint32_t number = 0;
-  };
-  std::deque<Source> source_;
+  std::deque<Puff> puff_;  ///< their ages at time 0: those not yet there are below it
 };
 
 /// A corner of a puff's square, which faces the camera.
