@@ -5,6 +5,7 @@
 
 #include "analytics/cohort/cohort_database.h"
 #include "apps/calot/command.h"
+#include "apps/calot/replay_report.h"
 
 namespace calot::apps {
 namespace {
@@ -25,19 +26,6 @@ bool isAsked(const AttemptRow& a, const AttemptFilter& o) {
 }
 
 std::string whoOf(const AttemptRow& a) { return a.participant.empty() ? a.profile : a.participant; }
-
-Json jsonOf(const analytics::Fields& fields) {
-  Json object;
-  for (const auto& [name, value] : fields) {
-    Json& member = object[name];
-    std::visit(
-        [&](const auto& v) {
-          if constexpr (!std::is_same_v<std::remove_cvref_t<decltype(v)>, std::monostate>) member = v;
-        },
-        value);
-  }
-  return object;
-}
 
 /// Beginnings of the uuids, as long as it takes to distinguish all of the database: what other commands accept.
 std::size_t distinctLength(const std::vector<AttemptRow>& rows) {
