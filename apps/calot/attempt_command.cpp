@@ -5,6 +5,7 @@
 
 #include "analytics/cohort/cohort_database.h"
 #include "apps/calot/command.h"
+#include "apps/calot/replay_report.h"
 
 namespace calot::apps {
 namespace {

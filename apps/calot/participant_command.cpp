@@ -7,6 +7,7 @@
 #include "analytics/cohort/withdraw.h"
 #include "analytics/cohort_files.h"
 #include "apps/calot/command.h"
+#include "apps/calot/replay_report.h"
 
 namespace calot::apps {
 namespace {
