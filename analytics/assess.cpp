@@ -11,17 +11,15 @@
 #include <string_view>
 #include <utility>
 
+#include "analytics/checkpoints/checkpoint.h"
 #include "analytics/checkpoints/collector.h"
-#include "analytics/checkpoints/registry.h"
 #include "analytics/external/metric_input.h"
-#include "analytics/report/report_text.h"
+#include "analytics/report/report_document.h"
 #include "recorder/attempt.h"
 #include "recorder/formats/scene_file.h"
 
 namespace calot::analytics {
 namespace {
-
-using Align = TextTable::Align;
 
 using ValuesOfAttempts = std::map<std::string, std::vector<CheckpointValue>>;
 
@@ -225,38 +223,31 @@ bool storeExternal(CohortDatabase& database, const std::string& attempt, MetricO
 
 void printValues(const std::vector<CheckpointValue>& values, const std::vector<ValueInterval>& intervals,
                  std::ostream& out) {
-  TextTable table({{"checkpoint", Align::left},
-                   {"value", Align::right},
-                   {"interval", Align::right},
-                   {"unit", Align::left},
-                   {"step, mesh, constants", Align::right},
-                   {"origin", Align::left},
-                   {"", Align::left}});
+  ReportTable table =
+      tableOf("", {"=checkpoint", "value", "interval", "=unit", "step, mesh, constants", "=origin", "="});
   for (const CheckpointValue& v : values) {
     const CheckpointDefinition* definition = definitionOf(v);
     const std::string name = v.subject.empty() ? v.name : fmt::format("{} {}", v.name, v.subject);
     if (!v.value) {
-      table.add({name, "-", "", "", "", "", fmt::format("{}: {}", nameOf(v.availability), v.reason)});
+      table.rows.push_back({name, "-", "", "", "", "", fmt::format("{}: {}", nameOf(v.availability), v.reason)});
       continue;
     }
     const double factor = definition != nullptr ? definition->displayFactor : 1.0;
     const auto [interval, parts, remark] = intervalTexts(intervals, v, factor);
-    table.add({name, significant(*v.value * factor), interval, definition != nullptr ? definition->displayUnit : v.unit,
-               parts, nameOf(v.origin), v.note + (v.note.empty() || remark.empty() ? "" : "; ") + remark});
+    table.rows.push_back({name, significant(*v.value * factor), interval,
+                          definition != nullptr ? definition->displayUnit : v.unit, parts, nameOf(v.origin),
+                          v.note + (v.note.empty() || remark.empty() ? "" : "; ") + remark});
   }
-  if (table.rows() > 0) table.print(out, 120);  // reasons go on below
+  if (!table.rows.empty()) table.print(out, 120);  // reasons go on below
 }
 
 void printAttempts(const CohortDatabase& database, std::ostream& out) {
   ValuesOfAttempts values;
   for (AttemptValue& v : database.allValues()) values[v.attempt].push_back(std::move(v.value));
-  std::vector<std::pair<std::string, Align>> columns{
-      {"attempt", Align::left}, {"who", Align::left},          {"scene", Align::left},    {"mode", Align::left},
-      {"outcome", Align::left}, {"verification", Align::left}, {"recording", Align::left}};
+  ReportTable table = tableOf("", {"=attempt", "=who", "=scene", "=mode", "=outcome", "=verification", "=recording"});
   const std::vector<SummaryColumn> figures = summaryColumns(values);
-  for (const SummaryColumn& figure : figures) columns.emplace_back(figure.title, Align::right);
-  columns.emplace_back("", Align::left);
-  TextTable table(columns);
+  for (const SummaryColumn& figure : figures) table.columns.emplace_back(figure.title, Align::right);
+  table.columns.emplace_back("", Align::left);
   std::size_t synthetic = 0;
   for (const AttemptRow& a : database.listAttempts()) {
     std::string who = a.participant;
@@ -271,14 +262,14 @@ void printAttempts(const CohortDatabase& database, std::ostream& out) {
     for (const SummaryColumn& figure : figures) cells.push_back(figureText(values[a.uuid], figure));
     cells.push_back(fmt::format("{}{}", a.synthetic ? "SYNTHETIC" : "", a.excluded ? " excluded" : ""));
     synthetic += a.synthetic ? 1 : 0;
-    table.add(std::move(cells));
+    table.rows.push_back(std::move(cells));
   }
-  if (table.rows() == 0) {
+  if (table.rows.empty()) {
     out << "no attempts\n";
     return;
   }
   table.print(out);
-  out << fmt::format("{} attempts, {} of them synthetic\n", table.rows(), synthetic);
+  out << fmt::format("{} attempts, {} of them synthetic\n", table.rows.size(), synthetic);
 }
 
 }  // namespace calot::analytics

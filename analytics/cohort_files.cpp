@@ -1,19 +1,26 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "analytics/cohort_files.h"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cstring>
 #include <exception>
 #include <fstream>
 #include <iterator>
+#include <numeric>
 #include <optional>
 #include <set>
 #include <string_view>
+#include <system_error>
+#include <tuple>
 #include <utility>
 
 #include "analytics/cohort/cohort_database.h"
 #include "recorder/base/errors.h"
+#include "recorder/base/text_words.h"
 #include "recorder/recording/recording_facts.h"
 
 namespace calot::analytics {
@@ -70,7 +77,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What may stand beside a pseudonym that is a value of its own: a cell, a string, a word of a sentence.
+/// Characters that delimit a pseudonym as a separate value: of a cell, a string, a word of a sentence.
 bool separates(char c) {
   return static_cast<unsigned char>(c) <= ' ' || std::string_view(",;|\"'`<>()[]{}=").find(c) != std::string_view::npos;
 }
@@ -111,7 +118,7 @@ bool fileHolds(const fs::path& file, const Wanted& wanted) {
     const std::string& name = wanted.pseudonym;
     for (std::size_t at = text && !name.empty() ? window.find(name) : std::string::npos; at != std::string::npos;
          at = window.find(name, at + 1)) {
-      // What stands beside it at an edge is known in the next piece, or was in the one before.
+      // At an edge, the neighbouring character is in the next piece or was in the previous one.
       const bool whole = (at > 0 || first) && (at + name.size() + 1 < window.size() || !in);
       if (whole && standsAlone(window, at, name.size())) return true;
     }
@@ -200,6 +207,50 @@ WithdrawalFiles findFiles(const Withdrawal& w, const std::string& database, cons
   }
   result.remove.assign(remove.begin(), remove.end());
   return result;
+}
+
+Share shareNamed(const std::string& text) {
+  Share share;
+  const char *at = text.data(), *end = at + text.size();
+  const auto number = [&](std::uint32_t& out) {
+    const auto [next, error] = std::from_chars(at, end, out);
+    at = next;
+    return error == std::errc();
+  };
+  const bool read = number(share.number) && at != end && *at++ == '/' && number(share.of) && at == end;
+  if (!read || share.of < 1 || share.of > maxShares || share.number < 1 || share.number > share.of) {
+    throw Error(ErrorKind::invalid, fmt::format("'{}' is not a share: write 3/8 for the third of eight (at most {})",
+                                                recorder::shown(text), maxShares));
+  }
+  return share;
+}
+
+std::vector<std::size_t> indicesOf(const Share& share,
+                                   const std::vector<std::pair<std::uint64_t, std::string>>& files) {
+  std::vector<std::size_t> order(files.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return std::tie(files[b].first, files[a].second) < std::tie(files[a].first, files[b].second);
+  });
+  std::vector<std::size_t> own;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const std::size_t round = i / share.of, place = i % share.of;
+    if ((round % 2 == 0 ? place : share.of - 1 - place) + 1 == share.number) own.push_back(order[i]);
+  }
+  std::sort(own.begin(), own.end());
+  return own;
+}
+
+std::vector<std::filesystem::path> filesOf(const Share& share, const std::vector<std::filesystem::path>& files) {
+  std::vector<std::pair<std::uint64_t, std::string>> sized;
+  for (const std::filesystem::path& file : files) {
+    std::error_code gone;
+    const std::uintmax_t bytes = std::filesystem::file_size(file, gone);
+    sized.emplace_back(gone ? 0 : bytes, file.string());
+  }
+  std::vector<std::filesystem::path> own;
+  for (const std::size_t i : indicesOf(share, sized)) own.push_back(files[i]);
+  return own;
 }
 
 }  // namespace calot::analytics

@@ -24,7 +24,7 @@ std::array<std::byte, 32> bytesOf(const std::string& hexadecimal) {
   return bytes;
 }
 
-/// Of custom content (version 8, RFC 9562): 122 bits of the hash.
+/// Custom content (version 8, RFC 9562): 122 bits of the hash.
 std::string uuidOf(std::array<std::byte, 32> hash) {
   hash[6] = (hash[6] & std::byte{0x0f}) | std::byte{0x80};
   hash[8] = (hash[8] & std::byte{0x3f}) | std::byte{0x80};
@@ -95,25 +95,13 @@ std::string choose(T& out, const std::string& word, std::initializer_list<std::p
     }
     known += (known.empty() ? "" : ", ") + std::string(name);
   }
-  return known + " is wanted";
-}
-
-std::string chooseText(std::string& out, const std::string& word, std::initializer_list<const char*> words) {
-  std::string known;
-  for (const char* name : words) {
-    if (word == name) {
-      out = word;
-      return {};
-    }
-    known += (known.empty() ? "" : ", ") + std::string(name);
-  }
-  return known + " is wanted";
+  return known + " is expected";
 }
 
 std::string setTask(std::string& task, const std::string& word) {
-  if (word.size() > 60) return "1 to 60 characters are wanted";
+  if (word.size() > 60) return "1 to 60 characters are expected";
   for (const char c : word) {
-    if (c <= ' ' || c > '~') return "a word without blanks is wanted";
+    if (c <= ' ' || c > '~') return "a word without blanks is expected";
   }
   task = word;
   return {};
@@ -127,15 +115,17 @@ std::string declareMotion(MotionDeclaration& d, std::string_view field, const st
   if (field == "task") return setTask(d.task, word);
   if (field == "mode")
     return choose<Mode>(d.mode, word, {{"practice", Mode::practice}, {"assessment", Mode::assessment}});
-  if (field == "purpose") return chooseText(d.purpose, word, {"training", "study", "demo"});
-  if (field == "handedness") return chooseText(d.handedness, word, {"right", "left", "unknown"});
+  if (field == "purpose")
+    return choose<std::string>(d.purpose, word, {{"training", "training"}, {"study", "study"}, {"demo", "demo"}});
+  if (field == "handedness")
+    return choose<std::string>(d.handedness, word, {{"right", "right"}, {"left", "left"}, {"unknown", "unknown"}});
   if (field == "outcome") {
     return choose<Outcome>(
         d.outcome, word,
         {{"completed", Outcome::completed}, {"abandoned", Outcome::abandoned}, {"stopped", Outcome::stopped}});
   }
   if (field == "start") {
-    if (!recorder::isDate(word)) return "2026-01-31T12:00:00Z is wanted";
+    if (!recorder::isDate(word)) return "2026-01-31T12:00:00Z is expected";
     d.startUtc = word;
     return {};
   }

@@ -14,7 +14,7 @@
 namespace calot::analytics {
 namespace {
 
-/// Of a recording that cannot be re-simulated here: what was re-simulated before and is still of this version stays.
+/// A recording that cannot be re-simulated here keeps the values that were re-simulated with this version before.
 std::vector<CheckpointValue> keepResimulated(const std::vector<CheckpointValue>& before,
                                              std::vector<CheckpointValue> now) {
   for (CheckpointValue& v : now) {
@@ -114,7 +114,7 @@ void judgeAll(const std::vector<std::string>& files, recorder::WorkerPool& pool,
   const std::size_t batch = pool.threadCount() == 1 ? 1 : std::size_t{4} * pool.threadCount();
   for (std::size_t begin = 0; begin < files.size(); begin += batch) {
     std::vector<Work> works(std::min(batch, files.size() - begin));
-    // Where recordings are fewer than threads, each has several.
+    // With fewer recordings than threads, each has several.
     AssessSettings own = settings;
     if (pool.threadCount() > 1)
       own.threads = static_cast<unsigned>(std::max<std::size_t>(1, pool.threadCount() / works.size()));

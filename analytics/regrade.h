@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Computing the derived values of a cohort anew.
+// Recomputes the derived values of a cohort.
 #pragma once
 
 #include <cstdint>
@@ -28,7 +28,7 @@ enum class Regraded : std::uint8_t {
   unchanged,
   changed,
   missing,     ///< its recording is in none of the places
-  motion,      ///< motion without a scene: there is no recording, only importing it again computes it anew
+  motion,      ///< motion without a scene: there is no recording, only importing it again recomputes it
   unreadable,  ///< its recording is damaged
   conflict,    ///< its recording diverged, or is not the one that the cohort holds
 };
@@ -50,7 +50,7 @@ struct Regrade {
 
 /// Re-simulates the recording of every attempt, `jobs` at a time, and brings verification and values up to date; what a
 /// person entered is not touched. Attempts are stored in their order, each whole or not at all, so that a run that was
-/// cut short is taken up by the next. The second run changes nothing. Where this build cannot re-simulate a
+/// cut short is continued by the next. The second run changes nothing. Where this build cannot re-simulate a
 /// recording, values that were re-simulated by the same version of their checkpoint stay, and the others come from its
 /// observables.
 /// @param places files and folders of recordings

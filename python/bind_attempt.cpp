@@ -3,8 +3,14 @@
 
 #include "python/bindings.h"
 #include "python/driven_attempt.h"
-#include "recorder/base/errors.h"
+#include "python/places.h"
 #include "recorder/engine/state_fields.h"
+#include "recorder/formats/scene_file.h"
+#include "recorder/live/worker_pool.h"
+#include "recorder/loop.h"
+#include "recorder/prepared_scene.h"
+#include "recorder/recording/writer.h"
+#include "recorder/sources/performer.h"
 
 namespace py = pybind11;
 
@@ -23,8 +29,7 @@ int stepOf(DrivenAttempt& attempt, const Numbers& action) {
     throw Error(ErrorKind::invalid,
                 "an action has shape (2, 6): for the left and the right hand x, y, z, roll, jaw and buttons");
   const std::span<const double> numbers = numbersOf(action);
-  const py::gil_scoped_release release;
-  return static_cast<int>(attempt.step(numbers));
+  return static_cast<int>(withoutLock([&] { return attempt.step(numbers); }));
 }
 
 py::tuple runOf(DrivenAttempt& attempt, const Numbers& actions) {
@@ -32,41 +37,24 @@ py::tuple runOf(DrivenAttempt& attempt, const Numbers& actions) {
     throw Error(ErrorKind::invalid, "actions have shape (N, 2, 6): an action for each step");
   const std::span<const double> numbers = numbersOf(actions);
   Bytes rows;
-  std::size_t done = 0;
-  {
-    const py::gil_scoped_release release;
-    done = attempt.run(numbers, rows);
-  }
+  const std::size_t done = withoutLock([&] { return attempt.run(numbers, rows); });
   return py::make_tuple(done, bytesOf(rows));
 }
 
 void recordOf(DrivenAttempt& attempt, const std::filesystem::path& path, const std::string& controller,
               const std::string& version, const std::string& participant, const std::string& station,
               const std::string& purpose, const std::string& handedness, bool force) {
-  RecordWish wish;
-  wish.target = path;
-  wish.controller = controller;
-  wish.version = version;
-  wish.settings.participant = participant;
-  wish.settings.station = station;
-  wish.settings.purpose = purpose;
-  wish.settings.handedness = handedness;
-  wish.force = force;
-  const py::gil_scoped_release release;
-  attempt.record(wish);
+  recorder::AttemptSettings settings;
+  settings.participant = participant;
+  settings.station = station;
+  settings.purpose = purpose;
+  settings.handedness = handedness;
+  withoutLock([&] { attempt.record(path, settings, recorder::controllerProvenance(controller, version), force); });
 }
 
 py::dict sceneOf(const DrivenAttempt& attempt) {
   const Model& model = attempt.model();
   const SceneDescription& scene = model.scene();
-  py::dict d;
-  d["name"] = scene.name;
-  d["major"] = scene.majorVersion;
-  d["minor"] = scene.minorVersion;
-  d["tick_seconds"] = tickLength;
-  d["ticks_per_step"] = scene.ticksPerStep;
-  d["time_limit"] = scene.timeLimit;
-  d["procedure"] = !scene.procedure.specimen.empty();
   py::list structures, ports, homes, workspace;
   for (const StructureModel& s : model.structures()) structures.append(s.name);
   for (const HandDescription& hand : scene.hands) {
@@ -82,36 +70,66 @@ py::dict sceneOf(const DrivenAttempt& attempt) {
     if (part.width == 0) shape = py::make_tuple(1);
     observed.append(py::make_tuple(part.name, part.unit, shape));
   }
-  d["observed"] = observed;
-  d["structures"] = structures;
-  d["ports"] = ports;
-  d["homes"] = homes;
-  d["workspace"] = workspace;
-  return d;
+  return py::dict("name"_a = scene.name, "major"_a = scene.majorVersion, "minor"_a = scene.minorVersion,
+                  "tick_seconds"_a = tickLength, "ticks_per_step"_a = scene.ticksPerStep,
+                  "time_limit"_a = scene.timeLimit, "procedure"_a = !scene.procedure.specimen.empty(),
+                  "observed"_a = observed, "structures"_a = structures, "ports"_a = ports, "homes"_a = homes,
+                  "workspace"_a = workspace);
+}
+
+/// Records a performer, as `calot record`. @returns outcome, seconds
+std::pair<std::string, double> record(const std::filesystem::path& path, const std::string& scene,
+                                      const std::string& performer, std::uint64_t seed, double seconds,
+                                      const std::string& participant, const std::string& purpose,
+                                      const std::string& mode, bool force) {
+  const py::gil_scoped_release release;
+  recorder::LoadedScene loaded = recorder::loadScene(recorder::findScene(scene, assetFolders()));
+  const std::shared_ptr<recorder::PreparedScene> prepared =
+      recorder::prepareScene(loaded.assets, Where{"scene " + scene});
+  const Model& model = prepared->model();
+  const auto source = recorder::makePerformer(
+      recorder::loadPerformer(recorder::findPerformer(performer, assetFolders())), model.scene(), seed);
+  recorder::AttemptSettings settings;
+  settings.participant = participant;
+  settings.purpose = purpose;
+  settings.mode = mode == "assessment" ? recorder::Mode::assessment : recorder::Mode::practice;
+  settings.seed = seed;
+  recorder::RecordingWriter writer(
+      path, recorder::makeHeader(model, std::move(loaded.assets), source->provenance(), settings), {force, {}});
+  recorder::WorkerPool pool(1);
+  recorder::Session session(model, seed, pool, {.compliances = &prepared->compliances()});
+  session.join(writer);
+  recorder::RunSettings run;
+  run.seconds = seconds;
+  const recorder::RunReport report = recorder::runAttempt(session, *source, run);
+  writer.finish();
+  prepared->save();
+  return {recorder::wordFor(report.outcome), static_cast<double>(report.steps) * model.stepSeconds()};
 }
 
 }  // namespace
 
 void bindAttempt(py::module_& m) {
+  m.def("record", record, "path"_a, "scene"_a, "performer"_a, "seed"_a, "seconds"_a, "participant"_a, "purpose"_a,
+        "mode"_a, "force"_a);
   py::class_<DrivenAttempt>(m, "Attempt", "An attempt that its caller advances.")
-      .def(py::init<const std::string&, std::uint64_t>(), py::arg("scene"), py::arg("seed"),
-           py::call_guard<py::gil_scoped_release>())
-      .def("step", stepOf, py::arg("action"))
-      .def("run", runOf, py::arg("actions"))
-      .def("record", recordOf, py::arg("path"), py::arg("controller"), py::arg("version"), py::arg("participant"),
-           py::arg("station"), py::arg("purpose"), py::arg("handedness"), py::arg("force"))
+      .def(py::init<const std::string&, std::uint64_t>(), "scene"_a, "seed"_a, py::call_guard<py::gil_scoped_release>())
+      .def("step", stepOf, "action"_a)
+      .def("run", runOf, "actions"_a)
+      .def("record", recordOf, "path"_a, "controller"_a, "version"_a, "participant"_a, "station"_a, "purpose"_a,
+           "handedness"_a, "force"_a)
       .def(
-          "end", [](DrivenAttempt& a, int outcome) { a.end(static_cast<recorder::Outcome>(outcome)); },
-          py::arg("outcome"), py::call_guard<py::gil_scoped_release>())
+          "end", [](DrivenAttempt& a, int outcome) { a.end(static_cast<recorder::Outcome>(outcome)); }, "outcome"_a,
+          py::call_guard<py::gil_scoped_release>())
       .def(
           "mount", [](DrivenAttempt& a, int hand, const std::string& name) { a.mount(static_cast<Hand>(hand), name); },
-          py::arg("hand"), py::arg("name"))
+          "hand"_a, "name"_a)
       .def(
           "look",
           [](DrivenAttempt& a, const std::array<double, 7>& c) {
             a.look(Vec3(c[0], c[1], c[2]), Quat(c[3], c[4], c[5], c[6]));
           },
-          py::arg("pose"))
+          "pose"_a)
       .def("moment", &DrivenAttempt::moment, py::call_guard<py::gil_scoped_release>())
       .def_property_readonly("action", &DrivenAttempt::action)
       .def_property_readonly("facts", [](const DrivenAttempt& a) { return StepFacts(a.facts()); })  // the step's own

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
+// Values of recordings and of cohorts.
+#include <algorithm>
+#include <iterator>
 #include <mutex>
 #include <string>
 
+#include "analytics/assess.h"
+#include "analytics/checkpoints/checkpoint.h"
 #include "analytics/cohort/cohort_database.h"
 #include "analytics/cohort/withdraw.h"
 #include "python/bindings.h"
-#include "python/value_rows.h"
 
 namespace py = pybind11;
 
@@ -14,93 +17,87 @@ namespace calot::python {
 
 namespace {
 
+/// A row by the names that `calot` gives its columns in JSON.
+py::dict dictOf(const analytics::Fields& fields) {
+  py::dict row;
+  for (const auto& [name, value] : fields) row[py::str(name)] = value;
+  return row;
+}
+
+/// Judges a recording as `calot assess` does, and stores the values where a cohort is named.
+analytics::JudgedRecording assess(const std::string& file, unsigned threads, double cutoff, bool apart,
+                                  const std::optional<std::string>& cohort) {
+  const bool known = std::find(std::begin(analytics::motionCutoffs), std::end(analytics::motionCutoffs), cutoff) !=
+                     std::end(analytics::motionCutoffs);
+  if (!known) throw Error(ErrorKind::invalid, "cutoff: 3, 6 or 10 Hz is expected");
+  if (cohort && cutoff != analytics::motionCutoff)
+    throw Error(ErrorKind::invalid, "cutoff: values of a cohort have one filter, 6 Hz");
+  analytics::AssessSettings settings{.threads = threads, .cutoff = cutoff};
+  settings.engine.apart = apart;
+  analytics::JudgedRecording judged = analytics::assessRecording(file, settings);
+  if (cohort && judged.record) {
+    analytics::CohortDatabase database(*cohort, analytics::CohortDatabase::Access::create);
+    database.storeAttempt(*judged.record, judged.values);
+  }
+  return judged;
+}
+
+py::tuple assessed(const std::filesystem::path& file, unsigned threads, double cutoff, bool apart,
+                   const std::optional<std::filesystem::path>& cohort) {
+  const analytics::JudgedRecording judged = withoutLock([&] {
+    const auto database = cohort ? std::optional<std::string>(cohort->string()) : std::nullopt;
+    analytics::JudgedRecording result = assess(file.string(), threads, cutoff, apart, database);
+    if (result.report.verdict != recorder::ReplayVerdict::undecided || result.values.empty())
+      throwUnlessExact(result.report);
+    return result;
+  });
+  py::list values;
+  for (const analytics::CheckpointValue& v : judged.values) values.append(dictOf(fieldsOf(v)));
+  return py::make_tuple(reportOf(judged.report), values);
+}
+
+py::list checkpoints() {
+  py::list list;
+  for (const analytics::CheckpointEntry& entry : analytics::checkpointRegistry()) {
+    const analytics::CheckpointDefinition& d = entry.definition;
+    list.append(py::dict("name"_a = d.name, "title"_a = d.title, "unit"_a = d.unit, "version"_a = d.version,
+                         "direction"_a = analytics::nameOf(d.direction),
+                         "aggregation"_a = analytics::nameOf(d.aggregation), "definition"_a = d.definition));
+  }
+  return list;
+}
+
 /// A cohort's database, read. May be used by several threads, one at a time.
-class CohortReader {
- public:
+struct CohortReader {
   explicit CohortReader(const std::filesystem::path& path)
-      : database_(path.string(), analytics::CohortDatabase::Access::read) {}
+      : database(path.string(), analytics::CohortDatabase::Access::read) {}
 
-  std::vector<analytics::AttemptRow> attempts() {
-    const std::lock_guard lock(mutex_);
-    return database_.listAttempts();
-  }
-  std::vector<analytics::AttemptValue> values() {
-    const std::lock_guard lock(mutex_);
-    return database_.allValues();
-  }
-  std::vector<analytics::Participant> participants() {
-    const std::lock_guard lock(mutex_);
-    return database_.participants();
-  }
-
- private:
-  std::mutex mutex_;
-  analytics::CohortDatabase database_;
+  std::mutex mutex;
+  analytics::CohortDatabase database;
 };
 
-py::dict attemptDict(const analytics::AttemptRow& a) {
-  py::dict row;
-  row["attempt"] = a.uuid;
-  row["parent"] = a.parent;
-  row["participant"] = a.participant;
-  row["group"] = a.group;
-  row["arm"] = a.arm;
-  row["site"] = a.site;
-  row["scene"] = a.scene;
-  row["scene_major"] = a.sceneMajor;
-  row["scene_minor"] = a.sceneMinor;
-  row["operator"] = recorder::wordFor(a.operatorKind);
-  row["profile"] = a.profile;
-  row["profile_version"] = a.profileVersion;
-  row["synthetic"] = a.synthetic;
-  row["mode"] = recorder::wordFor(a.mode);
-  row["purpose"] = a.purpose;
-  row["outcome"] = recorder::wordFor(a.outcome);
-  row["start_utc"] = a.startUtc;
-  row["seed"] = a.seed;
-  row["device"] = a.device;
-  row["station"] = a.station;
-  row["simulation_version"] = a.simulationVersion;
-  row["key"] = a.comparabilityKey;
-  row["file"] = a.fileName;
-  row["complete"] = a.complete;
-  row["seconds"] = static_cast<double>(a.steps) * a.stepSeconds;
-  row["verdict"] = analytics::nameOf(a.verification.verdict);
-  row["excluded"] = a.excluded;
-  row["withdrawn"] = a.withdrawn;
-  row["tags"] = a.tags;
-  return row;
-}
-
 py::dict cohortValueDict(const analytics::AttemptValue& v) {
-  py::dict row = valueDict(v.value);
-  row["attempt"] = v.attempt;
+  py::dict row = dictOf(fieldsOf(v.value));
   const bool bounded = v.interval && v.interval->lower;
-  row["lower"] = bounded ? py::object(py::float_(*v.interval->lower)) : py::object(py::none());
-  row["upper"] = bounded ? py::object(py::float_(*v.interval->upper)) : py::object(py::none());
+  row["attempt"] = v.attempt;
+  row["lower"] = bounded ? v.interval->lower : std::nullopt;
+  row["upper"] = bounded ? v.interval->upper : std::nullopt;
   return row;
 }
 
-py::dict participantDict(const analytics::Participant& p) {
-  py::dict row;
-  row["participant"] = p.pseudonym;
-  row["group"] = p.group;
-  row["arm"] = p.arm;
-  row["site"] = p.site;
-  row["experience"] = p.experience;
-  row["consent"] = p.consent;
-  return row;
-}
-
-/// Rows of the cohort, read without Python's lock, as a list of dicts.
 template <class Row>
-auto listOf(std::vector<Row> (CohortReader::*read)(), py::dict (*dictOf)(const Row&)) {
+py::dict rowDict(const Row& row) {
+  return dictOf(fieldsOf(row));
+}
+
+/// Rows of the cohort as a list of dicts.
+template <class Read, class Row>
+auto listOf(Read read, py::dict (*dictOf)(const Row&)) {
   return [read, dictOf](CohortReader& cohort) {
-    std::vector<Row> rows;
-    {
-      const py::gil_scoped_release release;
-      rows = (cohort.*read)();
-    }
+    const std::vector<Row> rows = withoutLock([&] {
+      const std::lock_guard lock(cohort.mutex);
+      return read(cohort.database);
+    });
     py::list list;
     for (const Row& row : rows) list.append(dictOf(row));
     return list;
@@ -110,13 +107,15 @@ auto listOf(std::vector<Row> (CohortReader::*read)(), py::dict (*dictOf)(const R
 }  // namespace
 
 void bindCohort(py::module_& m) {
+  m.def("assess", assessed, "path"_a, "threads"_a, "cutoff"_a, "apart"_a, "cohort"_a);
+  m.def("checkpoints", checkpoints, "Definition of every checkpoint.");
   py::class_<CohortReader>(m, "Cohort", "A cohort's database, opened for reading.")
-      .def(py::init<const std::filesystem::path&>(), py::arg("path"), py::call_guard<py::gil_scoped_release>())
-      .def("attempts", listOf(&CohortReader::attempts, attemptDict))
-      .def("values", listOf(&CohortReader::values, cohortValueDict))
-      .def("participants", listOf(&CohortReader::participants, participantDict));
-  m.def("record_export", analytics::recordExport, py::arg("cohort"), py::arg("kind"), py::arg("target"),
-        py::arg("attempts"), py::call_guard<py::gil_scoped_release>(),
+      .def(py::init<const std::filesystem::path&>(), "path"_a, py::call_guard<py::gil_scoped_release>())
+      .def("attempts", listOf([](const auto& d) { return d.listAttempts(); }, rowDict<analytics::AttemptRow>))
+      .def("values", listOf([](const auto& d) { return d.allValues(); }, cohortValueDict))
+      .def("participants", listOf([](const auto& d) { return d.participants(); }, rowDict<analytics::Participant>));
+  m.def("record_export", analytics::recordExport, "cohort"_a, "kind"_a, "target"_a, "attempts"_a,
+        py::call_guard<py::gil_scoped_release>(),
         "Registers in a cohort an export of attempts to a file or folder, so that a withdrawal lists it.");
 }
 

@@ -40,13 +40,8 @@ py::tuple cameraOf(const Moment& moment) {
 }
 
 py::list stateOf(const Moment& moment) {
-  std::vector<recorder::StateField> fields;
-  {
-    const py::gil_scoped_release release;
-    fields = fieldsOf(moment);
-  }
   py::list out;
-  for (const recorder::StateField& f : fields) {
+  for (const recorder::StateField& f : withoutLock([&] { return fieldsOf(moment); })) {
     if (const auto* reals = std::get_if<std::vector<double>>(&f.values)) {
       out.append(py::make_tuple(f.name, "f8", bytesOf(*reals)));
     } else {
@@ -58,11 +53,9 @@ py::list stateOf(const Moment& moment) {
 
 py::tuple rendered(const Moment& moment, int width, int height, const std::string& quality, bool mask, bool cavity,
                    const std::optional<std::array<double, 7>>& camera, const std::optional<double>& fieldOfView) {
-  gui::Image image;
-  {
-    const py::gil_scoped_release release;
-    image = draw(moment, {width, height, quality, mask, cavity, camera, fieldOfView});
-  }
+  const gui::Image image = withoutLock([&] {
+    return draw(moment, {width, height, quality, mask, cavity, camera, fieldOfView});
+  });
   return py::make_tuple(image.width, image.height, bytesOf(image.rgba));
 }
 
@@ -76,11 +69,10 @@ void bindMoment(py::module_& m) {
       .def_property_readonly("instruments", instrumentsOf)
       .def_property_readonly("camera", cameraOf)
       .def("state", stateOf)
-      .def("render", rendered, py::arg("width"), py::arg("height"), py::arg("quality"), py::arg("mask"),
-           py::arg("cavity"), py::arg("camera"), py::arg("field_of_view"));
+      .def("render", rendered, "width"_a, "height"_a, "quality"_a, "mask"_a, "cavity"_a, "camera"_a, "field_of_view"_a);
   py::class_<MomentSeeker>(m, "Seeker", "Goes anywhere in a recording.")
-      .def(py::init<const std::filesystem::path&>(), py::arg("path"), py::call_guard<py::gil_scoped_release>())
-      .def("seek", &MomentSeeker::seek, py::arg("step"), py::call_guard<py::gil_scoped_release>());
+      .def(py::init<const std::filesystem::path&>(), "path"_a, py::call_guard<py::gil_scoped_release>())
+      .def("seek", &MomentSeeker::seek, "step"_a, py::call_guard<py::gil_scoped_release>());
   m.def("end_rendering", endRendering, "Ends the thread that draws, before the interpreter does.");
 }
 

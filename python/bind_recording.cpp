@@ -5,7 +5,6 @@
 #include <string>
 
 #include "python/bindings.h"
-#include "python/exceptions.h"
 #include "recorder/recording/layout.h"
 #include "recorder/recording/probe.h"
 #include "recorder/recording/recorded_columns.h"
@@ -60,12 +59,10 @@ py::object signatureOf(const OpenedRecording& opened) {
   const recorder::Recording& recording = opened.recording();
   const auto& signature = recording.signature();
   if (!signature) return py::none();
-  py::dict out;
-  out["public_key"] = bytesOf(signature->publicKey.data(), signature->publicKey.size());
-  out["value"] = signature->value ? py::object(bytesOf(signature->value->data(), signature->value->size()))
-                                  : py::object(py::none());
-  out["valid"] = signature->fits(recording.status().back().chain);
-  return out;
+  const auto value =
+      signature->value ? std::optional(bytesOf(signature->value->data(), signature->value->size())) : std::nullopt;
+  return py::dict("public_key"_a = bytesOf(signature->publicKey.data(), signature->publicKey.size()), "value"_a = value,
+                  "valid"_a = signature->fits(recording.status().back().chain));
 }
 
 py::list listOf(const std::vector<recorder::RecordedColumn>& columns) {
@@ -76,29 +73,17 @@ py::list listOf(const std::vector<recorder::RecordedColumn>& columns) {
 }
 
 py::tuple columnsOf(OpenedRecording& opened) {
-  recorder::RecordedColumns columns;
-  {
-    const py::gil_scoped_release release;
-    columns = opened.columns();
-  }
+  const recorder::RecordedColumns columns = withoutLock([&] { return opened.columns(); });
   return py::make_tuple(listOf(columns.ticks), listOf(columns.steps), bytesOf(columns.events));
 }
 
 py::tuple rawSamplesOf(OpenedRecording& opened) {
-  std::array<std::vector<std::byte>, handCount> raw;
-  {
-    const py::gil_scoped_release release;
-    for (std::size_t h = 0; h < handCount; ++h) raw[h] = opened.rawSamples(static_cast<Hand>(h));
-  }
-  return py::make_tuple(bytesOf(raw[0]), bytesOf(raw[1]));
+  const auto of = [&](Hand hand) { return bytesOf(withoutLock([&] { return opened.rawSamples(hand); })); };
+  return py::make_tuple(of(Hand::left), of(Hand::right));
 }
 
 py::tuple keyframeOf(OpenedRecording& opened, std::size_t index) {
-  recorder::Keyframe keyframe;
-  {
-    const py::gil_scoped_release release;
-    keyframe = opened.keyframe(index);
-  }
+  const recorder::Keyframe keyframe = withoutLock([&] { return opened.keyframe(index); });
   return py::make_tuple(keyframe.step, bytesOf(keyframe.state), bytesOf(keyframe.haptics));
 }
 
@@ -106,7 +91,7 @@ py::tuple keyframeOf(OpenedRecording& opened, std::size_t index) {
 
 void bindRecording(py::module_& m) {
   py::class_<OpenedRecording>(m, "Recording", "A recording, checked in a process of its own, then opened.")
-      .def(py::init<const std::filesystem::path&>(), py::arg("path"), py::call_guard<py::gil_scoped_release>())
+      .def(py::init<const std::filesystem::path&>(), "path"_a, py::call_guard<py::gil_scoped_release>())
       .def_property_readonly("header", headerOf)
       .def_property_readonly("names", [](const OpenedRecording& o) { return o.recording().header().structures(); })
       .def_property_readonly("steps", [](const OpenedRecording& o) { return o.recording().stepCount(); })
@@ -125,7 +110,7 @@ void bindRecording(py::module_& m) {
                              })
       .def_property_readonly("signature", signatureOf)
       .def("columns", columnsOf, "Columns of ticks, columns of steps, packed events.")
-      .def("keyframe", keyframeOf, py::arg("index"), "Step, bytes of the State, bytes of the haptic states.")
+      .def("keyframe", keyframeOf, "index"_a, "Step, bytes of the State, bytes of the haptic states.")
       .def("raw_samples", rawSamplesOf, "Packed raw samples of the left and of the right hand's device.");
 }
 

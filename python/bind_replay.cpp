@@ -6,7 +6,6 @@
 #include <optional>
 
 #include "python/bindings.h"
-#include "python/exceptions.h"
 #include "python/step_facts.h"
 #include "recorder/engine/state_fields.h"
 #include "recorder/prepared_scene.h"
@@ -69,25 +68,19 @@ class SteppedReplay {
 };
 
 py::object nextOf(SteppedReplay& replay, std::uint64_t steps) {
-  bool there = false;
-  {
-    const py::gil_scoped_release release;
-    there = replay.advance(steps);
-  }
+  const bool there = withoutLock([&] { return replay.advance(steps); });
   return there ? py::cast(replay.facts()) : py::object(py::none());
 }
 
 py::dict replayed(const std::filesystem::path& path, unsigned threads, bool anyway, bool apart) {
-  recorder::ReplayReport report;
-  {
-    const py::gil_scoped_release release;
+  return reportOf(withoutLock([&] {
     recorder::ReplaySettings settings;
     settings.threads = threads;
     settings.engine = {apart, anyway, {}};
-    report = recorder::replayRecording(path, settings);
+    recorder::ReplayReport report = recorder::replayRecording(path, settings);
     if (!anyway || report.verdict != recorder::ReplayVerdict::undecided) throwUnlessExact(report);
-  }
-  return reportOf(report);
+    return report;
+  }));
 }
 
 }  // namespace
@@ -99,23 +92,14 @@ py::list columnList(const std::vector<recorder::wire::Column>& columns) {
 }
 
 py::dict reportOf(const recorder::ReplayReport& r) {
-  py::dict d;
-  d["file"] = r.path.string();
-  d["verdict"] = recorder::wordFor(r.verdict);
-  d["attempt"] = r.attempt;
-  d["complete"] = r.complete;
-  d["steps"] = r.steps;
-  d["seconds"] = r.seconds;
-  d["wall_seconds"] = r.wallSeconds;
-  d["simulation_version"] = r.simulationVersion;
-  d["chain_intact"] = r.chainIntact;
-  d["missed_tolerance"] = r.misses.any;
-  d["message"] = r.message;
-  return d;
+  return py::dict("file"_a = r.path.string(), "verdict"_a = recorder::wordFor(r.verdict), "attempt"_a = r.attempt,
+                  "complete"_a = r.complete, "steps"_a = r.steps, "seconds"_a = r.seconds,
+                  "wall_seconds"_a = r.wallSeconds, "simulation_version"_a = r.simulationVersion,
+                  "chain_intact"_a = r.chainIntact, "missed_tolerance"_a = r.misses.any, "message"_a = r.message);
 }
 
 void bindReplay(py::module_& m) {
-  py::class_<StepFacts>(m, "Facts", "What a step came to, as bytes.")
+  py::class_<StepFacts>(m, "Facts", "Result of a step, as bytes.")
       .def_readonly("step", &StepFacts::step)
       .def_readonly("phase", &StepFacts::phase)
       .def_readonly("critical_view", &StepFacts::criticalView)
@@ -127,13 +111,12 @@ void bindReplay(py::module_& m) {
       .def_property_readonly("events", [](const StepFacts& f) { return bytesOf(f.events); })
       .def_property_readonly("digest", [](const StepFacts& f) { return bytesOf(f.digest); });
   py::class_<SteppedReplay>(m, "Replay", "Re-simulates a recording step by step, and compares.")
-      .def(py::init<const std::filesystem::path&>(), py::arg("path"), py::call_guard<py::gil_scoped_release>())
-      .def("advance", nextOf, py::arg("steps") = 1,
-           "Does so many steps; the facts of the last one, or None where there is none any more.")
+      .def(py::init<const std::filesystem::path&>(), "path"_a, py::call_guard<py::gil_scoped_release>())
+      .def("advance", nextOf, "steps"_a = 1, "Does these steps; the facts of the last one, or None at the end.")
       .def_property_readonly("columns", [](const SteppedReplay& r) { return columnList(r.columns()); })
       .def_property_readonly("steps", &SteppedReplay::steps);
   m.def("result_units", resultUnits, "Unit of each field of a step's result.");
-  m.def("replay", replayed, py::arg("path"), py::arg("threads"), py::arg("anyway"), py::arg("apart"));
+  m.def("replay", replayed, "path"_a, "threads"_a, "anyway"_a, "apart"_a);
 }
 
 }  // namespace calot::python

@@ -10,18 +10,43 @@
 #include <cstddef>
 #include <vector>
 
+#include "analytics/checkpoints/checkpoint.h"
+#include "recorder/base/errors.h"
 #include "recorder/engine/wire.h"
 #include "recorder/replay.h"
 
 namespace calot::python {
 
+using namespace pybind11::literals;
+
 void bindRecording(pybind11::module_& m);
 void bindReplay(pybind11::module_& m);
 void bindMoment(pybind11::module_& m);
-void bindAssess(pybind11::module_& m);
 void bindCohort(pybind11::module_& m);
 void bindAttempt(pybind11::module_& m);
-void bindRecord(pybind11::module_& m);
+/// Makes C++ errors Python's from here on.
+void translateErrors();
+
+/// A recording that is not what its re-simulation gives.
+class ReplayFault : public Error {
+ public:
+  /// @pre the report's verdict is `diverged`
+  explicit ReplayFault(const recorder::ReplayReport& report);
+  [[nodiscard]] const recorder::ReplayReport& report() const { return report_; }
+
+ private:
+  recorder::ReplayReport report_;
+};
+
+/// Throws what a verdict amounts to; returns where it is exact. @throws ReplayFault; Error (damaged, undecided)
+void throwUnlessExact(const recorder::ReplayReport& report);
+
+/// Result of a task that runs without Python's lock.
+template <class Task>
+auto withoutLock(const Task& task) {
+  const pybind11::gil_scoped_release release;
+  return task();
+}
 
 inline pybind11::bytes bytesOf(const void* data, std::size_t size) { return {static_cast<const char*>(data), size}; }
 template <class T>

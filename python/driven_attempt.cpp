@@ -38,10 +38,10 @@ DrivenAttempt::DrivenAttempt(const std::string& scene, std::uint64_t seed)
   attempt_.join(facts_);
 }
 
-void DrivenAttempt::record(const RecordWish& wish) {
+void DrivenAttempt::record(const std::filesystem::path& target, const recorder::AttemptSettings& settings,
+                           const recorder::Provenance& controller, bool force) {
   const std::lock_guard lock(mutex_);
-  attempt_.record(wish.target, wish.settings, recorder::controllerProvenance(wish.controller, wish.version),
-                  {wish.force, {}});
+  attempt_.record(target, settings, controller, {force, {}});
 }
 
 recorder::HandCommands DrivenAttempt::commandsOf(std::span<const double> action) const {
@@ -91,7 +91,7 @@ void DrivenAttempt::look(const Vec3& position, const Quat& orientation) {
   const std::lock_guard lock(mutex_);
   const bool unit = std::abs(orientation.norm() - 1.0) <= 1e-6;
   if (!position.allFinite() || !unit)
-    throw Error(ErrorKind::invalid, "the camera: a finite position and a unit quaternion w, x, y, z are wanted");
+    throw Error(ErrorKind::invalid, "the camera: a finite position and a unit quaternion w, x, y, z are expected");
   attempt_.look({position, orientation});
 }
 

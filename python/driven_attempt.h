@@ -22,20 +22,14 @@ namespace calot::python {
 inline constexpr std::size_t numbersOfHand = 6;
 inline constexpr std::size_t numbersOfAction = numbersOfHand * handCount;
 
-struct RecordWish {
-  std::filesystem::path target;
-  recorder::AttemptSettings settings;
-  std::string controller, version;
-  bool force = false;
-};
-
 /// May be used by several threads, one at a time.
 class DrivenAttempt {
  public:
   /// @param scene name or file @throws Error as recorder::findScene(), loadScene() and prepareScene()
   DrivenAttempt(const std::string& scene, std::uint64_t seed);
 
-  void record(const RecordWish& wish);
+  void record(const std::filesystem::path& target, const recorder::AttemptSettings& settings,
+              const recorder::Provenance& controller, bool force);
   /// One step. @pre numbersOfAction numbers
   recorder::Outcome step(std::span<const double> action);
   /// Steps until the actions are used up or the attempt is over. @returns how many steps were done, with a row of

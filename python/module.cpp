@@ -2,7 +2,6 @@
 #include <pybind11/pybind11.h>
 
 #include "python/bindings.h"
-#include "python/exceptions.h"
 #include "python/places.h"
 #include "recorder/attempt.h"
 #include "recorder/compliance_cache.h"
@@ -52,8 +51,6 @@ PYBIND11_MODULE(_calot, m) {
   python::bindRecording(m);
   python::bindReplay(m);
   python::bindMoment(m);
-  python::bindAssess(m);
   python::bindCohort(m);
   python::bindAttempt(m);
-  python::bindRecord(m);
 }

@@ -39,14 +39,16 @@ std::vector<recorder::StateField> fieldsOf(const Moment& moment) {
                 "its State is of another simulation version, whose engine alone knows what the bytes mean");
   State state;
   if (!restoreState(moment.scene->model(), moment.state, state))
-    throw Error(ErrorKind::damaged, Where{moment.file}, fmt::format("the State of step {} is none", moment.view.step));
+    throw Error(ErrorKind::damaged, Where{moment.file},
+                fmt::format("the State of step {} cannot be restored", moment.view.step));
   return recorder::stateFields(moment.scene->model(), state);
 }
 
 gui::Image draw(const Moment& moment, const DrawSettings& settings) {
   if (settings.quality != "film" && settings.quality != "interactive")
-    throw Error(ErrorKind::invalid,
-                fmt::format("'{}' is no quality of pictures: 'film' or 'interactive' is wanted", settings.quality));
+    throw Error(
+        ErrorKind::invalid,
+        fmt::format("'{}' is not a quality of pictures: 'film' or 'interactive' is expected", settings.quality));
   gui::RenderSettings how;
   how.quality = settings.quality == "film" ? gui::Quality::film : gui::Quality::interactive;
   how.endoscopeMask = settings.mask;

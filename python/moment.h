@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "gui/render/renderer.h"
-#include "gui/render/smoke.h"
+#include "gui/render/translucent.h"
 #include "recorder/engine/observer.h"
 #include "recorder/engine/state_fields.h"
 #include "recorder/prepared_scene.h"

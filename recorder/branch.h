@@ -27,7 +27,7 @@ AttemptHeader branchHeader(const Recording& parent, const Model& model, std::uin
                            const Provenance& provenance);
 
 /// Re-simulates the parent's steps up to and with the fork step, with the contact sets and lateness that were logged,
-/// so that forces and events are the same. Observers of the session are told of each.
+/// so that forces and events are the same. Observers of the session receive each.
 /// @throws Error (refused) at the first difference from the parent's digests, forces, observables, events or keyframes.
 /// @pre the session is new, with the parent's model and seed
 void takeParent(Recording& parent, Session& session, std::uint64_t forkStep,

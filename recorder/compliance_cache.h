@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Rest compliances in the user's cache folder, so that the next program need not work them out again. A convenience:
-// whatever is missing, damaged, of another version or of another user is left alone and worked out anew.
+// whatever is missing, damaged, of another version or of another user is left alone and computed again.
 // All sessions of a scene share the columns, on any thread; a file's are believed once one was computed alike.
 #pragma once
 

@@ -35,7 +35,7 @@ struct RunSettings {
   std::function<void(const TickOutcome&)> feedback;
 };
 
-/// What follows from ticks counts those of this run's steps, as the recording does.
+/// Counts of ticks are those of this run's steps, as in the recording.
 struct RunReport : TickReport {
   Outcome outcome = Outcome::completed;
   std::uint64_t steps = 0;   ///< of the session
@@ -127,7 +127,7 @@ struct AttemptInputs {
 AttemptInputs inputsOf(Recording& recording);
 
 /// Runs what a recording's hands did through a scene that differs from the one in which they did it: the motion stays,
-/// what the tissue does is computed anew (open loop). Whole steps of the model's length; ticks that fill none at the
+/// the tissue is simulated again (open loop). Whole steps of the model's length; ticks that fill none at the
 /// end are dropped. Each tick has the newest contact set: a live run, whose simulation may lag behind its haptic
 /// thread, can have other forces on the hand. Then ends the observers with the recorded outcome.
 void runOpenLoop(const Model& model, const AttemptInputs& inputs, std::span<Observer* const> observers,

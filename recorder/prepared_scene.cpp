@@ -21,7 +21,7 @@ namespace {
 
 /// Scenes that a process keeps: those of a study's tasks. An operation's takes some 40 MB.
 constexpr std::size_t keptScenes = 4;
-/// A file is written anew for no fewer new columns than these, and than this share of all.
+/// A file is rewritten for no fewer new columns than these, and than this share of all.
 constexpr std::size_t fewColumns = 32;
 constexpr std::size_t shareOfColumns = 20;
 

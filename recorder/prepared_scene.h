@@ -53,7 +53,7 @@ std::shared_ptr<PreparedScene> prepareScene(const std::vector<Asset>& assets, co
 /// That of a recording. @throws Error (damaged) where the scene in it cannot be built.
 std::shared_ptr<PreparedScene> sceneOf(const Recording& recording);
 
-/// Where scenes that are prepared from now on find compliances and save them; none, as at first: nowhere.
+/// Folder in which scenes prepared from now on find and save compliances; none, as at first: no cache.
 void useComplianceCache(const std::optional<std::filesystem::path>& folder);
 
 /// Request for an engine. Default: the one of the recording's version, in this program where it is its own.

@@ -113,7 +113,7 @@ void judge(Recording& recording, const ChainVerdict& chain, const ReplaySettings
   report.chainIntact = chain.intact;
   report.signature = recording.signature();
   const bool otherVersion = header.simulationVersion != simulationVersion;
-  // What is damaged anyway may be compared with any engine: it cannot be proven by one.
+  // A damaged recording may be compared with any engine: none can prove it.
   const bool foreign =
       otherVersion && (settings.engine.anyway || (!chain.intact && commandOfEngine(header.simulationVersion).empty()));
   EngineRequest request = settings.engine;
@@ -237,7 +237,7 @@ void Seeker::seek(std::uint64_t step) {
     const Keyframe keyframe = recording_.keyframe(*nearest);
     if (!engine_->restore(keyframe, std::nullopt)) {
       throw Error(ErrorKind::damaged, Where{recording_.path().string(), "/keyframes"},
-                  fmt::format("the one of step {} is no State of the scene's model", keyframe.step));
+                  fmt::format("the one of step {} is not a State of the scene's model", keyframe.step));
     }
   } else if (!goOn) {
     engine_->start(recording_.header().seed);

@@ -20,7 +20,7 @@
 
 namespace calot::recorder {
 
-/// Where a replay first differs from its recording.
+/// First difference between a replay and its recording.
 struct Divergence {
   std::uint64_t step = 0;
   std::optional<std::uint64_t> tick;  ///< of the attempt, where it is a tick's value
@@ -74,7 +74,7 @@ struct ReplaySettings {
   std::optional<std::pair<std::size_t, std::size_t>> part;
   EngineRequest engine;
   /// Makes observers of the re-simulation once the header is known and an engine is there; not asked where the engine's
-  /// results are of an earlier version of StepResult (what is recorded tells them as well, once it is proven). On one
+  /// results are of an earlier version of StepResult (the recorded ones serve as well, once they are proven). On one
   /// thread they see every step as it is computed. On several they see, in order, the recorded steps after all were
   /// proven equal to the computed ones, and none where they were not, with the forces as they were computed; there is
   /// no `keyframe`, no `view` and no digest of components then.

@@ -19,7 +19,7 @@ scene=${CALOT_SCENE:-cholecystectomy}
 read -r -a profiles <<<"${CALOT_PROFILES:-skilled intermediate unskilled}"
 calot=${CALOT_PROGRAM:-$root/build/release/bin/calot}
 if [[ ! -x $calot ]]; then
-  configure release
+  configure release "${first[@]}"
   build release calot
 fi
 mkdir -p "$folder"

@@ -11,6 +11,6 @@ if [[ $# -gt 1 ]]; then
   exit 2
 fi
 "$root/scripts/setup.sh"
-configure release -DBUILD_TESTING=ON
+configure release "${whole[@]}" -DBUILD_TESTING=ON
 build release test_convergence
 CALOT_HEAVY=${1:-1} "$root/build/release/bin/test_convergence" --gtest_filter='*MeshAndStepHeavy.*'

@@ -1,25 +1,29 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# From a clean clone to graded attempts: builds Calot, lets two synthetic performers do the whole operation three times
-# each, re-simulates every recording bit for bit while it is assessed into a cohort database, compares the two profiles,
-# and draws moments of the operation. All that it makes lies below demo/. Run again, it keeps what this build would make
-# again. What it prints fits one screen; the rest is in demo/*/demo.log.
-#   CALOT_SCENE    another scene (cholecystectomy)      CALOT_ATTEMPTS   of each performer (3)
+# demo.sh [--windows]: from a clean clone to graded attempts. Builds the command line alone, then records, proves, assesses and draws one short
+# attempt, and says where to look. Then two synthetic performers do the whole operation; every recording is re-simulated bit for bit while
+# it is assessed into a cohort database. --windows builds the dashboard and the trainer, too. All that it makes lies below demo/. Run
+# again, it keeps what this build would make again. What it prints fits one screen; the rest is in demo/*/demo.log.
+#   CALOT_SCENE    another scene (cholecystectomy)      CALOT_ATTEMPTS   of each performer (1)
 #   CALOT_PROGRAM  another calot: nothing is installed or built then   CALOT_DEMO   another folder (demo)
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
-attempts=${CALOT_ATTEMPTS:-3}
+if [[ $# -gt 1 || ($# -eq 1 && $1 != --windows) ]]; then
+  echo "usage: demo.sh [--windows]" >&2
+  exit 2
+fi
+attempts=${CALOT_ATTEMPTS:-1}
 scene=${CALOT_SCENE:-cholecystectomy}
 # megabytes FILE...: what they take on the disk.
 megabytes() { du -scm "$@" 2>/dev/null | tail -n 1 | cut -f 1; }
 
 if [[ -z ${CALOT_PROGRAM:-} ]]; then
-  echo "On two processors: about 15 minutes to build (later: seconds), 12 to run; 2 GB of disk, and 1 GB of packages where none are there."
+  echo "On two processors: about 5 minutes to the first attempt, 10 in all; 1 GB of disk, and 1 GB of packages where none are there."
   "$root/scripts/setup.sh" demo
-  # What README.md runs next is there afterwards. Tests are scripts/test.sh's.
-  configure release -DBUILD_TESTING=OFF
-  build release calot calot-dashboard calot-trainer calot-engine
+  # A tree that has more keeps it.
+  [[ -f $root/build/release/CMakeCache.txt ]] || configure release "${first[@]}"
+  build release calot
 fi
 calot=${CALOT_PROGRAM:-$root/build/release/bin/calot}
 built=$SECONDS
@@ -37,7 +41,15 @@ logged() {
   fi
 }
 
-say "$scene, $attempts times each, recorded and assessed (each is re-simulated: every step and force, bit for bit); tail -f $log"
+say "first attempt: a synthetic performer touches the liver; recorded, replayed bit for bit, assessed, drawn; tail -f $log"
+logged "$calot" record --scene touch-liver --performer skilled --seed 1 --force -o "$demo/first.h5"
+logged "$calot" replay "$demo/first.h5"
+rm -f "$demo"/first.db*
+logged "$calot" assess "$demo/first.h5" --cohort "$demo/first.db"
+logged "$calot" render "$demo/first.h5" --at 5 --force -o "$demo/first.png"
+say "look at it: $demo/first.png; its figures: $calot assess $demo/first.h5"
+
+say "$scene by two performers, recorded and assessed"
 export CALOT_PROFILES="skilled unskilled" CALOT_SCENE=$scene CALOT_PROGRAM=$calot
 logged "$root/scripts/cohort.sh" "$attempts" "$demo"
 
@@ -58,8 +70,15 @@ if [[ -z ${drawn:-} ]]; then
   exit 1
 fi
 
-say "done: ${built} s to build, $((SECONDS - built)) s to run, $(megabytes "$demo") MB in $demo, $(megabytes "$root/build/release") MB built"
+say "done: ${built} s to build, $((SECONDS - built)) s to run, $(megabytes "$demo") MB in $demo"
 echo "study:           $demo/study.txt"
 echo "cohort database: $demo/cohort.db"
-echo "look at it:      $(dirname "$calot")/calot-dashboard $demo/cohort.db"
 echo "pictures:        $demo/operation-*.png"
+if [[ ${1:-} == --windows ]]; then
+  "$root/scripts/setup.sh" build
+  configure release "${whole[@]}" -DBUILD_TESTING=OFF
+  build release calot calot-dashboard calot-trainer calot-modules
+  echo "look at it:      $(dirname "$calot")/calot-dashboard $demo/cohort.db"
+else
+  echo "look at it:      scripts/demo.sh --windows builds the dashboard and the trainer"
+fi

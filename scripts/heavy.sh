@@ -7,7 +7,7 @@ source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 "$root/scripts/setup.sh" checks slurm-wlm munge snakemake g++-riscv64-linux-gnu g++-arm-linux-gnueabihf g++-i686-linux-gnu \
   wasi-libc libc++-14-dev-wasm32 libc++abi-14-dev-wasm32 libclang-rt-14-dev-wasm32 lld-14 llvm-14 npm chromium firefox-esr xvfb
-configure release -DBUILD_TESTING=ON
+configure release "${whole[@]}" -DBUILD_TESTING=ON
 build release
 # Each source by itself: what one forgot to include, and names that hide others.
 configure clang "-DCALOT_OTHER=$root/build/release/bin/calot" -DCALOT_UNITY=OFF

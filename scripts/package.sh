@@ -5,7 +5,7 @@
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
-"$root/scripts/setup.sh" demo dpkg-dev file fakeroot lintian reuse desktop-file-utils appstream libxml2-utils
+"$root/scripts/setup.sh" build dpkg-dev file fakeroot lintian reuse desktop-file-utils appstream libxml2-utils
 SOURCE_DATE_EPOCH=$(dpkg-parsechangelog --file "$root/packaging/debian/changelog" --show-field Timestamp)
 export SOURCE_DATE_EPOCH
 umask 022  # folders of the packages are for all to read

@@ -31,17 +31,26 @@ LINK = ["--target=wasm32-wasi", "-mexec-model=reactor", "-O2", "-Wl,-s", f"-Wl,-
 FOREIGN = {**engine.FOREIGN, "GL": "GL", "KHR": "KHR"}
 # What each module consists of: patterns of files, "-" leaves some out.
 MODULES = {
-    "proof": ["gui/page/wasm/thrown.cpp", "gui/page/wasm/proof_module.cpp", "gui/page/wasm/blake2b.cpp", "recorder/recording/keyframe_code.cpp", "sim/math/fields.cpp"],
+    "proof": ["gui/page/wasm/thrown.cpp", "gui/page/wasm/proof_module.cpp", "recorder/recording/keyframe_code.cpp", "sim/math/fields.cpp"],
     "judge": ["gui/page/wasm/thrown.cpp", "gui/page/wasm/judge_module.cpp", "gui/words/event_words.cpp", "analytics/checkpoints/phases.cpp",
               "sim/judgement/judge.cpp", "recorder/engine/wire.cpp", "sim/instruments/*.cpp", "sim/math/*.cpp", "sim/geometry/*.cpp",
               "sim/scene/step_result.cpp", "sim/tissue/connective/connective_kind.cpp",
               *[p for p in source_patterns(ROOT, "module") if "recorder/formats/" in p or "recorder/base/" in p]],
-    "picture": ["gui/page/wasm/thrown.cpp", "gui/page/wasm/web_context.cpp", "gui/page/wasm/picture_module.cpp", "gui/render/*.cpp",
-                "- gui/render/graphics.cpp", "- gui/render/png_file.cpp",
+    "picture": ["gui/page/wasm/thrown.cpp", "gui/page/wasm/picture_module.cpp", "gui/render/*.cpp",
+                "- gui/render/graphics.cpp", "- gui/render/image.cpp",
                 "- gui/render/renderer.cpp", "recorder/engine/wire.cpp", "sim/instruments/*.cpp", "sim/math/*.cpp"],
 }
 POLICY = ("default-src 'none'; script-src 'sha256-{script}' 'wasm-unsafe-eval'; style-src 'sha256-{style}'; worker-src blob:; img-src data:; "
           "connect-src 'none'; base-uri 'none'; form-action 'none'")
+
+
+def write_shaders(file):
+    """The renderer's shaders as constants, as CMake makes them."""
+    constants = "".join(f'const char* const {shader.stem} = R"~~glsl({shader.read_text()})~~glsl";\n'
+                        for shader in sorted((ROOT / "gui/render/shaders").glob("*.glsl")))
+    text = (ROOT / "gui/render/shader_sources.cpp.in").read_text().replace("@calot_shaders@", constants)
+    if not file.exists() or file.read_text() != text:
+        file.write_text(text)
 
 
 def build_modules(work, jobs):
@@ -51,9 +60,12 @@ def build_modules(work, jobs):
     flags = " ".join([*FLAGS, f"-I{ROOT}", f"-isystem {include}"])
     lines = ["rule compile", f"  command = clang++-14 {flags} -MMD -MF $out.d -c $in -o $out", "  depfile = $out.d", "  deps = gcc", "rule link",
              f"  command = clang++-14 {' '.join(LINK)} $in -o $out"]
+    shaders = work / "shader_sources.cpp"
+    write_shaders(shaders)
+    lines.append(f"build shader_sources.o: compile {shaders}")
     made = set()
     for name, patterns in MODULES.items():
-        objects = []
+        objects = ["shader_sources.o"] if name == "picture" else []
         for source in matching(ROOT, patterns):
             objects.append(str(source.relative_to(ROOT).with_suffix(".o")))
             if objects[-1] not in made:

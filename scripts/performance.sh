@@ -12,7 +12,7 @@ if [[ $# -gt 1 ]]; then
 fi
 filter=${1:-.}
 "$root/scripts/setup.sh" python3-matplotlib
-configure release -DBUILD_TESTING=ON
+configure release "${whole[@]}" -DBUILD_TESTING=ON
 build release calot-bench calot-box-unbound
 folder=$root/build/performance
 mkdir -p "$folder"

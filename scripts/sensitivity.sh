@@ -21,6 +21,6 @@ for scene in "${@:2}"; do
   filter+="*SensitivityHeavy.*/${scene//-/}:"
 done
 "$root/scripts/setup.sh"
-configure release -DBUILD_TESTING=ON
+configure release "${whole[@]}" -DBUILD_TESTING=ON
 build release test_convergence
 CALOT_HEAVY=$seconds "$root/build/release/bin/test_convergence" --gtest_filter="${filter:-*SensitivityHeavy.*}"

@@ -1,25 +1,27 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# setup.sh [--list] [build|demo|test|checks|docs|all] [PACKAGE...]: installs what that takes on Debian 12
+# setup.sh [--list] [demo|build|test|checks|docs|all] [PACKAGE...]: installs what that takes on Debian 12
 # (docs/reference/dependencies.md says what for), all by default. Does nothing when it is there. As root, or with sudo. More
 # packages may be named. --list prints the packages instead.
-#   build   the programs          demo    build, and what scripts/demo.sh runs
-#   docs    the site's tools      test    demo, and what scripts/test.sh runs
-#   checks  test, and what scripts/checks.sh runs
+#   demo    what scripts/demo.sh builds and runs      build   all programs and modules
+#   test    build, and what scripts/test.sh runs      checks  test, and what scripts/checks.sh runs
+#   docs    the site's tools
 set -euo pipefail
 
-build=(
+demo=(
   cmake ninja-build g++ pkg-config git ca-certificates
   libeigen3-dev libxxhash-dev libhdf5-dev libsodium-dev libsqlite3-dev libsqlitecpp-dev libboost-dev
-  nlohmann-json3-dev libfmt-dev libspdlog-dev libcli11-dev libpng-dev libosmesa6-dev libegl-dev
-  libavcodec-dev libavformat-dev libavutil-dev libswscale-dev libapriltag-dev libfreetype-dev
-  libsdl2-dev libopenigtlink-dev libspnav-dev libseccomp-dev libbenchmark-dev
-  qt6-base-dev qt6-speech-dev qt6-declarative-dev
-  # Optional, but whoever adds them later builds everything anew.
-  libbullet-dev pybind11-dev python3-dev
+  nlohmann-json3-dev libfmt-dev libspdlog-dev libcli11-dev libpng-dev libosmesa6-dev libegl-dev libfreetype-dev
+  fonts-dejavu-core python3 python3-h5py
 )
-demo=("${build[@]}" fonts-dejavu-core python3 python3-h5py)
-test=("${demo[@]}" libgtest-dev xvfb xauth python3-scipy python3-pandas python3-nacl hdf5-tools valgrind nodejs
+build=(
+  "${demo[@]}" libbullet-dev libseccomp-dev libbenchmark-dev
+  libavcodec-dev libavformat-dev libavutil-dev libswscale-dev libapriltag-dev
+  libsdl2-dev libopenigtlink-dev libspnav-dev
+  qt6-base-dev qt6-speech-dev qt6-declarative-dev
+  pybind11-dev python3-dev
+)
+test=("${build[@]}" libgtest-dev xvfb xauth python3-scipy python3-pandas python3-nacl hdf5-tools valgrind nodejs
   tmux shellcheck reuse clang-format)
 docs=(mkdocs mkdocs-material doxygen)
 checks=("${test[@]}" clang clang-tidy libclang-rt-14-dev g++-aarch64-linux-gnu qemu-user)
@@ -36,7 +38,7 @@ case ${1:-} in
   docs) packages=("${docs[@]}") && shift ;;
   checks | all) packages=("${checks[@]}") && shift ;;
   -*)
-    echo "usage: setup.sh [--list] [build|demo|test|checks|docs|all] [PACKAGE...]" >&2
+    echo "usage: setup.sh [--list] [demo|build|test|checks|docs|all] [PACKAGE...]" >&2
     exit 2
     ;;
   *) packages=("${checks[@]}") ;;

@@ -31,7 +31,9 @@ def main():
     parser.add_argument("build", type=pathlib.Path, help="a configured build tree (compile_commands.json)")
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--rooms", nargs="+", choices=ROOMS, default=ROOMS, help="default: all")
+    parser.add_argument("--only", action="store_true", help="only what compiles the sources that standard input names")
     arguments = parser.parse_args()
+    wanted = {line.strip() for line in sys.stdin} if arguments.only else None
 
     commands = json.loads((arguments.build / "compile_commands.json").read_text())
     build = arguments.build.resolve()
@@ -41,6 +43,9 @@ def main():
         base = build if file.is_relative_to(build) else ROOT
         if file.is_relative_to(base) and file.relative_to(base).parts[0] in arguments.rooms:
             files.append(file)
+    if wanted is not None:
+        files = [f for f in files if wanted & ({str(f.relative_to(ROOT))} | {str(pathlib.Path(s).relative_to(ROOT)) for s in
+                                               re.findall(r'^#include "(/.*\.cpp)"', f.read_text(), re.M)})]
     cache = arguments.build / "tidy"
     cache.mkdir(exist_ok=True)
     common = headers_digest()

@@ -22,7 +22,7 @@ using NormProgress = std::function<void(double share, const char* doing)>;
 Norm createNorm(const std::string& database, NormRequest request, const std::vector<std::string>& only = {},
                 const NormProgress& progress = {});
 
-/// Who is in it and who made it, its rule with what the rule lets through, and what it may be used for: whole
+/// Members and author, its rule with the pass rates of the rule, and its permitted use: whole
 /// sentences.
 std::vector<std::string> normSummary(const Norm& norm);
 

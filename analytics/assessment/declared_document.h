@@ -7,7 +7,7 @@
 #include <span>
 #include <string>
 
-#include "recorder/base/json_reader.h"
+#include "sim/math/record.h"
 
 namespace calot::analytics {
 
@@ -22,12 +22,17 @@ struct DeclaredDocument {
   std::string sha256;  ///< of the text, hexadecimal
 };
 
-/// Letters, digits, points, hyphens and underscores: names are printed, and typed.
-std::string plainName(const recorder::JsonPlace& place);
+/// A checkpoint with its subject, "path-length left"; of an outcome or external metric its name alone.
+inline std::string figureName(const std::string& checkpoint, const std::string& subject) {
+  return subject.empty() ? checkpoint : checkpoint + " " + subject;
+}
 
-/// Reads "format" (which must be the word `format`), "formatVersion", name, version and title; keeps the text.
-/// @throws Error (damaged) naming file and place.
-void readHead(const recorder::JsonObject& root, const std::string& format, std::span<const std::byte> bytes,
-              const std::string& file, DeclaredDocument& document);
+/// Names are printed, and typed.
+inline constexpr TextRule plainName{maxName, "^[A-Za-z0-9_.-]+$",
+                                    "a name of letters, digits, points, hyphens and underscores is expected"};
+inline constexpr TextRule anyName{maxName}, anyText{maxText};
+
+/// Notes where a document was read from, its text and the hash of that.
+void keepText(std::span<const std::byte> bytes, const std::string& file, DeclaredDocument& document);
 
 }  // namespace calot::analytics

@@ -10,7 +10,7 @@
 #include <tuple>
 
 #include "analytics/assessment/norm_rule.h"
-#include "analytics/checkpoints/registry.h"
+#include "analytics/checkpoints/checkpoint.h"
 #include "recorder/base/errors.h"
 
 namespace calot::analytics {
@@ -157,8 +157,7 @@ void addHistory(GradedFigure& figure, const std::vector<const AttemptRow*>& past
 
 Expected<double> percentile(const std::vector<double>& members, double value, Direction direction) {
   const std::size_t n = members.size();
-  if (n < leastForPercentile)
-    return Expected<double>::none(fmt::format("{} members, {} wanted", n, leastForPercentile));
+  if (n < leastForPercentile) return NoResult{fmt::format("{} members, {} wanted", n, leastForPercentile)};
   std::size_t worse = 0, equal = 0;
   for (const double m : members) {
     worse += (direction == Direction::lower ? m > value : m < value) ? 1 : 0;
@@ -167,8 +166,8 @@ Expected<double> percentile(const std::vector<double>& members, double value, Di
   const double of = static_cast<double>(n + 1);
   const std::string supported = fmt::format("{} members tell percentiles from {:.0f} to {:.0f}", n, 100.0 / of,
                                             100.0 * static_cast<double>(n) / of);
-  if (worse == n) return Expected<double>::none(fmt::format("better than all; {}", supported));
-  if (worse == 0 && equal == 0) return Expected<double>::none(fmt::format("worse than all; {}", supported));
+  if (worse == n) return NoResult{fmt::format("better than all; {}", supported)};
+  if (worse == 0 && equal == 0) return NoResult{fmt::format("worse than all; {}", supported)};
   return 100.0 * (static_cast<double>(worse) + 0.5 * static_cast<double>(equal) + 0.5) / of;
 }
 

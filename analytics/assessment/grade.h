@@ -11,11 +11,11 @@
 #include "analytics/assessment/norm.h"
 #include "analytics/cohort/cohort_database.h"
 #include "analytics/statistics/expected.h"
-#include "analytics/statistics/learning_curve.h"
+#include "analytics/statistics/regression.h"
 
 namespace calot::analytics {
 
-/// Where a value stands among the n competent members that have the figure: 100 (k + t / 2 + 1 / 2) / (n + 1), k of
+/// Percentile of a value among the n competent members with the figure: 100 (k + t / 2 + 1 / 2) / (n + 1), k of
 /// them worse and t equal, beside what n people can tell: from 100 / (n + 1) to 100 n / (n + 1). No answer beyond the
 /// best or the worst of them, and where there are fewer than leastForPercentile.
 inline constexpr std::size_t leastForPercentile = 5;
@@ -35,13 +35,13 @@ struct GradedFigure {
   std::string missing;          ///< why it is not judged, or empty
   std::optional<bool> passed;
   bool open = false;  ///< the value lies within the interval of the cut: another norm might judge otherwise
-  std::optional<ValueInterval> interval;  ///< of the simulation, where one was worked out
-  bool undecided = false;                 ///< the pass mark lies within it: not decided by this simulation
-  Expected<double> rank = Expected<double>::none("not judged");                   ///< percentile()
-  std::uint64_t competent = 0;                                                    ///< members that rank is among
-  FigureMoments moments;                                                          ///< of a weak figure
-  std::vector<HistoryPoint> history;                                              ///< by start, this attempt the last
-  Expected<LearningCurve> curve = Expected<LearningCurve>::none("not computed");  ///< a - b / x, display unit
+  std::optional<ValueInterval> interval;           ///< of the simulation, where one was worked out
+  bool undecided = false;                          ///< the pass mark lies within it: not decided by this simulation
+  Expected<double> rank = NoResult{"not judged"};  ///< percentile()
+  std::uint64_t competent = 0;                     ///< members that rank is among
+  FigureMoments moments;                           ///< of a weak figure
+  std::vector<HistoryPoint> history;               ///< by start, this attempt the last
+  Expected<LearningCurve> curve = NoResult{"not computed"};  ///< a - b / x, display unit
 
   [[nodiscard]] bool weak() const { return passed.has_value() && !*passed; }
 };

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "analytics/checkpoints/checkpoint.h"
 #include "analytics/checkpoints/collector.h"
-#include "analytics/checkpoints/registry.h"
 #include "recorder/base/errors.h"
 #include "recorder/formats/scene_file.h"
 
@@ -32,7 +32,7 @@ FigureMoments momentsOf(const std::vector<double>& series, double length, Direct
     result.none = "the recording's steps do not give this figure";
     return result;
   }
-  // What begins with the attempt begins at zero; what is known only later, or counts down, begins where it is known.
+  // A figure that begins with the attempt begins at zero; one known only later, or counting down, begins when known.
   double before = first == series.begin() && better != Direction::higher ? 0.0 : *first;
   std::vector<double> gained;
   double total = 0.0;

@@ -4,14 +4,13 @@
 
 #include <fmt/format.h>
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <map>
 #include <set>
 #include <utility>
 
-#include "analytics/checkpoints/registry.h"
-#include "analytics/report/report_text.h"
+#include "analytics/checkpoints/checkpoint.h"
+#include "analytics/report/report_document.h"
 #include "analytics/statistics/standard_setting.h"
 #include "recorder/base/errors.h"
 
@@ -23,33 +22,34 @@ constexpr const char* otherGroup = "not competent";
 constexpr const char* allFigures = "all";
 constexpr const char* borderlinePrefix = "borderline regression on form ";
 
-std::string figureName(const std::string& checkpoint, const std::string& subject) {
-  return subject.empty() ? checkpoint : checkpoint + " " + subject;
+/// The attempts with a group by their score, `above` from the mark on; of a participant the first that has a score.
+/// Others have no group.
+std::vector<AttemptRow> groupedBy(std::vector<AttemptRow> attempts, const std::map<std::string, double>& scores,
+                                  double mark, const char* above, const char* below) {
+  std::set<std::string> seen;
+  for (AttemptRow& a : attempts) {  // by start
+    const auto at = scores.find(a.uuid);
+    a.group.clear();
+    if (at == scores.end() || (!a.participant.empty() && !seen.insert(a.participant).second)) continue;
+    a.group = at->second >= mark ? above : below;
+  }
+  return attempts;
 }
 
-/// The attempts with a group by what most of their raters say; of a participant's the first that was judged.
-std::vector<AttemptRow> judged(std::vector<AttemptRow> attempts, const std::vector<Rating>& ratings,
+/// The attempts with a group by what most of their raters say.
+std::vector<AttemptRow> judged(const std::vector<AttemptRow>& attempts, const std::vector<Rating>& ratings,
                                const std::string& form, const std::string& name) {
-  std::map<std::string, std::pair<std::uint64_t, std::uint64_t>> votes;  // raters, of them for competent
+  std::map<std::string, double> votes;  // for competent, less those against
   for (const Rating& r : ratings) {
     const auto at = r.answers.find(competenceItem);
-    if (r.form != form || at == r.answers.end()) continue;
-    ++votes[r.attempt].first;
-    if (at->second > 0) ++votes[r.attempt].second;
+    if (r.form == form && at != r.answers.end()) votes[r.attempt] += at->second > 0 ? 1.0 : -1.0;
   }
   if (votes.empty())
     throw Error(ErrorKind::refused, Where{name},
                 fmt::format("no attempt was rated with form {} and its item \"{}\"", form, competenceItem),
                 {Remedy::rateAttempts});
-  std::set<std::string> seen;
-  for (AttemptRow& a : attempts) {  // by start
-    const auto at = votes.find(a.uuid);
-    a.group.clear();
-    if (at == votes.end() || 2 * at->second.second == at->second.first) continue;  // not rated, or divided
-    if (!a.participant.empty() && !seen.insert(a.participant).second) continue;
-    a.group = 2 * at->second.second > at->second.first ? competentGroup : otherGroup;
-  }
-  return attempts;
+  std::erase_if(votes, [](const auto& vote) { return vote.second == 0.0; });  // divided
+  return groupedBy(attempts, votes, 0.0, competentGroup, otherGroup);
 }
 
 /// A figure of the norm: a checkpoint or an external metric, and its subject. The definition is that of a value.
@@ -91,7 +91,7 @@ NormCheckpoint markOf(const CheckpointDefinition& definition, const NormFigure& 
     mark.upper = cut->upper;
     return mark;
   }
-  const ContrastingGroupsOptions options{mark.logScale, 0.95, 9999, norm.seed};
+  const ContrastingGroupsOptions options{{.seed = norm.seed}, mark.logScale};
   const Expected<ContrastingGroups> cut = contrastingGroups(
       competent, others, definition.direction == Direction::lower ? Better::lower : Better::higher, options);
   if (!cut) {
@@ -108,12 +108,12 @@ NormCheckpoint markOf(const CheckpointDefinition& definition, const NormFigure& 
   return mark;
 }
 
-/// Whether a figure is in the norm: those of phases, which repeat the whole attempt's, where they are asked for.
+/// True if a figure belongs to the norm; figures of phases, which repeat the whole attempt's, only on request.
 bool isAskedFor(const CheckpointDefinition& definition, const std::string& subject, const NormRequest& request) {
   return !isOfPhases(definition) || request.who.includePhases || isNamed(request.checkpoints, definition.name, subject);
 }
 
-/// Which figures members have that judge, in the registry's order; their values, once a member.
+/// Figures of the members that judge, in the registry's order; one value per member.
 std::vector<NormFigure> collectValues(Norm& norm, const std::vector<AttemptValue>& values, const NormRequest& request,
                                       const std::string& name) {
   std::vector<NormFigure> figures;
@@ -222,18 +222,14 @@ Study studyOfMembers(const std::vector<AttemptRow>& attempts, const std::vector<
 
 Norm makeNorm(const std::vector<AttemptRow>& attempts, const std::vector<AttemptValue>& values,
               const std::vector<Rating>& ratings, const NormRequest& request, const std::string& name) {
-  const bool plain = !request.name.empty() && request.name.size() <= 64 &&
-                     std::all_of(request.name.begin(), request.name.end(), [](unsigned char c) {
-                       return c < 0x80 && (std::isalnum(c) != 0 || c == '-' || c == '_' || c == '.');
-                     });
-  if (!plain)
+  if (request.name.empty() || request.name.size() > maxName || !isPlainName(request.name))
     throw Error(ErrorKind::invalid,
                 "norm: a name has 1 to 64 letters, digits, points, hyphens and underscores, and no others");
   if (request.who.protocol && request.who.protocol->protocol.attemptRule == AttemptRule::mean)
     throw Error(ErrorKind::refused, Where{request.who.protocol->protocol.file},
-                "its attempt rule is the mean, and a mean of attempts is no attempt that others are held against");
+                "its attempt rule is the mean, and a mean of attempts is not an attempt that others are held against");
   if (request.who.attemptRule == AttemptRule::mean)
-    throw Error(ErrorKind::invalid, "norm: a mean of attempts is no attempt", {Remedy::takeFirst});
+    throw Error(ErrorKind::invalid, "norm: a mean of attempts is not an attempt", {Remedy::takeFirst});
   StudyOptions who = request.who;
   std::vector<AttemptRow> candidates = attempts;
   Norm norm;
@@ -351,15 +347,7 @@ std::vector<AttemptRow> groupedByRating(std::vector<AttemptRow> attempts, const 
   if (ratings.empty())
     throw Error(ErrorKind::refused, Where{name}, fmt::format("no attempt was rated with form {}", borderline.form),
                 {Remedy::rateAttempts});
-  std::set<std::string> seen;
-  for (AttemptRow& a : attempts) {  // by start
-    const auto at = ratings.find(a.uuid);
-    a.group.clear();
-    if (at == ratings.end()) continue;
-    if (!a.participant.empty() && !seen.insert(a.participant).second) continue;
-    a.group = at->second >= borderline.mark ? atMarkGroup : belowMarkGroup;
-  }
-  return attempts;
+  return groupedBy(std::move(attempts), ratings, borderline.mark, atMarkGroup, belowMarkGroup);
 }
 
 Expected<RegressionCut> borderlineCut(const std::vector<double>& ratings, const std::vector<double>& values,
@@ -369,7 +357,7 @@ Expected<RegressionCut> borderlineCut(const std::vector<double>& ratings, const 
   for (const double v : values) scores.push_back(logScale ? std::log(v) : v);
   const Expected<BorderlineRegression> line =
       borderlineRegression(ratings, scores, mark, direction == Direction::lower ? Better::lower : Better::higher);
-  if (!line) return Expected<RegressionCut>::none(line.reason());
+  if (!line) return NoResult{line.reason()};
   const auto back = [logScale](double v) { return logScale ? std::exp(v) : v; };
   return RegressionCut{back(line->cut), back(line->interval.lower), back(line->interval.upper)};
 }

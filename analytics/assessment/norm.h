@@ -52,7 +52,7 @@ inline constexpr std::size_t minNormMembers = 3;
 /// @param name of where they are from, for errors
 /// @throws Error (refused) as makeStudy(), where raters judged nobody or all alike, a side has too few members, a
 /// figure of the rule has no cut, the rule wants more than there are, or the protocol takes a mean of attempts; Error
-/// (invalid) for a name that is none.
+/// (invalid) for an unknown name.
 Norm makeNorm(const std::vector<AttemptRow>& attempts, const std::vector<AttemptValue>& values,
               const std::vector<Rating>& ratings, const NormRequest& request, const std::string& name);
 

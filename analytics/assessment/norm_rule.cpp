@@ -8,7 +8,8 @@
 #include <cmath>
 
 #include "analytics/assessment/norm.h"
-#include "analytics/checkpoints/registry.h"
+#include "analytics/checkpoints/checkpoint.h"
+#include "analytics/report/table_study.h"
 #include "recorder/base/errors.h"
 #include "recorder/base/text_words.h"
 
@@ -28,10 +29,6 @@ bool holds(const List& list, std::string_view checkpoint) {
   return std::find(list.begin(), list.end(), checkpoint) != list.end();
 }
 
-std::string nameOfFigure(const NormCheckpoint& mark) {
-  return mark.subject.empty() ? mark.checkpoint : mark.checkpoint + " " + mark.subject;
-}
-
 }  // namespace
 
 FixedCut parseFixedCut(const std::string& text) {
@@ -48,7 +45,7 @@ FixedCut parseFixedCut(const std::string& text) {
     if (fault.empty() && !cut.figure.empty()) return cut;
   }
   throw Error(ErrorKind::invalid,
-              fmt::format("norm: fixed mark {}: a figure, <= or >=, and a number are wanted", recorder::shown(text)));
+              fmt::format("norm: fixed mark {}: a figure, <= or >=, and a number are expected", recorder::shown(text)));
 }
 
 bool countsByDefault(std::string_view checkpoint) { return holds(countingCheckpoints(), checkpoint); }
@@ -66,7 +63,7 @@ void setFixedCuts(Norm& norm, const std::vector<FixedCut>& fixed) {
   for (const FixedCut& cut : fixed) {
     bool found = false;
     for (NormCheckpoint& mark : norm.checkpoints) {
-      if (cut.figure != mark.checkpoint && cut.figure != nameOfFigure(mark)) continue;
+      if (cut.figure != mark.checkpoint && cut.figure != figureName(mark.checkpoint, mark.subject)) continue;
       found = true;
       if (cut.atLeast != (mark.direction == Direction::higher))
         throw Error(ErrorKind::invalid, fmt::format("norm: fixed mark of {}: of it {} is better",
@@ -102,26 +99,15 @@ std::string uncountedWarning(const Norm& norm) {
   std::string names, reasons;
   for (const NormCheckpoint& mark : norm.checkpoints) {
     if (mark.inRule || mark.cut || !holds(harms, mark.checkpoint)) continue;
-    names += (names.empty() ? "" : ", ") + nameOfFigure(mark);
+    names += (names.empty() ? "" : ", ") + figureName(mark.checkpoint, mark.subject);
     if (reasons.find(mark.reason) == std::string::npos) reasons += (reasons.empty() ? "" : "; ") + mark.reason;
   }
   if (names.empty()) return {};
   return fmt::format("Warning: harm that does not count, for want of a pass mark ({}): {}.", reasons, names);
 }
 
-namespace {
-
-constexpr const char* judgeColumn = "judge";
-
-[[noreturn]] void failCell(const CsvTable& table, std::size_t line, const std::string& column,
-                           const std::string& what) {
-  throw Error(ErrorKind::damaged, Where{table.path, fmt::format("line {}", line)},
-              fmt::format("column \"{}\": {}", recorder::shown(column), what));
-}
-
-}  // namespace
-
 AngoffJudgement readAngoff(const CsvTable& table) {
+  constexpr const char* judgeColumn = "judge";
   const std::size_t judge = table.column(judgeColumn);
   AngoffJudgement result;
   for (std::size_t c = 0; c < table.columns.size(); ++c) {
@@ -130,18 +116,18 @@ AngoffJudgement readAngoff(const CsvTable& table) {
   result.probabilities.raters = result.items.size();
   for (const CsvRow& row : table.rows) {
     const std::string& name = row.cells[judge];
-    if (name.empty()) failCell(table, row.line, judgeColumn, "is empty");
+    if (name.empty()) failAt(table, row.line, judgeColumn, "is empty");
     if (std::find(result.judges.begin(), result.judges.end(), name) != result.judges.end())
-      failCell(table, row.line, judgeColumn, fmt::format("\"{}\" is named twice", recorder::shown(name)));
+      failAt(table, row.line, judgeColumn, fmt::format("\"{}\" is named twice", recorder::shown(name)));
     result.judges.push_back(name);
     ++result.probabilities.subjects;
     for (std::size_t c = 0; c < table.columns.size(); ++c) {
       if (c == judge) continue;
       std::string fault;
       const double p = recorder::readFiniteNumber(row.cells[c], fault);
-      if (!fault.empty()) failCell(table, row.line, table.columns[c], fault);
+      if (!fault.empty()) failAt(table, row.line, table.columns[c], fault);
       if (p < 0.0 || p > 1.0)
-        failCell(table, row.line, table.columns[c], fmt::format("{} is no probability from 0 to 1", p));
+        failAt(table, row.line, table.columns[c], fmt::format("{} is not a probability from 0 to 1", p));
       result.probabilities.values.push_back(p);
     }
   }

@@ -12,22 +12,43 @@
 
 #include "recorder/base/errors.h"
 #include "recorder/base/file_bytes.h"
-#include "recorder/base/json_reader.h"
+#include "recorder/base/record_reader.h"
 #include "recorder/base/text_words.h"
 
 namespace calot::analytics {
 namespace {
 
-using recorder::JsonObject;
 using recorder::JsonPlace;
 using recorder::shown;
 
 constexpr std::size_t maxAnswerBytes = std::size_t{4} << 20U, maxAnswerWord = 80, maxPackFilms = 10000;
 
-// "seal" is of pages that earlier versions made.
-const recorder::ObjectRule answersRule{
-    "", {{"format"}, {"formatVersion", true, 1, 1}, {"pack"}, {"rater"}, {"films"}, {"seal", false}}};
-const recorder::ObjectRule filmRule{"film", {{"film"}, {"scores"}}};
+constexpr TextRule answerWord{maxAnswerWord};
+
+struct Answers {
+  std::string pack, rater;
+
+  static std::vector<Field> fields() {
+    using S = Answers;
+    return {object("", "Answers to a pack"),
+            fileFormat("calot-answers"),
+            fileFormatVersion(),
+            {"pack", at<S, &S::pack>, answerWord, "Pack"},
+            {"rater", at<S, &S::rater>, answerWord, "Rater"},
+            {"films", unchecked, "Films"},
+            optional("seal", unchecked, "Of pages that earlier versions made")};
+  }
+};
+
+struct FilmAnswers {
+  std::string film;
+
+  static std::vector<Field> fields() {
+    return {object("film", "Answers to a film"),
+            {"film", at<FilmAnswers, &FilmAnswers::film>, answerWord, "Film"},
+            {"scores", unchecked, "Scores by item"}};
+  }
+};
 
 using Scores = std::vector<std::pair<std::string, std::string>>;  ///< item and score, in the form's order
 
@@ -36,11 +57,12 @@ using Scores = std::vector<std::pair<std::string, std::string>>;  ///< item and 
 }
 
 Scores scoresOf(const JsonPlace& place, const RatingForm& form) {
-  recorder::ObjectRule rule{"scores", {}};
-  for (const FormItem& item : form.items()) rule.keys.push_back({item.key});
-  const JsonObject object = place.object(rule);
+  const std::vector<FormItem> items = form.items();
+  std::vector<Field> rows{object("scores", "Scores by item")};
+  for (const FormItem& item : items) rows.emplace_back(item.key.c_str(), unstored<std::string>, answerWord, "Score");
+  recorder::readRecord(place, Record(rows, nullptr), nullptr);
   Scores scores;
-  for (const FormItem& item : form.items()) scores.emplace_back(item.key, object.at(item.key).text(maxAnswerWord));
+  for (const FormItem& item : items) scores.emplace_back(item.key, place.at(item.key).text(answerWord));
   return scores;
 }
 
@@ -54,24 +76,25 @@ PackAnswers readPackAnswers(const std::filesystem::path& file,
                             const std::function<std::optional<RatingPack>(const std::string& id)>& find) {
   const std::string name = file.filename().string();
   const nlohmann::json json = recorder::parseStrictJson(recorder::readFileBytes(file, name, maxAnswerBytes), name);
-  const JsonObject root = JsonPlace(json, name).object(answersRule);
-  if (root.at("format").text(maxAnswerWord) != "calot-answers") root.at("format").fail("calot-answers is wanted");
-  static_cast<void>(root.at("formatVersion").integer(answersRule.keys[1]));
-  const std::string id = root.at("pack").text(maxAnswerWord);
+  const JsonPlace root(json, name);
+  Answers given;
+  recorder::readRecord(root, given);
+  const std::string& id = given.pack;
   std::optional<RatingPack> pack = find(id);
   if (!pack) refuse(name, fmt::format("answers to a pack ({}) that was not made from this cohort", shown(id)));
 
   PackAnswers answers;
   answers.form = formOf(*pack);
-  answers.rater = root.at("rater").text(maxAnswerWord);
+  answers.rater = given.rater;
   const auto rater = std::find_if(pack->raters.begin(), pack->raters.end(),
                                   [&](const PackedRater& r) { return r.rater == answers.rater; });
   if (rater == pack->raters.end()) refuse(name, fmt::format("no rater \"{}\" has this pack", shown(answers.rater)));
 
   std::vector<std::pair<std::string, Scores>> films;
   for (const JsonPlace& place : root.at("films").list(1, maxPackFilms)) {
-    const JsonObject film = place.object(filmRule);
-    films.emplace_back(film.at("film").text(maxAnswerWord), scoresOf(film.at("scores"), answers.form));
+    FilmAnswers film;
+    recorder::readRecord(place, film);
+    films.emplace_back(film.film, scoresOf(place.at("scores"), answers.form));
   }
 
   std::map<std::string, std::string> attemptOf;

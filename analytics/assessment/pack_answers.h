@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "analytics/assessment/rating_form.h"
-#include "analytics/cohort/rating_packs.h"
+#include "analytics/cohort/blinding.h"
 
 namespace calot::analytics {
 

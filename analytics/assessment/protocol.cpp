@@ -7,192 +7,195 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "analytics/checkpoints/registry.h"
+#include "analytics/checkpoints/checkpoint.h"
 #include "recorder/base/errors.h"
 #include "recorder/base/file_bytes.h"
 #include "recorder/base/nearest_word.h"
+#include "recorder/base/record_reader.h"
 #include "recorder/base/text_words.h"
 
 namespace calot::analytics {
 namespace {
 
-using recorder::JsonObject;
 using recorder::JsonPlace;
-using recorder::ObjectRule;
 using recorder::Outcome;
 
-constexpr std::size_t maxBytes = 1U << 20U;
-constexpr std::size_t maxHypotheses = 200, maxCriteria = 20, maxReasons = 50;
 constexpr double maxBound = 1e9;
 
-std::string didYouMeanCheckpoint(const std::string& name) {
-  std::vector<std::string> known;
-  for (const CheckpointEntry& entry : checkpointRegistry()) known.push_back(entry.definition.name);
-  return recorder::didYouMean(name, known);
-}
-
-const ObjectRule rootRule{"",
-                          {{"format"},
-                           {"formatVersion", true, 1, 1},
-                           {"name"},
-                           {"version", true, 1, 1000000},
-                           {"title"},
-                           {"question", false},
-                           {"operators", false},
-                           {"populations"},
-                           {"better"},
-                           {"unit"},
-                           {"attemptRule"},
-                           {"scene", false},
-                           {"exclusions"},
-                           {"missing"},
-                           {"level", true, 0.0, 0.5, true},
-                           {"hypotheses"}}};
-const ObjectRule populationRule{"population", {{"group"}, {"definition"}, {"criteria", false}}};
-const ObjectRule criterionRule{"criterion",
-                               {{"criterion"},
-                                {"atLeast", false, -maxBound, maxBound},
-                                {"atMost", false, -maxBound, maxBound},
-                                {"equals", false}}};
-const ObjectRule exclusionsRule{"exclusions", {{"outcomes"}, {"reasons"}}};
-const ObjectRule hypothesisRule{"hypothesis",
-                                {{"checkpoint", false},
-                                 {"external", false},
-                                 {"sha256", false},
-                                 {"outcome", false},
-                                 {"subject", false},
-                                 {"larger"},
-                                 {"primary"}}};
-
-PopulationCriterion criterionAt(const JsonPlace& place) {
-  const JsonObject o = place.object(criterionRule);
-  PopulationCriterion criterion;
-  o.read("criterion", criterion.criterion, maxName);
-  const auto bound = [&](const char* key) {
-    double value = 0.0;
-    o.read(key, value);
-    return o.has(key) ? std::optional(value) : std::nullopt;
+std::vector<Field> exclusionsFields() {
+  using S = Protocol;
+  const auto number = [](Outcome outcome) { return static_cast<std::uint32_t>(outcome); };
+  return {
+      object("exclusions", "Attempts that stay out"),
+      Field("outcomes", at<S, &S::excludedOutcomes>,
+            FieldWords{{"time limit", number(Outcome::timeLimit)},
+                       {"abandoned", number(Outcome::abandoned)},
+                       {"stopped", number(Outcome::stopped)},
+                       {"technical failure", number(Outcome::technicalFailure)}},
+            "Outcomes of attempts that stay out; technical failures always do")
+          .items(0, 5),
+      Field("reasons", at<S, &S::exclusionReasons>, anyText,
+            "Reasons for which an attempt may be excluded by hand; another reason is reported as a deviation")
+          .items(0, 50),
   };
-  criterion.atLeast = bound("atLeast");
-  criterion.atMost = bound("atMost");
-  o.read("equals", criterion.equals, maxName);
+}
+
+}  // namespace
+
+std::vector<Field> PopulationCriterion::fields() {
+  using S = PopulationCriterion;
+  return {
+      object("criterion", "Either equals, or one or both bounds"),
+      {"criterion", at<S, &S::criterion>, anyName, "Criterion, as it is recorded for participants"},
+      optional("atLeast", at<S, &S::atLeast>, "", within(-maxBound, maxBound), "Smallest value"),
+      optional("atMost", at<S, &S::atMost>, "", within(-maxBound, maxBound), "Largest value"),
+      optional("equals", at<S, &S::equals>, anyName, "Word"),
+  };
+}
+
+std::vector<Field> Population::fields() {
+  using S = Population;
+  return {
+      object("population", "Group of participants"),
+      {"group", at<S, &S::group>, anyName, "Study group of the participants; of performers their profile"},
+      {"definition", at<S, &S::definition>, anyText, "Members, in words"},
+      optional("criteria", at<S, &S::criteria>,
+               "Recorded experience that every member has; attempts of others stay out")
+          .items(0, 20),
+  };
+}
+
+std::vector<Field> DirectedHypothesis::fields() {
+  using S = DirectedHypothesis;
+  static constexpr TextRule sha256{64, "^[0-9a-f]{64}$", "64 hexadecimal digits in small letters are expected"};
+  return {
+      object("hypothesis", "Hypothesis on one of a checkpoint, an external metric and an outcome"),
+      optional("checkpoint", at<S, &S::checkpoint>, anyName, "Name, as calot checkpoints lists it"),
+      optional("external", at<S, &S::checkpoint>, anyName, "In place of a checkpoint: NAME of a metric of one's own"),
+      optional("sha256", at<S, &S::sha256>, sha256,
+               "Hash of an external metric's script, as calot assess reports it; values of another script are then not "
+               "the hypothesis's"),
+      optional("outcome", at<S, &S::checkpoint>, anyName,
+               "In place of a checkpoint: a column of a table from elsewhere"),
+      optional("subject", at<S, &S::subject>, anyName, "Hand (left, right), organ or phase, of checkpoints with one"),
+      {"larger", at<S, &S::larger>, anyName, "The group whose values are expected to be the larger ones"},
+      {"primary", at<S, &S::primary>, "In the family of Holm's adjustment; else secondary"},
+  };
+}
+
+std::vector<Field> Protocol::fields() {
+  using S = Protocol;
+  const auto number = [](auto value) { return static_cast<std::uint32_t>(value); };
+  return {
+      object("", "Declarations of a study of two groups before its first attempt"),
+      fileFormat("calot-protocol"),
+      fileFormatVersion(),
+      {"name", at<S, &S::name>, plainName,
+       "Name under which versions of this protocol are kept together: letters, digits, points, hyphens, underscores"},
+      {"version", at<S, &S::version>, "", within(1, 1000000),
+       "Version of this protocol; a changed protocol has a higher one"},
+      {"title", at<S, &S::title>, anyText, "One line"},
+      optional("question", at<S, &S::question>, anyText, "Question of the study"),
+      optional("operators", at<S, &S::performers>, FieldWords{{"people", 0}, {"performers", 1}},
+               "Operators that are compared; performers prove the pipeline and nothing about people"),
+      Field("populations", at<S, &S::populations>, "The two groups, in the order of the tables").items(2, 2),
+      {"better", at<S, &S::better>, anyName, "The group that is expected to do better"},
+      {"unit", unstored<bool>, FieldWords{{"participant", 0}},
+       "Unit of analysis: attempts of one person are not independent"},
+      {"attemptRule", unstored<bool>, FieldWords{{"single", 0}, {"first", 1}, {"mean", 2}},
+       "Value of a participant with several attempts: single refuses several, first takes the earliest, mean their "
+       "mean"},
+      optional("scene", at<S, &S::scene>, anyName,
+               "Scene and major version, as cholecystectomy/2; attempts of others stay out. Any if absent"),
+      {"exclusions", keyGroup<S, exclusionsFields>, "Attempts that stay out"},
+      {"missing", at<S, &S::missing>,
+       FieldWords{{"complete-cases", number(MissingRule::completeCases)},
+                  {"worst-rank", number(MissingRule::worstRank)}},
+       "complete-cases: who has no value is left out of that figure, and counted. worst-rank: who has none because the "
+       "attempt was not completed ranks behind all others, tied (Lachin 1999)"},
+      {"level", at<S, &S::level>, "1", above(0, 0.5), "Level of significance of the family"},
+      Field("hypotheses", at<S, &S::hypotheses>,
+            "At least one is primary. Holm's adjustment is over the primary ones alone; figures without a hypothesis "
+            "are exploratory")
+          .items(1, 200),
+  };
+}
+
+namespace {
+
+void checkCriterion(const JsonPlace& place, const PopulationCriterion& criterion) {
   const bool bounded = criterion.atLeast || criterion.atMost;
-  if (bounded == o.has("equals")) o.fail("either \"equals\", or \"atLeast\" or \"atMost\" or both are wanted");
+  if (bounded == place.has("equals"))
+    place.fail("either \"equals\", or \"atLeast\" or \"atMost\" or both are expected");
   if (criterion.atLeast && criterion.atMost && *criterion.atLeast > *criterion.atMost)
-    o.fail("\"atLeast\" is larger than \"atMost\"");
-  return criterion;
+    place.fail("\"atLeast\" is larger than \"atMost\"");
 }
 
-Population populationAt(const JsonPlace& place) {
-  const JsonObject o = place.object(populationRule);
-  Population population;
-  o.read("group", population.group, maxName);
-  o.read("definition", population.definition, maxText);
-  if (o.has("criteria")) {
-    for (const JsonPlace& item : o.at("criteria").list(0, maxCriteria))
-      population.criteria.push_back(criterionAt(item));
-  }
-  return population;
-}
-
-void askForGroup(const Protocol& protocol, const JsonPlace& place, const std::string& group) {
+void checkGroup(const Protocol& protocol, const JsonPlace& place, const std::string& group) {
   if (group != protocol.populations[0].group && group != protocol.populations[1].group)
     place.fail(fmt::format("none of the populations' groups, {} and {}", protocol.populations[0].group,
                            protocol.populations[1].group));
 }
 
-DirectedHypothesis hypothesisAt(const Protocol& protocol, const JsonPlace& place) {
-  const JsonObject o = place.object(hypothesisRule);
-  DirectedHypothesis hypothesis;
-  const int named = (o.has("checkpoint") ? 1 : 0) + (o.has("external") ? 1 : 0) + (o.has("outcome") ? 1 : 0);
-  if (named != 1)
-    o.fail(
+void checkHypothesis(const Protocol& protocol, const JsonPlace& place, DirectedHypothesis& hypothesis) {
+  const std::string& name = hypothesis.checkpoint;
+  hypothesis.external = place.has("external");
+  if (place.has("checkpoint") + place.has("external") + place.has("outcome") != 1)
+    place.fail(
         "one of \"checkpoint\", \"external\" (a metric of your own) and \"outcome\" (a column of a table from "
-        "elsewhere) is wanted");
-  if (o.has("sha256") && !o.has("external")) o.at("sha256").fail("only an external metric has a script");
-  if (o.has("external")) {
-    hypothesis.external = true;
-    o.read("external", hypothesis.checkpoint, maxName);
-    if (findCheckpoint(hypothesis.checkpoint) != nullptr)
-      o.at("external").fail("a checkpoint of the program; name it as \"checkpoint\"");
-    if (o.has("subject")) o.at("subject").fail("an external metric has none");
-    o.read("sha256", hypothesis.sha256, maxName);
-    if (o.has("sha256") && (hypothesis.sha256.size() != 64 ||
-                            hypothesis.sha256.find_first_not_of("0123456789abcdef") != std::string::npos))
-      o.at("sha256").fail("64 hexadecimal digits in small letters are wanted");
-  } else if (o.has("outcome")) {
-    o.read("outcome", hypothesis.checkpoint, maxName);
-    if (o.has("subject")) o.at("subject").fail("an outcome has none: it is a column of a table");
-  } else {
-    o.read("checkpoint", hypothesis.checkpoint, maxName);
-    if (findCheckpoint(hypothesis.checkpoint) == nullptr)
-      o.at("checkpoint")
-          .fail(fmt::format("no checkpoint of this name{} (calot checkpoints lists them)",
-                            didYouMeanCheckpoint(hypothesis.checkpoint)));
+        "elsewhere) is expected");
+  if (place.has("sha256") && !hypothesis.external) place.at("sha256").fail("only an external metric has a script");
+  if (hypothesis.external) {
+    if (findCheckpoint(name) != nullptr)
+      place.at("external").fail("a checkpoint of the program; name it as \"checkpoint\"");
+    if (place.has("subject")) place.at("subject").fail("an external metric has none");
+  } else if (place.has("outcome")) {
+    if (place.has("subject")) place.at("subject").fail("an outcome has none: it is a column of a table");
+  } else if (findCheckpoint(name) == nullptr) {
+    std::vector<std::string> known;
+    for (const CheckpointEntry& entry : checkpointRegistry()) known.push_back(entry.definition.name);
+    place.at("checkpoint")
+        .fail(fmt::format("no checkpoint of this name{} (calot checkpoints lists them)",
+                          recorder::didYouMean(name, known)));
   }
-  o.read("subject", hypothesis.subject, maxName);
-  o.read("larger", hypothesis.larger, maxName);
-  askForGroup(protocol, o.at("larger"), hypothesis.larger);
-  o.read("primary", hypothesis.primary);
-  return hypothesis;
-}
-
-void readExclusions(Protocol& protocol, const JsonObject& o) {
-  for (const JsonPlace& item : o.at("outcomes").list(0, 5)) {
-    protocol.excludedOutcomes.push_back(item.word<Outcome>({{"time limit", Outcome::timeLimit},
-                                                            {"abandoned", Outcome::abandoned},
-                                                            {"stopped", Outcome::stopped},
-                                                            {"technical failure", Outcome::technicalFailure}}));
-  }
-  for (const JsonPlace& item : o.at("reasons").list(0, maxReasons))
-    protocol.exclusionReasons.push_back(item.text(maxText));
+  checkGroup(protocol, place.at("larger"), hypothesis.larger);
 }
 
 }  // namespace
 
-const std::vector<ObjectRule>& protocolRules() {
-  static const std::vector<ObjectRule> rules{rootRule, populationRule, criterionRule, exclusionsRule, hypothesisRule};
-  return rules;
-}
-
 Protocol readProtocol(const std::filesystem::path& file) {
   const std::string name = file.filename().string();
-  return parseProtocol(recorder::readFileBytes(file, name, maxBytes), name);
+  return parseProtocol(recorder::readFileBytes(file, name, 1U << 20U), name);
 }
 
 Protocol parseProtocol(std::span<const std::byte> bytes, const std::string& file) {
   const nlohmann::json json = recorder::parseStrictJson(bytes, file);
-  const JsonObject o = JsonPlace(json, file).object(rootRule);
+  const JsonPlace root(json, file);
   Protocol protocol;
-  readHead(o, "calot-protocol", bytes, file, protocol);
-  o.read("question", protocol.question, maxText);
-  if (o.has("operators")) protocol.performers = o.at("operators").word<bool>({{"people", false}, {"performers", true}});
-  const std::vector<JsonPlace> populations = o.at("populations").list(2, 2);
-  for (std::size_t i = 0; i < 2; ++i) protocol.populations[i] = populationAt(populations[i]);
+  recorder::readRecord(root, protocol);
+  keepText(bytes, file, protocol);
+  const std::string rule = root.at("attemptRule").text(maxName);
+  if (rule != "single") protocol.attemptRule = rule == "first" ? AttemptRule::first : AttemptRule::mean;
+  const JsonPlace populations = root.at("populations");
+  for (std::size_t i = 0; i < 2; ++i) {
+    const std::vector<PopulationCriterion>& criteria = protocol.populations[i].criteria;
+    for (std::size_t c = 0; c < criteria.size(); ++c)
+      checkCriterion(populations.at(i).at("criteria").at(c), criteria[c]);
+  }
   if (protocol.populations[0].group == protocol.populations[1].group)
-    populations[1].fail("has the group of the first population");
-  o.read("better", protocol.better, maxName);
-  askForGroup(protocol, o.at("better"), protocol.better);
-  (void)o.at("unit").word<int>({{"participant", 0}});
-  protocol.attemptRule =
-      o.at("attemptRule")
-          .word<std::optional<AttemptRule>>(
-              {{"single", std::nullopt}, {"first", AttemptRule::first}, {"mean", AttemptRule::mean}});
-  o.read("scene", protocol.scene, maxName);
-  readExclusions(protocol, o.at("exclusions").object(exclusionsRule));
-  protocol.missing = o.at("missing").word<MissingRule>(
-      {{"complete-cases", MissingRule::completeCases}, {"worst-rank", MissingRule::worstRank}});
-  o.read("level", protocol.level);
+    populations.at(1).fail("has the group of the first population");
+  checkGroup(protocol, root.at("better"), protocol.better);
   std::set<std::string> seen;
-  for (const JsonPlace& place : o.at("hypotheses").list(1, maxHypotheses)) {
-    const DirectedHypothesis h = hypothesisAt(protocol, place);
+  for (std::size_t i = 0; i < protocol.hypotheses.size(); ++i) {
+    DirectedHypothesis& h = protocol.hypotheses[i];
+    const JsonPlace place = root.at("hypotheses").at(i);
+    checkHypothesis(protocol, place, h);
     // As tables name it: the column "path-length left" is the left hand's path length.
-    if (!seen.insert(h.subject.empty() ? h.checkpoint : h.checkpoint + " " + h.subject).second)
+    if (!seen.insert(figureName(h.checkpoint, h.subject)).second)
       place.fail("a hypothesis on this figure stands above already");
-    protocol.hypotheses.push_back(h);
   }
   if (std::none_of(protocol.hypotheses.begin(), protocol.hypotheses.end(), [](const auto& h) { return h.primary; }))
-    o.at("hypotheses").fail("none is primary; at least one is wanted");
+    root.at("hypotheses").fail("none is primary; at least one is expected");
   return protocol;
 }
 
@@ -206,7 +209,7 @@ std::string whyOutside(const Population& population, const std::map<std::string,
     }
     std::string fault;
     const double value = recorder::readFiniteNumber(at->second, fault);
-    if (!fault.empty()) return fmt::format("{} is no number", c.criterion);
+    if (!fault.empty()) return fmt::format("{} is not a number", c.criterion);
     if (c.atLeast && value < *c.atLeast)
       return fmt::format("{} {}, at least {} wanted", c.criterion, value, *c.atLeast);
     if (c.atMost && value > *c.atMost) return fmt::format("{} {}, at most {} wanted", c.criterion, value, *c.atMost);

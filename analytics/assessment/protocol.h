@@ -15,7 +15,6 @@
 
 #include "analytics/assessment/declared_document.h"
 #include "analytics/statistics/descriptive.h"
-#include "recorder/base/json_reader.h"
 #include "recorder/engine/observer.h"
 
 namespace calot::analytics {
@@ -25,12 +24,16 @@ struct PopulationCriterion {
   std::string criterion;  ///< as in `participant --experience CRITERION=VALUE`
   std::optional<double> atLeast, atMost;
   std::string equals;  ///< or empty
+
+  static std::vector<Field> fields();
 };
 
 struct Population {
   std::string group;       ///< study group, or the performers' profile
   std::string definition;  ///< in words
   std::vector<PopulationCriterion> criteria;
+
+  static std::vector<Field> fields();
 };
 
 /// "Novices take longer": which group's values of one figure are expected to be the larger ones.
@@ -40,6 +43,8 @@ struct DirectedHypothesis {
   std::string sha256;               ///< of that script, or empty: any
   std::string larger;               ///< one of both groups
   bool primary = false;             ///< in the family that Holm's adjustment holds
+
+  static std::vector<Field> fields();
 };
 
 enum class MissingRule : std::uint8_t {
@@ -59,10 +64,9 @@ struct Protocol : DeclaredDocument {
   MissingRule missing = MissingRule::completeCases;
   double level = 0.05;
   std::vector<DirectedHypothesis> hypotheses;
-};
 
-/// The objects of a protocol, for the reader and for the test that holds the published schema against it.
-const std::vector<recorder::ObjectRule>& protocolRules();
+  static std::vector<Field> fields();
+};
 
 /// @throws Error (damaged) naming file and place.
 Protocol readProtocol(const std::filesystem::path& file);

@@ -8,59 +8,107 @@
 
 #include "recorder/base/errors.h"
 #include "recorder/base/file_bytes.h"
+#include "recorder/base/record_reader.h"
 #include "recorder/base/text_words.h"
 
 namespace calot::analytics {
 namespace {
 
-using recorder::JsonObject;
 using recorder::JsonPlace;
-using recorder::ObjectRule;
 using recorder::shown;
 
-constexpr std::size_t maxFormBytes = 1U << 20U;
-constexpr std::size_t maxSections = 20, maxItems = 60;
+constexpr std::size_t maxSections = 20, maxItems = 60, maxScores = 101;
 
-const ObjectRule formRule{"",
-                          {{"format"},
-                           {"formatVersion", true, 1, 1},
-                           {"name"},
-                           {"version", true, 1, 1000000},
-                           {"title"},
-                           {"source"},
-                           {"about"},
-                           {"scale"},
-                           {"sections"},
-                           {"subscales", false}}};
-const ObjectRule scaleRule{"scale", {{"least", true, 0, 1}, {"most", true, 1, 100}, {"words", false}}};
-const ObjectRule sectionRule{"section", {{"name"}, {"items"}}};
-const ObjectRule itemRule{"item",
-                          {{"key"}, {"text"}, {"primaryGroup", false}, {"anchors", false}, {"published", false}}};
-const ObjectRule subscaleRule{"subscale", {{"name"}, {"items"}}};
-const ObjectRule publishedRule{"published", {{"expert", true, 0, 100}, {"novice", true, 0, 100}}};
-
-std::vector<std::string> wordsAt(const JsonPlace& place, const RatingForm& form) {
-  const std::size_t scores = static_cast<std::size_t>(form.most) - static_cast<std::size_t>(form.least) + 1;
-  std::vector<std::string> words;
-  for (const JsonPlace& word : place.list(scores, scores)) words.push_back(word.text(maxText));
-  return words;
+std::vector<Field> scaleFields() {
+  using S = RatingForm;
+  return {
+      object("scale", "Whole numbers; the larger the better"),
+      {"least", at<S, &S::least>, "", within(0, 1), "Smallest score"},
+      {"most", at<S, &S::most>, "", within(1, 100), "Largest score"},
+      optional("words", at<S, &S::words>, anyText, "Names of the scores, from the smallest").items(2, maxScores),
+  };
 }
 
-FormItem itemAt(const RatingForm& form, const JsonPlace& place) {
-  const JsonObject o = place.object(itemRule);
-  FormItem item;
-  item.key = plainName(o.at("key"));
-  o.read("text", item.text, maxText);
-  o.read("primaryGroup", item.primaryGroup, maxName);
-  if (o.has("anchors")) item.anchors = wordsAt(o.at("anchors"), form);
-  if (o.has("published")) {
-    const JsonObject published = o.at("published").object(publishedRule);
-    for (const char* group : {"expert", "novice"}) published.read(group, item.published[group]);
-  }
-  return item;
+template <bool expert>
+constexpr Access publishedMean() {
+  Access access = unstored<double>;
+  access.get = [](void* item) -> void* {
+    return &static_cast<FormItem*>(item)->published[expert ? "expert" : "novice"];
+  };
+  return access;
+}
+
+std::vector<Field> publishedFields() {
+  return {
+      object("published", "Published means, for reference only"),
+      {"expert", publishedMean<true>(), "", within(0, 100), "Mean of experts"},
+      {"novice", publishedMean<false>(), "", within(0, 100), "Mean of novices"},
+  };
+}
+
+/// Do the words fit the scale's scores? @throws Error (damaged) where their number differs
+void checkWords(const JsonPlace& place, const RatingForm& form) {
+  const std::size_t scores = static_cast<std::size_t>(form.most) - static_cast<std::size_t>(form.least) + 1;
+  static_cast<void>(place.list(scores, scores));
 }
 
 }  // namespace
+
+std::vector<Field> FormItem::fields() {
+  using S = FormItem;
+  return {
+      object("item", "Item of a form"),
+      {"key", at<S, &S::key>, plainName, "Key as it is typed and stored; once in a form"},
+      {"text", at<S, &S::text>, anyText, "Wording"},
+      optional("primaryGroup", at<S, &S::primaryGroup>, anyName,
+               "The study group whose judgement of this item counts first"),
+      optional("anchors", at<S, &S::anchors>, anyText, "The site's wording of each score, from the smallest")
+          .items(2, maxScores),
+      optional("published", keyGroup<S, publishedFields>, "Published means, for reference only"),
+  };
+}
+
+std::vector<Field> FormSection::fields() {
+  using S = FormSection;
+  return {
+      object("section", "Items under a heading"),
+      {"name", at<S, &S::name>, anyText, "Heading"},
+      Field("items", at<S, &S::items>, "Items").items(1, maxItems),
+  };
+}
+
+std::vector<Field> FormSubscale::fields() {
+  using S = FormSubscale;
+  return {
+      object("subscale", "Items whose scores are added up"),
+      {"name", at<S, &S::name>, anyText, "Name"},
+      Field("items", at<S, &S::items>, anyName, "Keys of items of the form").items(1, maxItems),
+  };
+}
+
+std::vector<Field> RatingForm::fields() {
+  using S = RatingForm;
+  return {
+      object("", "A questionnaire, or a scale by which raters judge attempts"),
+      fileFormat("calot-form"),
+      fileFormatVersion(),
+      {"name", at<S, &S::name>, plainName, "Name: letters, digits, points, hyphens, underscores"},
+      {"version", at<S, &S::version>, "", within(1, 1000000),
+       "A changed form, and one to which a site adds its wording, has a higher version or another name"},
+      {"title", at<S, &S::title>, anyText, "Title"},
+      {"source", at<S, &S::source>, anyText, "Source of the items"},
+      {"about", at<S, &S::ofAttempts>, FieldWords{{"attempt", 1}, {"simulator", 0}},
+       "attempt: a rater judges an attempt. simulator: a participant judges what they took part in"},
+      {"scale", keyGroup<S, scaleFields>, "Scale of the scores"},
+      Field("sections", at<S, &S::sections>,
+            "Items under their headings. Of a questionnaire, Cronbach's alpha is over each")
+          .items(1, maxSections),
+      optional("subscales", at<S, &S::subscales>,
+               "Items whose scores are added up, by their keys; an item may be in several, or in none. All items "
+               "together are reported in any case")
+          .items(1, maxSections),
+  };
+}
 
 std::vector<FormItem> RatingForm::items() const {
   std::vector<FormItem> all;
@@ -68,56 +116,38 @@ std::vector<FormItem> RatingForm::items() const {
   return all;
 }
 
-const std::vector<ObjectRule>& ratingFormRules() {
-  static const std::vector<ObjectRule> rules{formRule, scaleRule, sectionRule, itemRule, subscaleRule, publishedRule};
-  return rules;
-}
-
 RatingForm readRatingForm(const std::filesystem::path& file) {
   const std::string name = file.filename().string();
-  return parseRatingForm(recorder::readFileBytes(file, name, maxFormBytes), name);
+  return parseRatingForm(recorder::readFileBytes(file, name, 1U << 20U), name);
 }
 
 RatingForm parseRatingForm(std::span<const std::byte> bytes, const std::string& file) {
   const nlohmann::json json = recorder::parseStrictJson(bytes, file);
-  const JsonObject o = JsonPlace(json, file).object(formRule);
+  const JsonPlace root(json, file);
   RatingForm form;
-  readHead(o, "calot-form", bytes, file, form);
-  o.read("source", form.source, maxText);
-  form.ofAttempts = o.at("about").word<bool>({{"attempt", true}, {"simulator", false}});
-  const JsonObject scale = o.at("scale").object(scaleRule);
-  std::uint32_t least = 1, most = 5;
-  scale.read("least", least);
-  scale.read("most", most);
-  if (least >= most) scale.fail("\"least\" is not below \"most\"");
-  form.least = static_cast<int>(least);
-  form.most = static_cast<int>(most);
-  if (scale.has("words")) form.words = wordsAt(scale.at("words"), form);
+  recorder::readRecord(root, form);
+  keepText(bytes, file, form);
+  const JsonPlace scale = root.at("scale");
+  if (form.least >= form.most) scale.fail("\"least\" is not below \"most\"");
+  if (scale.has("words")) checkWords(scale.at("words"), form);
   std::set<std::string> keys;
-  for (const JsonPlace& place : o.at("sections").list(1, maxSections)) {
-    const JsonObject part = place.object(sectionRule);
-    FormSection section;
-    part.read("name", section.name, maxText);
-    for (const JsonPlace& item : part.at("items").list(1, maxItems)) {
-      section.items.push_back(itemAt(form, item));
-      if (!keys.insert(section.items.back().key).second) item.fail("an item of this key stands above already");
+  for (std::size_t s = 0; s < form.sections.size(); ++s) {
+    for (std::size_t i = 0; i < form.sections[s].items.size(); ++i) {
+      const JsonPlace item = root.at("sections").at(s).at("items").at(i);
+      if (item.has("anchors")) checkWords(item.at("anchors"), form);
+      if (!keys.insert(form.sections[s].items[i].key).second) item.fail("an item of this key stands above already");
     }
-    form.sections.push_back(section);
   }
-  if (o.has("subscales")) {
-    std::set<std::string> names;
-    for (const JsonPlace& place : o.at("subscales").list(1, maxSections)) {
-      const JsonObject part = place.object(subscaleRule);
-      FormSubscale subscale;
-      part.read("name", subscale.name, maxText);
-      if (!names.insert(subscale.name).second) part.fail("a subscale of this name stands above already");
-      std::set<std::string> seen;
-      for (const JsonPlace& item : part.at("items").list(1, maxItems)) {
-        subscale.items.push_back(item.text(maxName));
-        if (keys.count(subscale.items.back()) == 0) item.fail("no item of the form has this key");
-        if (!seen.insert(subscale.items.back()).second) item.fail("named twice");
-      }
-      form.subscales.push_back(std::move(subscale));
+  std::set<std::string> names;
+  for (std::size_t s = 0; s < form.subscales.size(); ++s) {
+    const FormSubscale& subscale = form.subscales[s];
+    const JsonPlace place = root.at("subscales").at(s);
+    if (!names.insert(subscale.name).second) place.fail("a subscale of this name stands above already");
+    std::set<std::string> seen;
+    for (std::size_t i = 0; i < subscale.items.size(); ++i) {
+      const JsonPlace item = place.at("items").at(i);
+      if (keys.count(subscale.items[i]) == 0) item.fail("no item of the form has this key");
+      if (!seen.insert(subscale.items[i]).second) item.fail("named twice");
     }
   }
   return form;
@@ -142,7 +172,7 @@ std::map<std::string, int> answersOf(const RatingForm& form,
     std::string fault;
     const long long value = recorder::readWholeNumber(score, fault);
     if (!fault.empty() || value < form.least || value > form.most)
-      fail(key, fmt::format("\"{}\" is no whole number from {} to {} (- where it was left blank)", shown(score),
+      fail(key, fmt::format("\"{}\" is not a whole number from {} to {} (- where it was left blank)", shown(score),
                             form.least, form.most));
     answers[key] = static_cast<int>(value);
   }

@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "analytics/assessment/declared_document.h"
-#include "recorder/base/json_reader.h"
 
 namespace calot::analytics {
 
@@ -21,17 +20,23 @@ struct FormItem {
   std::string primaryGroup;                 ///< the study group whose judgement of it counts first, or empty
   std::vector<std::string> anchors;         ///< wording of each score, from the least; empty: the site supplies it
   std::map<std::string, double> published;  ///< published means by group, for reference
+
+  static std::vector<Field> fields();
 };
 
 struct FormSection {
   std::string name;
   std::vector<FormItem> items;
+
+  static std::vector<Field> fields();
 };
 
 /// Items whose scores are added up.
 struct FormSubscale {
   std::string name;
   std::vector<std::string> items;  ///< keys
+
+  static std::vector<Field> fields();
 };
 
 struct RatingForm : DeclaredDocument {
@@ -43,10 +48,8 @@ struct RatingForm : DeclaredDocument {
   std::vector<FormSubscale> subscales;  ///< as declared; or none
 
   [[nodiscard]] std::vector<FormItem> items() const;  ///< of all sections
+  static std::vector<Field> fields();
 };
-
-/// The objects of a form, for the reader and for the test that holds the published schema against it.
-const std::vector<recorder::ObjectRule>& ratingFormRules();
 
 /// @throws Error (damaged) naming file and place.
 RatingForm readRatingForm(const std::filesystem::path& file);

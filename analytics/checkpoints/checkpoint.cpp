@@ -1,17 +1,84 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "analytics/checkpoints/checkpoint.h"
 
 #include <fmt/format.h>
-
+#include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <iterator>
+#include <map>
+#include <numbers>
 #include <utility>
 
+#include "analytics/checkpoints/figures/rows.h"
 #include "analytics/checkpoints/motion.h"
 #include "analytics/checkpoints/phases.h"
-#include "analytics/checkpoints/registry.h"
+#include "sim/connective/connective_tissue.h"
 
 namespace calot::analytics {
+namespace {
+
+double areaOf(const SurfaceDescription& surface) {
+  double area = 0.0;
+  for (const Index3& t : surface.triangle) {
+    const Vec3& origin = surface.vertex[static_cast<std::size_t>(t[0])];
+    const Vec3 a = surface.vertex[static_cast<std::size_t>(t[1])] - origin;
+    const Vec3 b = surface.vertex[static_cast<std::size_t>(t[2])] - origin;
+    const double x = a.y() * b.z() - a.z() * b.y();
+    const double y = a.z() * b.x() - a.x() * b.z();
+    const double z = a.x() * b.y() - a.y() * b.x();
+    area += 0.5 * std::sqrt(x * x + y * y + z * z);
+  }
+  return area;
+}
+
+TriangleMesh meshOf(const SurfaceDescription& surface) { return {surface.vertex, surface.triangle}; }
+
+/// Area of the bed of a tissue (m^2), as the simulation finds it; 0 where the scene lacks one of its organs.
+double bedAreaOf(const SceneDescription& scene, const ConnectiveDescription& tissue) {
+  const auto organ = [&](const std::string& name) {
+    return std::find_if(scene.organs.begin(), scene.organs.end(), [&](const auto& o) { return o.name == name; });
+  };
+  const auto first = organ(tissue.first), second = organ(tissue.second);
+  if (first == scene.organs.end() || second == scene.organs.end() || second->surface.triangle.empty()) return 0.0;
+  const SurfaceDistance distance(meshOf(second->surface));
+  return areaOf({first->surface.vertex, bedTriangles(meshOf(first->surface), distance, tissue.reach)});
+}
+
+}  // namespace
+
+bool SceneFacts::hasCystic() const {
+  return std::any_of(vessel.begin(), vessel.end(), [](const Vessel& v) { return v.cystic; });
+}
+
+bool SceneFacts::hasSpared() const {
+  return std::any_of(vessel.begin(), vessel.end(), [](const Vessel& v) { return v.spared; });
+}
+
+SceneFacts sceneFacts(const SceneDescription& scene) {
+  SceneFacts facts;
+  for (const OrganDescription& organ : scene.organs) {
+    facts.organ.push_back({organ.name, organ.role, areaOf(organ.surface), organ.burnThrough > 0.0});
+  }
+  for (const VesselDescription& vessel : scene.vessels) {
+    const std::vector<std::string>& spare = scene.procedure.spare;
+    facts.vessel.push_back(
+        {vessel.name, isCystic(vessel.role), std::find(spare.begin(), spare.end(), vessel.name) != spare.end()});
+  }
+  for (const ConnectiveDescription& tissue : scene.connective) {
+    const bool holds = tissue.role == StructureRole::cysticPlate;
+    facts.connective.push_back({tissue.name, holds, holds ? bedAreaOf(scene, tissue) : 0.0});
+  }
+  facts.fat = scene.fat.size();
+  facts.picture = {scene.camera, scene.verticalFieldOfView};
+  facts.triangle = std::any_of(scene.fat.begin(), scene.fat.end(),
+                               [](const FatDescription& fat) { return fat.triangleDepth > 0.0; });
+  facts.retractionOnRequest = std::any_of(scene.retraction.begin(), scene.retraction.end(),
+                                          [](const RetractionDescription& r) { return r.stage > 0.0; });
+  return facts;
+}
+
 namespace {
 
 std::string firstObjection(const CheckpointEntry& entry, const AttemptContext& context) {
@@ -45,87 +112,28 @@ std::vector<std::string> subjectsOf(const CheckpointEntry& entry, const AttemptC
 
 }  // namespace
 
-std::string nameOf(Direction direction) {
-  switch (direction) {
-    case Direction::none:
-      return "none";
-    case Direction::lower:
-      return "lower";
-    case Direction::higher:
-      return "higher";
-  }
-  return "unknown";
-}
+std::string nameOf(Direction direction) { return nameIn({"none", "lower", "higher"}, direction); }
 
-std::string nameOf(Origin origin) {
-  switch (origin) {
-    case Origin::resimulated:
-      return "re-simulated";
-    case Origin::observables:
-      return "observables";
-    case Origin::samples:
-      return "samples";
-    case Origin::external:
-      return "external";
-  }
-  return "unknown";
-}
+std::string nameOf(Origin origin) { return nameIn({"re-simulated", "observables", "samples", "external"}, origin); }
 
 std::string nameOf(Aggregation aggregation) {
-  switch (aggregation) {
-    case Aggregation::attempt:
-      return "attempt";
-    case Aggregation::hand:
-      return "hand";
-    case Aggregation::organ:
-      return "organ";
-    case Aggregation::phase:
-      return "phase";
-    case Aggregation::handAndPhase:
-      return "hand and phase";
-  }
-  return "unknown";
+  return nameIn({"attempt", "hand", "organ", "phase", "hand and phase"}, aggregation);
 }
 
-std::string nameOf(Finality finality) { return finality == Finality::running ? "running" : "final"; }
+std::string nameOf(Finality finality) { return nameIn({"running", "final"}, finality); }
 
 std::string nameOf(Availability availability) {
-  switch (availability) {
-    case Availability::value:
-      return "value";
-    case Availability::notApplicable:
-      return "not applicable";
-    case Availability::notAvailable:
-      return "not available";
-    case Availability::absentHand:
-      return "absent hand";
-    case Availability::tooLittleCoverage:
-      return "too little coverage";
-  }
-  return "unknown";
+  return nameIn({"value", "not applicable", "not available", "absent hand", "too little coverage"}, availability);
 }
 
 std::string nameOf(CheckpointFamily family) {
-  switch (family) {
-    case CheckpointFamily::paper:
-      return "Table 2";
-    case CheckpointFamily::motion:
-      return "motion";
-    case CheckpointFamily::phases:
-      return "phases";
-    case CheckpointFamily::contact:
-      return "contact and force";
-    case CheckpointFamily::safety:
-      return "errors and safety";
-    case CheckpointFamily::exactness:
-      return "exactness of the simulation";
-  }
-  return "unknown";
+  return nameIn(
+      {"Table 2", "motion", "phases", "contact and force", "errors and safety", "exactness of the simulation"}, family);
 }
 
 std::string whyTooOld(const AttemptContext& context, std::uint32_t needed) {
   if (context.resultVersion >= needed) return {};
-  return fmt::format("results of version {} do not tell of it", context.resultVersion);
+  return fmt::format("not recorded in results of version {}", context.resultVersion);
 }
 
 std::string coverageText(const CheckpointDefinition& definition) {
@@ -137,35 +145,37 @@ std::string stretchNote(const AttemptEnd& end) {
   return end.stretched > 0.0 ? fmt::format("tick clock stretched by {:.3f} s", end.stretched) : std::string();
 }
 
-CheckpointValue makeMissing(const CheckpointDefinition& definition, std::string subject, Origin origin,
-                            Availability availability, std::string reason) {
-  assert(availability != Availability::value && !reason.empty());
+namespace {
+
+CheckpointValue valueOf(const CheckpointDefinition& definition, std::string subject, Origin origin) {
   CheckpointValue v;
   v.name = definition.name;
   v.subject = std::move(subject);
   v.version = definition.version;
-  v.availability = availability;
-  v.reason = std::move(reason);
   v.unit = definition.unit;
   v.origin = origin;
   v.filter = definition.filter;
   return v;
 }
 
+}  // namespace
+
+CheckpointValue makeMissing(const CheckpointDefinition& definition, std::string subject, Origin origin,
+                            Availability availability, std::string reason) {
+  assert(availability != Availability::value && !reason.empty());
+  CheckpointValue v = valueOf(definition, std::move(subject), origin);
+  v.availability = availability;
+  v.reason = std::move(reason);
+  return v;
+}
+
 CheckpointValue makeValue(const CheckpointDefinition& definition, std::string subject, Origin origin, double value,
                           std::string note) {
-  if (!std::isfinite(value)) {
+  if (!std::isfinite(value))
     return makeMissing(definition, std::move(subject), origin, Availability::notAvailable, "the figure is not finite");
-  }
-  CheckpointValue v;
-  v.name = definition.name;
-  v.subject = std::move(subject);
-  v.version = definition.version;
+  CheckpointValue v = valueOf(definition, std::move(subject), origin);
   v.value = value;
   v.note = std::move(note);
-  v.unit = definition.unit;
-  v.origin = origin;
-  v.filter = definition.filter;
   return v;
 }
 
@@ -178,6 +188,11 @@ CheckpointDefinition completed(CheckpointDefinition definition) {
   fill(definition.instruments, "union over instruments");
   fill(definition.filter, "none");
   if (definition.origins.empty()) definition.origins = {Origin::resimulated, Origin::observables};
+  static const std::map<std::string, double> factors{
+      {"%", 100.0}, {"mm", 1000.0}, {"mm/s", 1000.0}, {"deg", 180.0 / std::numbers::pi},
+      {"ml", 1e6},  {"cm^2", 1e4},  {"cm^2/ml", 0.01}};
+  const auto factor = factors.find(definition.displayUnit);
+  if (factor != factors.end()) definition.displayFactor = factor->second;
   return definition;
 }
 
@@ -220,6 +235,67 @@ std::vector<CheckpointValue> Checkpoint::values(const AttemptEnd& end) const {
     value.coverage = m.coverage;
   }
   return result;
+}
+
+const std::vector<CheckpointEntry>& checkpointRegistry() {
+  static const std::vector<CheckpointEntry> registry = [] {
+    std::vector<CheckpointEntry> list;
+    for (const auto rows :
+         {attemptRows, motionRows, smoothnessRows, cameraRows, forceRows, contactRows, dissectionRows, safetyRows}) {
+      std::vector<CheckpointEntry> those = rows();
+      list.insert(list.end(), std::make_move_iterator(those.begin()), std::make_move_iterator(those.end()));
+    }
+    for (CheckpointEntry& entry : list) entry.definition = completed(std::move(entry.definition));
+    std::sort(list.begin(), list.end(), [](const CheckpointEntry& a, const CheckpointEntry& b) {
+      return std::pair(a.place.family, a.place.rank) < std::pair(b.place.family, b.place.rank);
+    });
+    return list;
+  }();
+  return registry;
+}
+
+CheckpointEntry phaseRow(const CheckpointEntry& whole, int rank, const char* pieces, AccumulatorMaker accumulate,
+                         std::uint32_t version) {
+  std::vector<Requirement> needs{hasProcedure};
+  needs.insert(needs.end(), whole.needs.begin(), whole.needs.end());
+  return {.place = {CheckpointFamily::phases, rank},
+          .definition = phaseDefinition(completed(whole.definition), pieces, version),
+          .needs = std::move(needs),
+          .results = std::max<std::uint32_t>(whole.results, 3),  // since then steps are judged by phase
+          .accumulate = std::move(accumulate)};
+}
+
+const CheckpointDefinition* findCheckpoint(std::string_view name) {
+  for (const CheckpointEntry& entry : checkpointRegistry()) {
+    if (entry.definition.name == name) return &entry.definition;
+  }
+  return nullptr;
+}
+
+const CheckpointDefinition* definitionOf(const CheckpointValue& value) {
+  return value.metric ? &value.metric->definition : findCheckpoint(value.name);
+}
+
+std::optional<CheckpointFamily> familyOf(std::string_view name) {
+  for (const CheckpointEntry& entry : checkpointRegistry()) {
+    if (entry.definition.name == name) return entry.place.family;
+  }
+  return std::nullopt;
+}
+
+bool isOfPhases(const CheckpointDefinition& definition) {
+  return definition.aggregation == Aggregation::phase || definition.aggregation == Aggregation::handAndPhase;
+}
+
+const std::vector<std::string>& phaseCheckpoints() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> list;
+    for (const CheckpointEntry& entry : checkpointRegistry()) {
+      if (isOfPhases(entry.definition)) list.push_back(entry.definition.name);
+    }
+    return list;
+  }();
+  return names;
 }
 
 }  // namespace calot::analytics

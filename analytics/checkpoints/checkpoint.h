@@ -16,12 +16,47 @@
 #include <vector>
 
 #include "analytics/checkpoints/definition.h"
-#include "analytics/checkpoints/scene_facts.h"
 #include "recorder/base/identity.h"
 #include "recorder/engine/observer.h"
+#include "recorder/sources/scope/endoscope.h"
 #include "sim/judgement/judge.h"
+#include "sim/scene/description.h"
 
 namespace calot::analytics {
+
+/// Taken from the scene's roles (StructureRole) and sizes, never from names, looks or numbers of structures: so they
+/// hold for any scene.
+struct SceneFacts {
+  struct Organ {
+    std::string name;
+    StructureRole role = StructureRole::other;
+    double skinArea = 0.0;  ///< of its surface at rest (m^2)
+    bool hasWall = false;   ///< it can be perforated
+  };
+  struct Vessel {
+    std::string name;
+    bool cystic = false;  ///< cystic duct or cystic artery
+    bool spared = false;  ///< the procedure says that it must be spared
+  };
+  struct Connective {
+    std::string name;
+    bool holdsGallbladder = false;  ///< it is a cystic plate
+    double area = 0.0;              ///< of its bed at rest (m^2), where it holds a gallbladder (connective_bed.h)
+  };
+  /// In the scene's order: the columns of StepResult.
+  std::vector<Organ> organ;
+  std::vector<Vessel> vessel;
+  std::vector<Connective> connective;
+  std::size_t fat = 0;               ///< bodies
+  bool triangle = false;             ///< a region of fat that is to be cleared is marked
+  bool retractionOnRequest = false;  ///< the assistant can be asked to retract more or less
+  recorder::PictureFrame picture = {};
+
+  [[nodiscard]] bool hasCystic() const;  ///< there is a cystic vessel
+  [[nodiscard]] bool hasSpared() const;  ///< there is a vessel to be spared
+};
+
+SceneFacts sceneFacts(const SceneDescription& scene);
 
 /// Availability of a number, and the kind of missing value. Numbers are stored and never reused.
 enum class Availability : std::uint8_t {
@@ -161,14 +196,14 @@ class AccumulatorOf final : public Accumulator {
   A a_;
 };
 
-/// Makes A{context, arguments...}; without arguments A{}, where that is possible.
+/// Makes A{context, arguments...}, or A{arguments...} of an A that needs no context.
 template <class A, class... Arguments>
 AccumulatorMaker accumulating(Arguments... arguments) {
-  return [arguments...](const AttemptContext& context) -> std::unique_ptr<Accumulator> {
-    if constexpr (sizeof...(Arguments) == 0 && std::is_default_constructible_v<A>) {
-      return std::make_unique<AccumulatorOf<A>>(A{});
-    } else {
+  return [arguments...]([[maybe_unused]] const AttemptContext& context) -> std::unique_ptr<Accumulator> {
+    if constexpr (requires { A{context, arguments...}; }) {
       return std::make_unique<AccumulatorOf<A>>(A{context, arguments...});
+    } else {
+      return std::make_unique<AccumulatorOf<A>>(A{arguments...});
     }
   };
 }
@@ -185,7 +220,7 @@ enum class CheckpointFamily : std::uint8_t {
 
 std::string nameOf(CheckpointFamily family);  ///< "Table 2", "motion", "contact and force"
 
-/// Where tables show a checkpoint.
+/// Group of a checkpoint in tables.
 struct CheckpointPlace {
   CheckpointFamily family = CheckpointFamily::paper;
   int rank = 0;  ///< within the family, ascending, none twice; steps of ten leave room between them
@@ -219,7 +254,7 @@ struct CheckpointEntry {
 };
 
 /// The definition with what its row leaves out: window "whole attempt", "union over instruments", filter "none",
-/// origins of steps, displayed in its own unit.
+/// origins of steps, displayed in its own unit; and the factor of the unit in which it is displayed.
 CheckpointDefinition completed(CheckpointDefinition definition);
 
 /// One running computation of one entry over one attempt.
@@ -252,5 +287,23 @@ CheckpointValue makeValue(const CheckpointDefinition& definition, std::string su
                           std::string note = {});
 CheckpointValue makeMissing(const CheckpointDefinition& definition, std::string subject, Origin origin,
                             Availability availability, std::string reason);
+
+/// Every checkpoint that this build knows, in the order in which tables show them: by family, then by rank.
+const std::vector<CheckpointEntry>& checkpointRegistry();
+
+/// The definition of a name, or null.
+const CheckpointDefinition* findCheckpoint(std::string_view name);
+
+/// The definition that a value stands on: the registry's, or of an external metric its script's; or null. It lives as
+/// long as the value.
+const CheckpointDefinition* definitionOf(const CheckpointValue& value);
+
+/// The family of a name, or none.
+std::optional<CheckpointFamily> familyOf(std::string_view name);
+
+/// Given for each phase of a procedure, not of the whole attempt.
+bool isOfPhases(const CheckpointDefinition& definition);
+/// Names of those, in the registry's order.
+const std::vector<std::string>& phaseCheckpoints();
 
 }  // namespace calot::analytics

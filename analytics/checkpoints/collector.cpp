@@ -6,98 +6,73 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <cmath>
+#include <utility>
 
+#include "analytics/checkpoints/checkpoint.h"
 #include "analytics/checkpoints/force.h"
 #include "analytics/checkpoints/motion.h"
-#include "analytics/checkpoints/motion_track.h"
 #include "analytics/checkpoints/phases.h"
-#include "analytics/checkpoints/registry.h"
 #include "recorder/base/errors.h"
 #include "recorder/formats/scene_file.h"
 #include "recorder/recorded_results.h"
+#include "recorder/sources/tracked_motion.h"
 #include "sim/judgement/judge.h"
 
 namespace calot::analytics {
-struct CheckpointCollector::Storage {
-  Storage(const recorder::AttemptHeader& header, const SceneDescription& scene, Origin from, double cut)
-      : origin(from),
-        cutoff(cut),
-        tickSeconds(header.tickSeconds),
-        ticksPerStep(header.ticksPerStep),
-        track{trackFor(header), trackFor(header)},
-        judge(scene),
-        force(header.tickSeconds),
-        phaseForce(header.tickSeconds) {
-    const bool procedure = !scene.procedure.specimen.empty();
-    const AttemptContext context{header.tickSeconds, header.ticksPerStep, header.structures(), header.stepResultVersion,
-                                 procedure,          header.handedness,   sceneFacts(scene)};
-    for (const CheckpointEntry& entry : checkpointRegistry()) checkpoint.push_back(entry.make(context));
-  }
-  Origin origin;
-  double cutoff;
-  double tickSeconds;
-  std::uint64_t ticksPerStep;
-  std::array<MotionTrack, handCount> track;
-  PhaseTrack phases;
-  Judge judge;
-  ForceTrack force;
-  PhaseForceTrack phaseForce;
-  std::vector<std::unique_ptr<Checkpoint>> checkpoint;
-  std::uint64_t steps = 0;
-  double stretched = 0.0;
-  recorder::Outcome outcome = recorder::Outcome::running;
-  bool ended = false;
-};
 
 CheckpointCollector::CheckpointCollector(const recorder::AttemptHeader& header, const SceneDescription& scene,
                                          Origin origin, double cutoff)
-    : storage_(std::make_unique<Storage>(header, scene, origin, cutoff)) {
+    : origin_(origin),
+      cutoff_(cutoff),
+      tickSeconds_(header.tickSeconds),
+      ticksPerStep_(header.ticksPerStep),
+      track_{trackFor(header), trackFor(header)},
+      judge_(scene),
+      force_(header.tickSeconds),
+      phaseForce_(header.tickSeconds) {
   assert(origin != Origin::samples);
+  const bool procedure = !scene.procedure.specimen.empty();
+  const AttemptContext context{header.tickSeconds, header.ticksPerStep, header.structures(), header.stepResultVersion,
+                               procedure,          header.handedness,   sceneFacts(scene)};
+  for (const CheckpointEntry& entry : checkpointRegistry()) checkpoint_.push_back(entry.make(context));
 }
 
-CheckpointCollector::~CheckpointCollector() = default;
-
-void CheckpointCollector::onStep(const recorder::StepRecord& record) {
-  take(record, storage_->judge.observe(record.result));
-}
+void CheckpointCollector::onStep(const recorder::StepRecord& record) { take(record, judge_.observe(record.result)); }
 
 void CheckpointCollector::take(const recorder::StepRecord& record, const Judgement& judgement) {
-  assert(!storage_->ended);
+  assert(!ended_);
   for (const TickSamples& tick : record.samples) {
-    for (std::size_t h = 0; h < static_cast<std::size_t>(handCount); ++h) storage_->track[h].add(tick.hand[h]);
+    for (std::size_t h = 0; h < track_.size(); ++h) track_[h].add(tick.hand[h]);
   }
-  storage_->force.add(record);
-  storage_->phaseForce.add(record, judgement.phase);
-  storage_->phases.add(judgement.phase, storage_->ticksPerStep);
+  force_.add(record);
+  phaseForce_.add(record, judgement.phase);
+  phases_.add(judgement.phase, ticksPerStep_);
   for (const Event& event : record.result.events) {
-    if (event.kind == EventKind::clockStretched) storage_->stretched += event.value;
+    if (event.kind == EventKind::clockStretched) stretched_ += event.value;
   }
-  for (const auto& checkpoint : storage_->checkpoint) checkpoint->onStep(record, judgement);
-  ++storage_->steps;
+  for (const auto& checkpoint : checkpoint_) checkpoint->onStep(record, judgement);
+  ++steps_;
 }
 
 void CheckpointCollector::onEnd(recorder::Outcome outcome) {
-  storage_->outcome = outcome;
-  storage_->ended = true;
+  outcome_ = outcome;
+  ended_ = true;
 }
 
 std::vector<CheckpointValue> CheckpointCollector::values() const {
-  std::array<Motion, handCount> motion;
-  AttemptEnd end;
-  end.steps = storage_->steps;
-  end.stretched = storage_->stretched;
-  end.outcome = storage_->outcome;
-  end.origin = storage_->origin;
-  end.force = &storage_->force;
-  end.phaseForce = &storage_->phaseForce;
-  for (std::size_t h = 0; h < static_cast<std::size_t>(handCount); ++h) {
-    motion[h] = storage_->track[h].motion(storage_->cutoff);
-    end.motion[h] = &motion[h];
-  }
-  const std::vector<PhaseMotion> phases = storage_->phases.cut(motion, storage_->tickSeconds);
-  end.phases = &phases;
+  const std::array<Motion, handCount> motion{track_[0].motion(cutoff_), track_[1].motion(cutoff_)};
+  const std::vector<PhaseMotion> phases = phases_.cut(motion, tickSeconds_);
+  const AttemptEnd end{.steps = steps_,
+                       .stretched = stretched_,
+                       .outcome = outcome_,
+                       .origin = origin_,
+                       .motion = {&motion[0], &motion[1]},
+                       .phases = &phases,
+                       .force = &force_,
+                       .phaseForce = &phaseForce_};
   std::vector<CheckpointValue> result;
-  for (const auto& checkpoint : storage_->checkpoint) {
+  for (const auto& checkpoint : checkpoint_) {
     for (CheckpointValue& value : checkpoint->values(end)) result.push_back(std::move(value));
   }
   return result;
@@ -135,7 +110,7 @@ Motion motionOf(const recorder::TrackedMotion& tracked, std::size_t hand, double
       samples.grid.extend(time, rows.position[i], rows.orientation[i]);
     }
   }
-  const GapRule rule(samples.rate.interval());
+  const GapRule rule{samples.rate.interval()};
   samples.longestRate = rule.longestEven();
   samples.coverage.mounted = {{0.0, tracked.time.back()}};
   for (std::size_t i = 1; i < tracked.time.size(); ++i) {
@@ -148,18 +123,18 @@ std::vector<CheckpointValue> valuesFromSamples(const recorder::TrackedMotion& tr
   const std::array<Motion, handCount> motion{motionOf(tracked, 0, context.cutoff),
                                              motionOf(tracked, 1, context.cutoff)};
   const std::vector<PhaseMotion> phases;
+  const std::uint64_t steps = tracked.time.size() - 1;
   AttemptContext attempt;
   attempt.handedness = context.handedness;
-  AttemptEnd end;
-  end.steps = tracked.time.size() - 1;
   attempt.ticksPerStep = 1;
-  attempt.tickSeconds = tracked.time.back() / static_cast<double>(end.steps);
+  attempt.tickSeconds = tracked.time.back() / static_cast<double>(steps);
   const ForceTrack force(attempt.tickSeconds);
-  end.outcome = context.outcome;
-  end.origin = Origin::samples;
-  end.motion = {&motion[0], &motion[1]};
-  end.phases = &phases;
-  end.force = &force;
+  const AttemptEnd end{.steps = steps,
+                       .outcome = context.outcome,
+                       .origin = Origin::samples,
+                       .motion = {&motion[0], &motion[1]},
+                       .phases = &phases,
+                       .force = &force};
   std::vector<CheckpointValue> values;
   for (const CheckpointEntry& entry : checkpointRegistry()) {
     const std::vector<Origin>& origins = entry.definition.origins;
@@ -167,6 +142,148 @@ std::vector<CheckpointValue> valuesFromSamples(const recorder::TrackedMotion& tr
     for (CheckpointValue& value : entry.make(attempt)->values(end)) values.push_back(std::move(value));
   }
   return values;
+}
+
+namespace {
+
+/// A longer interval, in the tracker's own, hides a sample whose pose equalled the previous one.
+constexpr double unseenIntervals = 1.5;
+
+}  // namespace
+
+MotionTrack::MotionTrack(double tickSeconds, double sourceRate)
+    : tickSeconds_(tickSeconds), rowsPerTick_(sourceRate * tickSeconds), grid_(1.0 / tickSeconds) {
+  assert(tickSeconds > 0.0 && sourceRate >= 0.0);
+}
+
+bool MotionTrack::isDue() const {
+  if (rowsPerTick_ <= 0.0 || tick_ == 0) return true;
+  // Half a row's thousandth keeps rounding from moving a row by a tick.
+  const double t = static_cast<double>(tick_);
+  return std::floor(t * rowsPerTick_ + 5e-4) > std::floor((t - 1.0) * rowsPerTick_ + 5e-4);
+}
+
+/// The newest sample's pose stood for longer than a source holds one.
+bool MotionTrack::rested() const { return seconds(vouched_ - sample_) > straightBridge; }
+
+/// Extends the grid to the end: the newest sample vouches for rest beyond 0.1 s.
+void MotionTrack::closeRest(SampleGrid& grid) const {
+  if (!grid.runs().empty() && rested()) grid.extend(static_cast<double>(vouched_), position_, orientation_);
+}
+
+/// A held pose is no measurement: without rest, a pause begins at the newest sample.
+MotionTrack::Pause MotionTrack::pauseUntil(std::int64_t tick) const {
+  if (instrument_ == InstrumentKind::none) return {mountedAt_, tick, true};
+  return {rested() ? vouched_ : sample_, tick, false};
+}
+
+void MotionTrack::unmount() {
+  if (instrument_ != InstrumentKind::none) closeRest(grid_);
+  if (mountedAt_ >= 0) {
+    if (instrument_ == InstrumentKind::none || tick_ - vouched_ > 1) pauses_.push_back(pauseUntil(tick_));
+    mounted_.push_back({seconds(mountedAt_), seconds(tick_)});
+  }
+  instrument_ = InstrumentKind::none;
+  mountedAt_ = -1;
+  vouched_ = sample_ = tick_;  // nothing more to close
+}
+
+void MotionTrack::begin(const InstrumentSample& sample, bool continues) {
+  closeRest(grid_);
+  grid_.begin(static_cast<double>(tick_), sample.position, sample.orientation, continues);
+  interval_ = 1;
+}
+
+void MotionTrack::sampled(const InstrumentSample& sample) {
+  if (tick_ - vouched_ > 1) {  // interrupted
+    const std::int64_t from = rested() ? vouched_ : sample_;
+    if (!rested()) rate_.add(seconds(tick_ - sample_));
+    if (seconds(tick_ - from) > straightBridge) {
+      begin(sample, true);
+      return;
+    }
+    closeRest(grid_);
+  } else if (seconds(tick_ - sample_) > straightBridge) {
+    const std::int64_t until = std::max(tick_ - interval_, sample_ + 1);
+    if (until < tick_) grid_.extend(static_cast<double>(until), position_, orientation_);
+  } else {
+    interval_ = tick_ - sample_;
+    rate_.add(seconds(interval_));
+  }
+  grid_.extend(static_cast<double>(tick_), sample.position, sample.orientation);
+}
+
+void MotionTrack::add(const InstrumentSample& sample) {
+  ++tick_;
+  if (sample.instrument == InstrumentKind::none) {
+    unmount();
+    return;
+  }
+  if (mountedAt_ < 0) mountedAt_ = tick_;
+  if (!sample.valid) return;
+  const bool first = instrument_ == InstrumentKind::none;
+  const bool same = sample.instrument == instrument_;
+  if (first ? tick_ > mountedAt_ : tick_ - vouched_ > 1) pauses_.push_back(pauseUntil(tick_));
+  const bool moved = sample.position != position_ || sample.orientation.coeffs() != orientation_.coeffs();
+  if (!same) {
+    begin(sample, false);
+  } else if (seconds(tick_ - vouched_) > straightBridge) {
+    sampled(sample);  // lost for longer than a source holds a pose: a sample, moved or not
+  } else if (!moved || !isDue()) {
+    vouched_ = tick_;
+    return;
+  } else {
+    sampled(sample);
+  }
+  instrument_ = sample.instrument;
+  sample_ = vouched_ = tick_;
+  position_ = sample.position;
+  orientation_ = sample.orientation;
+}
+
+MotionCoverage MotionTrack::coverage(double interval) const {
+  MotionCoverage coverage{mounted_, {}};
+  std::vector<Pause> pauses = pauses_;
+  const std::int64_t end = tick_ + 1;
+  if (mountedAt_ >= 0) {
+    coverage.mounted.push_back({seconds(mountedAt_), seconds(end)});
+    if (instrument_ == InstrumentKind::none || vouched_ < tick_) pauses.push_back(pauseUntil(end));
+  }
+  const GapRule rule{interval};
+  for (const Pause& pause : pauses) {
+    const double pauseSeconds = seconds(pause.to - pause.from);
+    if (pause.atStart) {
+      coverage.lost.push_back({seconds(pause.from), seconds(pause.to)});
+    } else if (rule.isGap(pauseSeconds)) {
+      coverage.lost.push_back({seconds(pause.to) - rule.lost(pauseSeconds), seconds(pause.to)});
+    }
+  }
+  coverage.mounted = normalized(std::move(coverage.mounted));
+  coverage.lost = normalized(std::move(coverage.lost));
+  return coverage;
+}
+
+Motion MotionTrack::motion(double cutoff) const {
+  MotionSamples samples{grid_, rate_, unseenIntervals * rate_.interval(), coverage(rate_.interval()), true};
+  closeRest(samples.grid);
+  return filteredMotion(std::move(samples), cutoff);
+}
+
+MotionTrack trackFor(const recorder::AttemptHeader& header) {
+  // A kinematics file's rows were interpolated to ticks by its source; a device that plays one holds them.
+  const recorder::Provenance& from = header.provenance;
+  const bool interpolated = from.kind == recorder::OperatorKind::kinematics && from.device.empty();
+  return MotionTrack(header.tickSeconds, interpolated ? recorder::kinematicsRowsPerSecond : 0.0);
+}
+
+std::array<Motion, handCount> motionOf(recorder::Recording& recording, double cutoff) {
+  std::array<MotionTrack, handCount> track{trackFor(recording.header()), trackFor(recording.header())};
+  for (std::uint64_t n = 0; n < recording.stepCount(); ++n) {
+    for (const TickSamples& tick : recording.step(n).samples) {
+      for (std::size_t h = 0; h < track.size(); ++h) track[h].add(tick.hand[h]);
+    }
+  }
+  return {track[0].motion(cutoff), track[1].motion(cutoff)};
 }
 
 }  // namespace calot::analytics

@@ -1,19 +1,81 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Values of all checkpoints: of a run or replay, of recorded observables, or of motion alone.
+// Values of all checkpoints: of a run or replay, of recorded observables, or of motion alone; and the samples of a
+// hand's motion that they are computed of.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "analytics/checkpoints/checkpoint.h"
+#include "analytics/checkpoints/force.h"
 #include "analytics/checkpoints/motion.h"
+#include "analytics/checkpoints/phases.h"
 #include "recorder/engine/observer.h"
+#include "recorder/recording/layout.h"
 #include "recorder/recording/reader.h"
 #include "recorder/sources/tracked_motion.h"
+#include "sim/judgement/judge.h"
+#include "sim/scene/samples.h"
 
 namespace calot::analytics {
+
+/// Collects one hand's ticks and finds the tracker's own samples among them. A source holds its newest sample until
+/// there is another one, so:
+///
+/// - a valid tick whose pose (position or orientation, to the last bit) differs from the one before is a sample;
+/// - a pose that stands for at most 0.1 s was held, and the motion runs straight to the next sample;
+/// - a valid pose that stands for longer is rest, because sources mark what they hold longer as not measured: it lasts
+///   until one sampling interval (the newest known) before the next sample, and is a point again there;
+/// - ticks that the source marked as not measured are no samples; an exchange of the instrument splits the motion.
+///
+/// Where the source itself interpolated (kinematics files, docs/explanation/sources.md), only the first tick of each
+/// interval of the file's rows can be a sample. Deterministic contract.
+class MotionTrack {
+ public:
+  /// @param tickSeconds length of a tick (s). @pre > 0.
+  /// @param sourceRate of a source that interpolates between its samples (Hz); 0: it doesn't.
+  explicit MotionTrack(double tickSeconds, double sourceRate = 0.0);
+
+  void add(const InstrumentSample& sample);
+
+  /// The motion so far, filtered. Cost: one pass over the points.
+  [[nodiscard]] Motion motion(double cutoff = motionCutoff) const;
+
+ private:
+  /// Ticks without measurement: from the newest one that was, to the next one or the instrument's end.
+  struct Pause {
+    std::int64_t from = 0, to = 0;
+    bool atStart = false;  ///< none was before it
+  };
+
+  void unmount();
+  void begin(const InstrumentSample& sample, bool continues);
+  void sampled(const InstrumentSample& sample);
+  void closeRest(SampleGrid& grid) const;
+  [[nodiscard]] Pause pauseUntil(std::int64_t tick) const;
+  [[nodiscard]] bool rested() const;
+  [[nodiscard]] bool isDue() const;
+  [[nodiscard]] double seconds(std::int64_t ticks) const { return static_cast<double>(ticks) * tickSeconds_; }
+  [[nodiscard]] MotionCoverage coverage(double interval) const;
+
+  double tickSeconds_;
+  double rowsPerTick_;
+  SampleGrid grid_;
+  SampleRate rate_;
+  std::int64_t tick_ = -1;
+  std::int64_t sample_ = -1;     ///< tick of the newest sample
+  std::int64_t vouched_ = -1;    ///< newest valid tick with its pose
+  std::int64_t interval_ = 1;    ///< ticks between the two newest samples that weren't rest apart
+  std::int64_t mountedAt_ = -1;  ///< first tick of the instrument that is there now; -1: none is
+  Vec3 position_ = Vec3::Zero();
+  Quat orientation_ = Quat::Identity();               ///< as recorded
+  InstrumentKind instrument_ = InstrumentKind::none;  ///< of the newest sample, if it is there still
+  TimeSpans mounted_;                                 ///< earlier instruments (s)
+  std::vector<Pause> pauses_;                         ///< closed ones
+};
 
 /// The observer that feeds every checkpoint of the registry. Attach it to a live run, to a replay, or to a reader of
 /// observables; the same steps give the same values, bit for bit.
@@ -24,9 +86,6 @@ class CheckpointCollector final : public recorder::Observer {
   /// @param cutoff of the motion filter (Hz), one of motionCutoffs. Values that are stored are of the default.
   CheckpointCollector(const recorder::AttemptHeader& header, const SceneDescription& scene,
                       Origin origin = Origin::resimulated, double cutoff = 6.0);
-  ~CheckpointCollector() override;
-  CheckpointCollector(const CheckpointCollector&) = delete;
-  CheckpointCollector& operator=(const CheckpointCollector&) = delete;
 
   void onStep(const recorder::StepRecord& record) override;
   /// The same with what somebody else judged of the step: of a run, take either this or onStep().
@@ -38,8 +97,20 @@ class CheckpointCollector final : public recorder::Observer {
   [[nodiscard]] std::vector<CheckpointValue> values() const;
 
  private:
-  struct Storage;
-  std::unique_ptr<Storage> storage_;
+  Origin origin_;
+  double cutoff_;
+  double tickSeconds_;
+  std::uint64_t ticksPerStep_;
+  std::array<MotionTrack, handCount> track_;
+  PhaseTrack phases_;
+  Judge judge_;
+  ForceTrack force_;
+  PhaseForceTrack phaseForce_;
+  std::vector<std::unique_ptr<Checkpoint>> checkpoint_;
+  std::uint64_t steps_ = 0;
+  double stretched_ = 0.0;
+  recorder::Outcome outcome_ = recorder::Outcome::running;
+  bool ended_ = false;
 };
 
 /// Every figure of a recording from what its steps recorded of themselves, without simulating: for recordings of other
@@ -64,5 +135,12 @@ Motion motionOf(const recorder::TrackedMotion& tracked, std::size_t hand, double
 /// The figures that motion alone can give (those whose definition allows the origin `samples`), in the registry's
 /// order. The attempt lasts from the first row to the last.
 std::vector<CheckpointValue> valuesFromSamples(const recorder::TrackedMotion& tracked, const SamplesContext& context);
+
+/// A track for either hand of an attempt that was recorded so.
+MotionTrack trackFor(const recorder::AttemptHeader& header);
+
+/// Left and right, as every motion checkpoint of this attempt sees them. @param cutoff of the filter (Hz), one of
+/// motionCutoffs. @throws Error (damaged) where a step cannot be read
+std::array<Motion, handCount> motionOf(recorder::Recording& recording, double cutoff = motionCutoff);
 
 }  // namespace calot::analytics

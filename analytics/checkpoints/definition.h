@@ -2,9 +2,12 @@
 // Declaration of a checkpoint, and of a script's own metric (docs/how-to/own-metrics.md).
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <initializer_list>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace calot::analytics {
@@ -12,7 +15,7 @@ namespace calot::analytics {
 /// Better direction. `none`: the figure describes, it does not judge.
 enum class Direction : std::uint8_t { none, lower, higher };
 
-/// Where a value comes from (section 6 of the design). Numbers are stored and never reused.
+/// Origin of a value (section 6 of the design). Numbers are stored and never reused.
 enum class Origin : std::uint8_t {
   resimulated = 0,  ///< the simulation ran again, bit for bit, in the same simulation version
   observables = 1,  ///< recorded StepResults and forces, read by any later software
@@ -27,6 +30,13 @@ enum class Aggregation : std::uint8_t { attempt, hand, organ, phase, handAndPhas
 /// `running`: known after every step. `final`: its filter looks ahead, so before the end it is provisional.
 enum class Finality : std::uint8_t { running, final };
 
+/// The name of a value in a list by number; "unknown" beyond it.
+template <class Enum>
+std::string nameIn(std::initializer_list<const char*> names, Enum value) {
+  const auto at = static_cast<std::size_t>(value);
+  return at < names.size() ? names.begin()[at] : "unknown";
+}
+
 std::string nameOf(Direction direction);      ///< "none", "lower", "higher"
 std::string nameOf(Origin origin);            ///< "re-simulated", "observables", "samples", "external"
 std::string nameOf(Aggregation aggregation);  ///< "attempt", "hand", "organ", "phase", "hand and phase"
@@ -38,7 +48,7 @@ struct CheckpointDefinition {
   std::string title = {};        ///< "Path length of the instrument's tip"
   std::string unit = {};         ///< SI, of stored values: "s", "m", "N", "1"
   std::string displayUnit = {};  ///< at the edges: "mm"
-  double displayFactor = 1.0;    ///< displayed = stored * displayFactor
+  double displayFactor = 1.0;    ///< displayed = stored * displayFactor; by the unit (completed())
   Direction direction = Direction::none;
   std::string window = {};  ///< part of the attempt that is covered: "whole attempt"
   Aggregation aggregation = Aggregation::attempt;

@@ -2,14 +2,8 @@
 #include "analytics/checkpoints/force.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace calot::analytics {
-namespace {
-
-double magnitudeOf(const Vec3& f) { return std::sqrt(f.x() * f.x() + f.y() * f.y() + f.z() * f.z()); }
-
-}  // namespace
 
 void ForceTrack::add(const recorder::StepRecord& record) {
   const std::size_t ticks = std::min(record.samples.size(), record.ticks.size());
@@ -20,14 +14,15 @@ void ForceTrack::add(const recorder::StepRecord& record) {
         newest.ticks = 0;
         continue;
       }
-      mounted_[h] = true;
+      HandForces& hand = hand_[h];
+      hand.mounted = true;
       const Vec3& f = record.ticks[t].hand[h].force;
-      const double magnitude = magnitudeOf(f);
-      largest_[h] = std::max(largest_[h], magnitude);
-      sum_[h] += magnitude;
-      if (magnitude >= leastForce) felt_[h].push_back(magnitude);
-      if (newest.ticks >= 2 && magnitudeOf(newest.force[1]) >= leastForce)
-        rates_[h].push_back(magnitudeOf(f - newest.force[0]) / (2.0 * tickSeconds_));
+      const double magnitude = lengthOf(f);
+      hand.largest = std::max(hand.largest, magnitude);
+      hand.sum += magnitude;
+      if (magnitude >= leastForce) hand.felt.push_back(magnitude);
+      if (newest.ticks >= 2 && lengthOf(newest.force[1]) >= leastForce)
+        hand.rates.push_back(lengthOf(f - newest.force[0]) / (2.0 * tickSeconds_));
       newest.force = {newest.force[1], f};
       newest.ticks = std::min(newest.ticks + 1, 2);
     }

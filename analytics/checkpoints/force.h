@@ -14,7 +14,16 @@ namespace calot::analytics {
 /// Below this a force counts as none (N): an operator can't feel it, and no device sends it.
 inline constexpr double leastForce = 0.01;
 
-/// Magnitudes of the forces that the haptic ticks sent to the hands, tick by tick.
+/// Magnitudes of the forces that the haptic ticks sent to one hand, tick by tick.
+struct HandForces {
+  bool mounted = false;       ///< there was an instrument at any tick
+  double largest = 0.0;       ///< of all (N), felt or not
+  double sum = 0.0;           ///< of all (N)
+  std::vector<double> felt;   ///< those of at least leastForce (N), in the order of ticks
+  std::vector<double> rates;  ///< |f(t+1) - f(t-1)| / (2 ticks) of each tick with a force of at least leastForce and an
+                              ///< instrument at all three (N/s), in the order of ticks
+};
+
 class ForceTrack {
  public:
   /// @param tickSeconds length of a tick (s).
@@ -23,17 +32,8 @@ class ForceTrack {
   void add(const recorder::StepRecord& record);
   /// Marks a discontinuity: no rate of change is taken across.
   void interrupt();
-  /// There was an instrument at any tick.
-  [[nodiscard]] bool mounted(int hand) const { return mounted_[static_cast<std::size_t>(hand)]; }
-  /// Those of at least leastForce (N), in the order of ticks.
-  [[nodiscard]] const std::vector<double>& felt(int hand) const { return felt_[static_cast<std::size_t>(hand)]; }
-  /// The largest of all (N), felt or not.
-  [[nodiscard]] double largest(int hand) const { return largest_[static_cast<std::size_t>(hand)]; }
-  /// Integral of the magnitude over time (N s).
-  [[nodiscard]] double impulse(int hand) const { return sum_[static_cast<std::size_t>(hand)] * tickSeconds_; }
-  /// |f(t+1) - f(t-1)| / (2 ticks) of each tick with a force of at least leastForce and an instrument at all three
-  /// (N/s), in the order of ticks.
-  [[nodiscard]] const std::vector<double>& rates(int hand) const { return rates_[static_cast<std::size_t>(hand)]; }
+  [[nodiscard]] const HandForces& of(std::size_t hand) const { return hand_[hand]; }
+  [[nodiscard]] double tickSeconds() const { return tickSeconds_; }
 
  private:
   /// Forces of the two newest ticks in a row with an instrument, the newer one last.
@@ -43,10 +43,7 @@ class ForceTrack {
   };
   double tickSeconds_;
   std::array<Newest, handCount> newest_{};
-  std::array<double, handCount> sum_{};
-  std::array<bool, handCount> mounted_{};
-  std::array<double, handCount> largest_{};
-  std::array<std::vector<double>, handCount> felt_, rates_;
+  std::array<HandForces, handCount> hand_{};
 };
 
 /// The same of each phase of a procedure by itself.

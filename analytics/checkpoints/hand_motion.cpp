@@ -21,7 +21,7 @@ std::optional<Measured> refusalOf(double minCoverage, const MotionCoverage& cove
   if (share < minCoverage) {
     return Measured::none(
         Availability::tooLittleCoverage,
-        fmt::format("samples cover {:.1f} % of the time; {:g} % are wanted", 100.0 * share, 100.0 * minCoverage));
+        fmt::format("samples cover {:.1f} % of the time; {:g} % are expected", 100.0 * share, 100.0 * minCoverage));
   }
   if (!hasSegments) return Measured::notAvailable(fmt::format("no measured motion of 0.1 s or longer{}", ofHand));
   return std::nullopt;
@@ -45,21 +45,15 @@ Measured measureHand(double minCoverage, const Motion& motion, MotionMeasure mea
 }
 
 struct HandMotion {
-  const AttemptContext& context;
   MotionMeasure measure;
 
-  [[nodiscard]] Measured figure(const AttemptEnd& end, std::size_t hand, const CheckpointDefinition& declared) const {
-    return measureHand(declared.minCoverage, *end.motion[hand], measure);
-  }
-};
-
-struct PhaseHandMotion {
-  const AttemptContext& context;
-  MotionMeasure measure;
-
+  /// The figure of a hand, or of a hand in a phase.
   [[nodiscard]] Measured figure(const AttemptEnd& end, std::size_t subject,
                                 const CheckpointDefinition& declared) const {
-    return measureHand(declared.minCoverage, (*end.phases)[subject / handCount].motion[subject % handCount], measure);
+    const std::size_t hand = subject % handCount;
+    const bool inPhase = declared.aggregation == Aggregation::handAndPhase;
+    return measureHand(declared.minCoverage,
+                       inPhase ? (*end.phases)[subject / handCount].motion[hand] : *end.motion[hand], measure);
   }
 };
 
@@ -106,7 +100,7 @@ CheckpointEntry perHand(CheckpointEntry row, MotionMeasure measure) {
 }
 
 CheckpointEntry perHandAndPhase(const CheckpointEntry& whole, int rank, MotionMeasure measure, std::uint32_t version) {
-  return phaseRow(whole, rank, "points", accumulating<PhaseHandMotion>(measure), version);
+  return phaseRow(whole, rank, "points", accumulating<HandMotion>(measure), version);
 }
 
 CheckpointEntry ofBothHands(CheckpointEntry row, TwoHandMeasure measure) {
@@ -117,11 +111,8 @@ CheckpointEntry ofBothHands(CheckpointEntry row, TwoHandMeasure measure) {
 }
 
 double maxSpeed(const Motion& motion) {
-  double largest = 0.0;
-  for (const MotionSegment& segment : motion.segments) {
-    for (const double v : segment.speed) largest = std::max(largest, v);
-  }
-  return largest;
+  const std::vector<double> speeds = speedsOf(motion.segments);
+  return speeds.empty() ? 0.0 : std::max(0.0, *std::max_element(speeds.begin(), speeds.end()));
 }
 
 }  // namespace calot::analytics

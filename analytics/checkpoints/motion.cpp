@@ -183,40 +183,32 @@ std::vector<double> speeds(const std::vector<Vec3>& p) {
   std::vector<double> speed(n);
   for (std::size_t i = 0; i < n; ++i) {
     const std::size_t a = i == 0 ? 0 : i - 1, b = i + 1 == n ? i : i + 1;
-    const double dx = p[b].x() - p[a].x(), dy = p[b].y() - p[a].y(), dz = p[b].z() - p[a].z();
-    speed[i] = std::sqrt(dx * dx + dy * dy + dz * dz) * (motionRate / static_cast<double>(b - a));
+    speed[i] = lengthOf(p[b] - p[a]) * (motionRate / static_cast<double>(b - a));
   }
   return speed;
 }
 
-std::vector<Vec3> smoothPositions(const ZeroPhaseFilter& filter, const std::vector<Vec3>& raw) {
-  std::vector<Vec3> smooth(raw.size());
-  std::vector<double> axis(raw.size());
-  for (int a = 0; a < 3; ++a) {
-    for (std::size_t i = 0; i < axis.size(); ++i) axis[i] = raw[i][a];
-    const std::vector<double> y = filter.apply(axis);
-    for (std::size_t i = 0; i < axis.size(); ++i) smooth[i][a] = y[i];
+/// Filters each component of the vectors by itself. @param componentsOf gives those of one
+template <class T, class Components>
+std::vector<T> smoothed(const ZeroPhaseFilter& filter, const std::vector<T>& raw, int count, Components componentsOf) {
+  std::vector<T> smooth(raw.size());
+  std::vector<double> part(raw.size());
+  for (int c = 0; c < count; ++c) {
+    for (std::size_t i = 0; i < part.size(); ++i) part[i] = componentsOf(raw[i])[c];
+    const std::vector<double> y = filter.apply(part);
+    for (std::size_t i = 0; i < part.size(); ++i) componentsOf(smooth[i])[c] = y[i];
   }
   return smooth;
 }
 
 std::vector<Quat> smoothOrientations(const ZeroPhaseFilter& filter, const std::vector<Quat>& raw) {
-  std::vector<Quat> smooth(raw.size());
-  std::vector<double> part(raw.size());
-  for (int c = 0; c < 4; ++c) {
-    for (std::size_t i = 0; i < part.size(); ++i) part[i] = raw[i].coeffs()[c];
-    const std::vector<double> y = filter.apply(part);
-    for (std::size_t i = 0; i < part.size(); ++i) smooth[i].coeffs()[c] = y[i];
-  }
+  std::vector<Quat> smooth = smoothed(
+      filter, raw, 4, [](auto& q) -> auto& { return q.coeffs(); });
   for (std::size_t i = 0; i < smooth.size(); ++i) {
     const auto& q = smooth[i].coeffs();
     const double length = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
     // A turn of half a revolution within a filter's width can cancel out: the unfiltered one is a rotation.
-    if (length > 1e-3) {
-      smooth[i].coeffs() = q / length;
-    } else {
-      smooth[i] = raw[i];
-    }
+    smooth[i] = length > 1e-3 ? Quat(q / length) : raw[i];
   }
   return smooth;
 }
@@ -226,7 +218,8 @@ MotionSegment filteredSegment(GridRun&& run, const ZeroPhaseFilter& filter, bool
   segment.first = run.first;
   segment.continues = run.continues;
   segment.raw = std::move(run.position);
-  segment.filtered = smoothPositions(filter, segment.raw);
+  segment.filtered = smoothed(
+      filter, segment.raw, 3, [](auto& p) -> auto& { return p; });
   if (oriented) segment.orientation = smoothOrientations(filter, run.orientation);
   segment.speed = speeds(segment.filtered);
   return segment;
@@ -248,6 +241,12 @@ std::uint64_t Motion::points() const {
   return count;
 }
 
+std::vector<double> speedsOf(const std::vector<MotionSegment>& segments) {
+  std::vector<double> speed;
+  for (const MotionSegment& segment : segments) speed.insert(speed.end(), segment.speed.begin(), segment.speed.end());
+  return speed;
+}
+
 Motion filteredMotion(MotionSamples samples, double cutoff) {
   Motion motion;
   motion.mounted = !samples.coverage.mounted.empty();
@@ -255,7 +254,7 @@ Motion filteredMotion(MotionSamples samples, double cutoff) {
   motion.rate = samples.rate.hertz(samples.longestRate);
   motion.cutoff = cutoff;
   const double unitsPerSecond = samples.grid.unitsPerSecond();
-  std::vector<GridRun> runs = bridged(std::move(samples.grid).takeRuns(), GapRule(motion.interval), unitsPerSecond);
+  std::vector<GridRun> runs = bridged(std::move(samples.grid).takeRuns(), GapRule{motion.interval}, unitsPerSecond);
   const ZeroPhaseFilter filter(cutoff, motionRate);
   TimeSpans lost = std::move(samples.coverage.lost);
   for (std::size_t i = 0; i < runs.size(); ++i) {
@@ -320,7 +319,7 @@ Vec3 hermite(const Vec3& from, const Vec3& to, const Tangents& tangents, double 
 void join(GridRun& before, GridRun&& after, const GapRule& rule, double unitsPerSecond) {
   const double seconds = between(before, after, unitsPerSecond);
   const bool straight = rule.isStraight(seconds);
-  const Tangents tangents = straight ? Tangents{} : tangentsOf(before, after, seconds, rule.interval());
+  const Tangents tangents = straight ? Tangents{} : tangentsOf(before, after, seconds, rule.interval);
   const TimedPose from = before.end, &to = after.begin;
   const auto end = after.first;
   for (auto k = before.first + static_cast<std::int64_t>(before.position.size()); k < end; ++k) {

@@ -2,6 +2,7 @@
 // The motion of one instrument: samples, gaps and bridges, resampling to a fixed rate, filtered segments.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -11,6 +12,9 @@
 #include "sim/math/linear.h"
 
 namespace calot::analytics {
+
+/// Length of a vector, in source-fixed order.
+inline double lengthOf(const Vec3& v) { return std::sqrt(v.x() * v.x() + v.y() * v.y() + v.z() * v.z()); }
 
 /// Rate of the motion on which motion checkpoints work (Hz).
 inline constexpr double motionRate = 100.0;
@@ -85,7 +89,7 @@ class SampleRate {
     std::uint64_t count = 0;
     double seconds = 0.0;
   };
-  /// Intervals of at most so many seconds together.
+  /// Merges intervals of at most this length (s).
   [[nodiscard]] Bin upTo(double longest) const;
 
   std::vector<Bin> bins_;
@@ -141,6 +145,9 @@ struct MotionSegment {
   bool continues = false;         ///< a gap that was too long to be bridged lies before it
 };
 
+/// Speeds of all points, in order.
+std::vector<double> speedsOf(const std::vector<MotionSegment>& segments);
+
 /// One hand's motion over an attempt, or over a part of it.
 struct Motion {
   bool mounted = false;                 ///< there was an instrument at any time
@@ -170,30 +177,24 @@ Motion filteredMotion(MotionSamples samples, double cutoff);
 /// Samples this close (s) are joined by a straight line whatever the tracker's interval; sources repeat a pose for as
 /// long.
 inline constexpr double straightBridge = 0.1;
-/// A gap: more than so many of the tracker's own intervals between two samples.
+/// A gap: more than this number of the tracker's own intervals between two samples.
 inline constexpr double gapIntervals = 2.5;
 /// More lost time (s) is not bridged: the motion falls into two segments.
 inline constexpr double maxBridge = 1.0;
 
 /// How a time between two samples is taken, by the tracker's own interval.
-class GapRule {
- public:
-  /// @param interval SampleRate::interval() (s); 0: not known
-  explicit GapRule(double interval) : interval_(interval) {}
+struct GapRule {
+  double interval;  ///< SampleRate::interval() (s); 0: not known
 
   /// Longest time between two samples that is no gap (s).
-  [[nodiscard]] double longestEven() const { return gapIntervals * interval_; }
+  [[nodiscard]] double longestEven() const { return gapIntervals * interval; }
   [[nodiscard]] bool isGap(double seconds) const { return seconds > longestEven(); }
   /// Part of a gap that no sample covers, each covering one interval.
-  [[nodiscard]] double lost(double seconds) const { return seconds - interval_; }
+  [[nodiscard]] double lost(double seconds) const { return seconds - interval; }
   /// Joined by a straight line.
   [[nodiscard]] bool isStraight(double seconds) const { return seconds <= straightBridge || !isGap(seconds); }
   /// Joined, by a straight line or a curve.
   [[nodiscard]] bool isBridged(double seconds) const { return isStraight(seconds) || lost(seconds) <= maxBridge; }
-  [[nodiscard]] double interval() const { return interval_; }
-
- private:
-  double interval_;
 };
 
 /// Joins runs to those that they continue, where the rule bridges the time between them. Straight: as SampleGrid.

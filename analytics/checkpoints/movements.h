@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Stretches of a motion by the speed of the tip: movements, and rest between them.
+// Stretches of a motion by the speed of the tip: movements, and rest between them; both hands' speeds together.
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -27,7 +29,7 @@ struct Stretch {
   [[nodiscard]] std::size_t points() const { return end - begin; }
 };
 
-/// Points that a stretch of so many seconds has at least: each stands for 1 / motionRate.
+/// Minimum number of points of a stretch of this length (s): each stands for 1 / motionRate.
 std::size_t pointsOf(double seconds);
 
 /// Maximal runs of points that are all `true`, of at least `least` points.
@@ -45,5 +47,25 @@ std::vector<Stretch> movementsOf(const MotionSegment& segment, double threshold)
 double pathLength(const MotionSegment& segment, std::size_t begin, std::size_t end);
 /// The same over all segments.
 double pathLength(const Motion& motion);
+
+/// A stretch of the grid in which both hands are measured, the right one `lag` points later: speed i of the left hand
+/// beside that of the right hand `lag` points after it. Views into the motions.
+struct CommonPart {
+  const double* left = nullptr;
+  const double* right = nullptr;
+  std::size_t points = 0;
+};
+std::vector<CommonPart> commonParts(const Motion& left, const Motion& right, std::int64_t lag);
+
+/// Pearson's correlation of both hands' speeds, the right one taken `lag` points later.
+struct LaggedCorrelation {
+  double correlation = 0.0;
+  std::int64_t lag = 0;
+};
+/// At lag 0. @return nothing where there are fewer than 2 common points or a speed does not vary (by minSpeed).
+std::optional<double> speedCorrelation(const Motion& left, const Motion& right, std::int64_t lag = 0);
+/// The greatest within +-`farthest` points; the smallest lag of equals, the negative one first.
+std::optional<LaggedCorrelation> greatestSpeedCorrelation(const Motion& left, const Motion& right,
+                                                          std::int64_t farthest);
 
 }  // namespace calot::analytics

@@ -97,7 +97,7 @@ class Transform {
     }
   }
 
-  /// Where value i of the signal is put before run().
+  /// Index of the signal's value i in the input of run().
   [[nodiscard]] std::size_t placeOf(std::size_t i) const { return order_[i]; }
 
   void run(Complex& x) const {

@@ -120,8 +120,7 @@ class AssessmentDatabase {
   void attachEvidence(const Norm& norm, const NormEvidence& evidence);
 
  private:
-  struct Storage;
-  std::unique_ptr<Storage> storage_;
+  std::unique_ptr<CohortConnection> connection_;
 };
 
 }  // namespace calot::analytics

@@ -5,41 +5,30 @@
 
 #include "analytics/cohort/connection.h"
 #include "analytics/cohort/embedded.h"
-#include "analytics/cohort/row_statements.h"
+#include "analytics/cohort/tables.h"
 
 namespace calot::analytics {
 
 CohortCheck checkCohort(const std::string& path) {
-  return guarded(path, [&] {
-    const auto handle = openCohort(path, CohortDatabase::Access::read, std::chrono::seconds(10));
-    SQLite::Database& db = *handle;
+  return CohortConnection(path, CohortDatabase::Access::read).read([](SQLite::Database& db) {
     CohortCheck result;
     result.schema = db.execAndGet("PRAGMA user_version").getInt();
-    SQLite::Statement integrity(db, "PRAGMA integrity_check");
-    while (integrity.executeStep()) {
-      const std::string line = integrity.getColumn(0).getString();
+    for (const std::string& line : firstTexts(db, "PRAGMA integrity_check")) {
       if (line != "ok") result.faults.push_back(printable(line));
     }
     if (!result.faults.empty()) return result;  // what else would be said of it means nothing
     if (static_cast<std::size_t>(result.schema) == cohortMigrations().size()) result.faults = tables::schemaFaults(db);
-
-    SQLite::Statement foreign(db, "SELECT \"table\", \"parent\", count(*) FROM pragma_foreign_key_check GROUP BY 1, 2");
-    while (foreign.executeStep()) {
-      result.faults.push_back(fmt::format("{} rows of {} refer to no row of {}", foreign.getColumn(2).getInt64(),
-                                          foreign.getColumn(0).getString(), foreign.getColumn(1).getString()));
-    }
-    SQLite::Statement bare(db, "SELECT uuid FROM attempt WHERE id NOT IN (SELECT attempt FROM recording)");
-    while (bare.executeStep())
-      result.faults.push_back(fmt::format("attempt {} has no recording", bare.getColumn(0).getString()));
-    SQLite::Statement signature(db,
-                                "SELECT a.uuid FROM recording_signature s JOIN recording r USING (attempt) "
-                                "JOIN attempt a ON a.id = s.attempt WHERE s.chain_head <> r.chain_head");
-    while (signature.executeStep()) {
-      result.faults.push_back(
-          fmt::format("attempt {}: its signature is of another content", signature.getColumn(0).getString()));
+    for (const char* fault :
+         {"SELECT count(*) || ' rows of ' || \"table\" || ' refer to no row of ' || \"parent\" FROM "
+          "pragma_foreign_key_check GROUP BY \"table\", \"parent\"",
+          "SELECT 'attempt ' || uuid || ' has no recording' FROM attempt WHERE id NOT IN (SELECT attempt FROM "
+          "recording)",
+          "SELECT 'attempt ' || a.uuid || ': its signature is of another content' FROM recording_signature s JOIN "
+          "recording r USING (attempt) JOIN attempt a ON a.id = s.attempt WHERE s.chain_head <> r.chain_head"}) {
+      for (std::string& line : firstTexts(db, fault)) result.faults.push_back(std::move(line));
     }
     const auto count = [&](const char* table) {
-      return static_cast<std::uint64_t>(db.execAndGet(fmt::format("SELECT count(*) FROM {}", table)).getInt64());
+      return static_cast<std::uint64_t>(firstNumber(db, fmt::format("SELECT count(*) FROM {}", table)));
     };
     result.participants = count("participant");
     result.attempts = count("attempt");

@@ -10,7 +10,6 @@
 #include <string_view>
 #include <utility>
 
-#include "analytics/cohort/row_statements.h"
 #include "analytics/cohort/tables.h"
 
 namespace calot::analytics {
@@ -18,35 +17,20 @@ namespace calot::analytics {
 using namespace tables;
 
 std::string nameOf(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::verified:
-      return "verified";
-    case Verdict::diverged:
-      return "diverged";
-    case Verdict::damaged:
-      return "damaged";
-    case Verdict::notCheckableHere:
-      return "not checkable here";
-    case Verdict::notChecked:
-      return "not checked";
-  }
-  return "unknown";
+  return nameIn({"verified", "diverged", "damaged", "not checkable here", "not checked"}, verdict);
 }
 
 CohortDatabase::CohortDatabase(const std::string& path, Access access, std::chrono::milliseconds patience)
-    : storage_(std::make_unique<Storage>()) {
-  storage_->path = path;
-  storage_->db = openCohort(path, access, patience);
-}
+    : connection_(std::make_unique<CohortConnection>(path, access, patience)) {}
 
 CohortDatabase::~CohortDatabase() = default;
 CohortDatabase::CohortDatabase(CohortDatabase&&) noexcept = default;
 CohortDatabase& CohortDatabase::operator=(CohortDatabase&&) noexcept = default;
 
-const std::string& CohortDatabase::path() const { return storage_->path; }
+const std::string& CohortDatabase::path() const { return connection_->path; }
 
 int CohortDatabase::schemaVersion() const {
-  return guarded(path(), [&] { return storage_->db->execAndGet("PRAGMA user_version").getInt(); });
+  return connection_->read([](auto& db) { return db.execAndGet("PRAGMA user_version").getInt(); });
 }
 
 void checkParticipant(const Participant& p) {
@@ -56,9 +40,7 @@ void checkParticipant(const Participant& p) {
 
 void CohortDatabase::addParticipant(const Participant& p) {
   checkParticipant(p);
-  guarded(path(), [&] {
-    SQLite::Database& db = *storage_->db;
-    SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
+  connection_->change([&](SQLite::Database& db) {
     if (participantId(db, p.pseudonym) >= 0) {
       throw Error(ErrorKind::refused, Where{path()}, fmt::format("participant \"{}\" is there already", p.pseudonym),
                   {Remedy::changeParticipant});
@@ -66,15 +48,12 @@ void CohortDatabase::addParticipant(const Participant& p) {
     writeDetails(db, insertParticipant(db, p), p.experience, p.consent);
     audit(db, "participant-add", p.pseudonym,
           fmt::format("group \"{}\", arm \"{}\", site \"{}\"", p.group, p.arm, p.site));
-    transaction.commit();
   });
 }
 
 void CohortDatabase::setParticipant(const std::string& pseudonym, const ParticipantChange& change) {
   checkDetails(change.experience, change.consent);
-  guarded(path(), [&] {
-    SQLite::Database& db = *storage_->db;
-    SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
+  connection_->change([&](SQLite::Database& db) {
     const std::int64_t id = participantId(db, pseudonym);
     if (id < 0) {
       throw Error(ErrorKind::refused, Where{path()}, fmt::format("no participant \"{}\"", pseudonym),
@@ -83,9 +62,7 @@ void CohortDatabase::setParticipant(const std::string& pseudonym, const Particip
     std::string detail;
     const auto set = [&](const char* column, const char* word, const std::optional<std::string>& value) {
       if (!value) return;
-      SQLite::Statement update(db, fmt::format("UPDATE participant SET {} = ? WHERE id = ?", column));
-      SQLite::bind(update, *value, id);
-      update.exec();
+      execute(db, fmt::format("UPDATE participant SET {} = ? WHERE id = ?", column), {*value, id});
       detail += fmt::format("{} \"{}\"; ", word, *value);
     };
     set("study_group", "group", change.group);
@@ -95,33 +72,24 @@ void CohortDatabase::setParticipant(const std::string& pseudonym, const Particip
     for (const auto& item : change.experience) detail += fmt::format("experience {} = {}; ", item.first, item.second);
     for (const auto& item : change.consent) detail += fmt::format("consent {} {}; ", item.first, item.second);
     audit(db, "participant-set", pseudonym, detail);
-    transaction.commit();
   });
 }
 
 std::vector<Participant> CohortDatabase::participants() const {
-  return guarded(path(), [&] {
-    SQLite::Database& db = *storage_->db;
-    std::vector<Participant> result;
-    std::map<std::int64_t, std::size_t> index;
-    SQLite::Statement select(
-        db, fmt::format("SELECT id, {} FROM participant ORDER BY pseudonym", memberColumns(participantTable())));
-    while (select.executeStep()) {
-      index[select.getColumn(0).getInt64()] = result.size();
-      int c = 1;
-      readMembers(participantTable(), select, c, result.emplace_back());
-    }
-    SQLite::Statement experience(db, "SELECT participant, criterion, value FROM participant_experience");
-    while (experience.executeStep()) {
-      if (const auto at = index.find(experience.getColumn(0).getInt64()); at != index.end())
-        result[at->second].experience[text(experience.getColumn(1))] = text(experience.getColumn(2));
-    }
-    SQLite::Statement consent(db, "SELECT participant, purpose, given_on FROM consent");
-    while (consent.executeStep()) {
-      if (const auto at = index.find(consent.getColumn(0).getInt64()); at != index.end())
-        result[at->second].consent[text(consent.getColumn(1))] = text(consent.getColumn(2));
-    }
-    return result;
+  return connection_->read([](SQLite::Database& db) {
+    std::map<std::string, Participant> people;  // by pseudonym, in the order of their bytes
+    for (Participant& p : selectRows(db, participantTable(), "")) people.emplace(p.pseudonym, p);
+    const auto add = [&](const char* query, std::map<std::string, std::string> Participant::*details) {
+      eachRow(db, query, {}, [&](SQLite::Statement& row) {
+        (people.at(text(row.getColumn(0))).*details)[text(row.getColumn(1))] = text(row.getColumn(2));
+      });
+    };
+    add("SELECT pseudonym, criterion, value FROM participant_experience JOIN participant ON id = participant",
+        &Participant::experience);
+    add("SELECT pseudonym, purpose, given_on FROM consent JOIN participant ON id = participant", &Participant::consent);
+    std::vector<Participant> list;
+    for (auto& item : people) list.push_back(std::move(item.second));
+    return list;
   });
 }
 
@@ -134,137 +102,105 @@ std::optional<Participant> CohortDatabase::participant(const std::string& pseudo
 
 Imported CohortDatabase::storeAttempt(const AttemptRecord& attempt, const std::vector<CheckpointValue>& values) {
   checkAttempt(attempt, path());
-  return guarded(path(), [&] {
-    SQLite::Transaction transaction(*storage_->db, SQLite::TransactionBehavior::IMMEDIATE);
-    const Imported imported = importAttempt(*storage_->db, path(), attempt, &values);
-    transaction.commit();
-    return imported;
-  });
+  return connection_->change([&](SQLite::Database& db) { return importAttempt(db, path(), attempt, &values); });
 }
 
 Imported CohortDatabase::upsertAttempt(const AttemptRecord& attempt) {
   checkAttempt(attempt, path());
-  return guarded(path(), [&] {
-    SQLite::Transaction transaction(*storage_->db, SQLite::TransactionBehavior::IMMEDIATE);
-    const Imported imported = importAttempt(*storage_->db, path(), attempt, nullptr);
-    transaction.commit();
-    return imported;
-  });
+  return connection_->change([&](SQLite::Database& db) { return importAttempt(db, path(), attempt, nullptr); });
 }
 
 void CohortDatabase::storeValues(const std::string& attempt, const std::vector<CheckpointValue>& values) {
-  guarded(path(), [&] {
-    SQLite::Database& db = *storage_->db;
-    SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
-    const std::int64_t id = attemptId(db, attempt);
-    if (id < 0) throw Error(ErrorKind::refused, Where{path()}, fmt::format("no attempt {}", attempt));
-    if (replaceValues(db, id, values)) audit(db, "attempt-values", attempt, fmt::format("{} values", values.size()));
-    transaction.commit();
+  connection_->change([&](SQLite::Database& db) {
+    if (replaceValues(db, knownAttempt(db, path(), attempt), values))
+      audit(db, "attempt-values", attempt, fmt::format("{} values", values.size()));
   });
 }
 
 void CohortDatabase::storeIntervals(const std::string& attempt, const std::vector<ValueInterval>& intervals) {
-  guarded(path(), [&] {
-    SQLite::Database& db = *storage_->db;
-    SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
-    const std::int64_t id = attemptId(db, attempt);
-    if (id < 0) throw Error(ErrorKind::refused, Where{path()}, fmt::format("no attempt {}", attempt));
-    if (replaceIntervals(db, id, intervals))
+  connection_->change([&](SQLite::Database& db) {
+    if (replaceIntervals(db, knownAttempt(db, path(), attempt), intervals))
       audit(db, "attempt-intervals", attempt, fmt::format("{} intervals", intervals.size()));
-    transaction.commit();
   });
 }
 
 Imported CohortDatabase::storeExternal(const std::string& attempt, const std::vector<CheckpointValue>& values) {
-  return guarded(path(), [&] {
-    SQLite::Database& db = *storage_->db;
-    SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
-    const std::int64_t id = attemptId(db, attempt);
-    if (id < 0) throw Error(ErrorKind::refused, Where{path()}, fmt::format("no attempt {}", attempt));
-    const std::size_t added = writeExternalValues(db, path(), id, values);
-    if (added > 0) audit(db, "attempt-external", attempt, fmt::format("{} values", added));
-    transaction.commit();
-    return added > 0 ? Imported::added : Imported::unchanged;
+  return connection_->change([&](SQLite::Database& db) {
+    const std::size_t added = writeExternalValues(db, path(), knownAttempt(db, path(), attempt), values);
+    if (added == 0) return Imported::unchanged;
+    audit(db, "attempt-external", attempt, fmt::format("{} values", added));
+    return Imported::added;
   });
 }
 
 void CohortDatabase::checkMetric(const ExternalMetric& metric) const {
-  guarded(path(), [&] { checkExternalMetric(*storage_->db, path(), metric); });
+  connection_->read([&](SQLite::Database& db) { checkExternalMetric(db, path(), metric); });
 }
 
-std::vector<ExternalMetric> CohortDatabase::externalMetrics() const {
-  return guarded(path(), [&] { return readExternalMetrics(*storage_->db); });
-}
+std::vector<ExternalMetric> CohortDatabase::externalMetrics() const { return connection_->read(readExternalMetrics); }
 
 std::string CohortDatabase::attemptNamed(const std::string& text) const {
-  return guarded(path(), [&] {
+  return connection_->read([&](SQLite::Database& db) {
     // Compared literally: wildcards in the text have no effect.
-    SQLite::Statement find(*storage_->db,
-                           "SELECT uuid FROM attempt WHERE substr(uuid, 1, ?) = ? ORDER BY uuid LIMIT 2");
-    find.bind(1, static_cast<std::int64_t>(text.size()));
-    find.bind(2, text);
-    if (text.empty() || !find.executeStep()) {
+    const std::vector<std::string> found =
+        firstTexts(db, "SELECT uuid FROM attempt WHERE substr(uuid, 1, length(?1)) = ?1 ORDER BY uuid LIMIT 2", {text});
+    if (text.empty() || found.empty())
       throw Error(ErrorKind::refused, Where{path()}, fmt::format("no attempt \"{}\"", text));
-    }
-    std::string uuid = find.getColumn(0).getString();
-    if (find.executeStep()) {
+    if (found.size() > 1) {
       throw Error(ErrorKind::refused, Where{path()},
                   fmt::format("more than one attempt begins with \"{}\"; give more of its uuid", text));
     }
-    return uuid;
+    return found.front();
   });
 }
 
-std::vector<AttemptRow> CohortDatabase::listAttempts() const {
-  return guarded(path(), [&] { return readAttempts(*storage_->db); });
-}
+std::vector<AttemptRow> CohortDatabase::listAttempts() const { return connection_->read(readAttempts); }
 
 std::optional<AttemptRow> CohortDatabase::attempt(const std::string& uuid) const {
-  return guarded(path(), [&] { return findAttempt(*storage_->db, uuid); });
+  return connection_->read([&](SQLite::Database& db) { return findAttempt(db, uuid); });
 }
 
 std::vector<CheckpointValue> CohortDatabase::values(const std::string& attempt) const {
-  return guarded(path(), [&] {
-    const std::int64_t id = attemptId(*storage_->db, attempt);
-    std::vector<CheckpointValue> all = readValues(*storage_->db, id);
-    for (CheckpointValue& v : readExternalValues(*storage_->db, id)) all.push_back(std::move(v));
+  return connection_->read([&](SQLite::Database& db) {
+    const std::int64_t id = attemptId(db, attempt);
+    std::vector<CheckpointValue> all = readValues(db, id);
+    for (CheckpointValue& v : readExternalValues(db, id)) all.push_back(std::move(v));
     return all;
   });
 }
 
 std::vector<ValueInterval> CohortDatabase::intervals(const std::string& attempt) const {
-  return guarded(path(), [&] { return readIntervals(*storage_->db, attemptId(*storage_->db, attempt)); });
+  return connection_->read([&](SQLite::Database& db) { return readIntervals(db, attemptId(db, attempt)); });
 }
 
 std::vector<AttemptValue> CohortDatabase::allValues(const std::vector<std::string>& without) const {
   std::vector<AttemptValue> values;
   eachValue(without, [&](const AttemptValue& value) { values.push_back(value); });
-  const auto external = [](const AttemptValue& v) { return static_cast<bool>(v.value.metric); };
-  if (std::any_of(values.begin(), values.end(), external)) {
-    std::stable_sort(values.begin(), values.end(),
-                     [](const AttemptValue& x, const AttemptValue& y) { return x.attempt < y.attempt; });
-  }
+  // Those of external metrics come behind all others.
+  const auto byAttempt = [](const AttemptValue& x, const AttemptValue& y) { return x.attempt < y.attempt; };
+  if (!std::is_sorted(values.begin(), values.end(), byAttempt))
+    std::stable_sort(values.begin(), values.end(), byAttempt);
   return values;
 }
 
 void CohortDatabase::eachValue(const std::vector<std::string>& without,
                                const std::function<void(const AttemptValue&)>& take) const {
-  guarded(path(), [&] {
-    readAllValues(*storage_->db, without, take);
-    for (const AttemptValue& value : readAllExternalValues(*storage_->db, without)) take(value);
+  connection_->read([&](SQLite::Database& db) {
+    readAllValues(db, without, take);
+    for (const AttemptValue& value : readAllExternalValues(db, without)) take(value);
   });
 }
 
 std::vector<GroupCount> CohortDatabase::groups() const {
-  return guarded(path(), [&] {
-    SQLite::Statement select(*storage_->db,
-                             "SELECT coalesce(p.study_group, ''), count(DISTINCT p.id), count(a.id) FROM attempt a "
-                             "FULL OUTER JOIN participant p ON p.id = a.participant GROUP BY 1 ORDER BY 1");
+  return connection_->read([](SQLite::Database& db) {
     std::vector<GroupCount> groups;
-    while (select.executeStep()) {
-      groups.push_back({text(select.getColumn(0)), static_cast<std::uint64_t>(select.getColumn(1).getInt64()),
-                        static_cast<std::uint64_t>(select.getColumn(2).getInt64())});
-    }
+    eachRow(db,
+            "SELECT coalesce(p.study_group, ''), count(DISTINCT p.id), count(a.id) FROM attempt a "
+            "FULL OUTER JOIN participant p ON p.id = a.participant GROUP BY 1 ORDER BY 1",
+            {}, [&](SQLite::Statement& row) {
+              groups.push_back({text(row.getColumn(0)), static_cast<std::uint64_t>(row.getColumn(1).getInt64()),
+                                static_cast<std::uint64_t>(row.getColumn(2).getInt64())});
+            });
     return groups;
   });
 }
@@ -297,6 +233,48 @@ std::string comparabilityWords(const std::string& key) {
                                                 : fmt::format("simulation {}, step results {}", part[2], part[3]);
   return fmt::format("task {}{}, device {}, {}, {}, mode {}", rest.substr(0, slash), major == "0" ? "" : " " + major,
                      part[0], part[1] == "-" ? "no calibration" : "calibration " + part[1], simulation, part[4]);
+}
+
+namespace {
+
+void addFields(Fields& fields, const DeclaredTable& table, const void* row) {
+  for (const DeclaredColumn& c : table.columns) {
+    if (c.member.value != nullptr) fields.emplace_back(*c.listed != '\0' ? c.listed : c.name, c.member.value(row));
+  }
+}
+
+}  // namespace
+
+Fields fieldsOf(const AttemptRow& a) {
+  Fields fields;
+  addFields(fields, attemptTable(), static_cast<const AttemptRecord*>(&a));
+  addFields(fields, recordingTable(), static_cast<const AttemptRecord*>(&a));
+  addFields(fields, verificationTable(), &a.verification);
+  const Fields others{{"participant", a.participant},
+                      {"group", a.group},
+                      {"arm", a.arm},
+                      {"site", a.site},
+                      {"seconds", static_cast<double>(a.steps) * a.stepSeconds},
+                      {"excluded", a.excluded},
+                      {"exclusion_reason", a.exclusionReason},
+                      {"withdrawn", a.withdrawn},
+                      {"tags", a.tags}};
+  fields.insert(fields.end(), others.begin(), others.end());
+  return fields;
+}
+
+Fields fieldsOf(const Participant& p) {
+  Fields fields;
+  addFields(fields, participantTable(), &p);
+  fields.emplace_back("experience", p.experience);
+  fields.emplace_back("consent", p.consent);
+  return fields;
+}
+
+Fields fieldsOf(const CheckpointValue& value) {
+  Fields fields;
+  addFields(fields, checkpointValueTable(), &value);
+  return fields;
 }
 
 }  // namespace calot::analytics

@@ -12,6 +12,8 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
+#include <variant>
 #include <vector>
 
 #include "analytics/checkpoints/checkpoint.h"
@@ -43,6 +45,7 @@ struct Participant {
   std::string site;
   std::map<std::string, std::string> experience;
   std::map<std::string, std::string> consent;  ///< purpose -> date (YYYY-MM-DD)
+  bool operator==(const Participant&) const = default;
 };
 
 /// @throws Error (invalid) for an empty or malformed pseudonym, a criterion or purpose without name, or no date.
@@ -103,6 +106,16 @@ struct AttemptRow : AttemptRecord {
   std::vector<std::string> tags;  ///< words to find it by, in the order of their bytes
 };
 
+/// One value of a row in a list for people or other programs; enumerations by their words.
+using FieldValue = std::variant<std::monostate, bool, std::int64_t, std::uint64_t, double, std::string,
+                                std::vector<std::string>, std::map<std::string, std::string>>;
+using Fields = std::vector<std::pair<std::string, FieldValue>>;
+/// A row by the names that lists give its columns: those that declared_tables.h declares, then what several of them say
+/// together.
+Fields fieldsOf(const AttemptRow& attempt);
+Fields fieldsOf(const Participant& participant);
+Fields fieldsOf(const CheckpointValue& value);
+
 /// A tag is one word: 1 to 40 characters, no blank, comma or control character. @throws Error (invalid)
 void checkTag(const std::string& tag);
 
@@ -121,6 +134,8 @@ struct AttemptValue {
   CheckpointValue value;
   std::optional<ValueInterval> interval = {};  ///< of this value, where one was worked out
 };
+
+struct CohortConnection;
 
 /// One connection to a cohort database: WAL mode, foreign keys, strict tables. Two processes may write at once (the
 /// second waits). Every modifying call is one transaction, so that a killed process leaves no partial change. Not
@@ -210,8 +225,7 @@ class CohortDatabase {
   [[nodiscard]] std::vector<GroupCount> groups() const;  ///< by name
 
  private:
-  struct Storage;
-  std::unique_ptr<Storage> storage_;
+  std::unique_ptr<CohortConnection> connection_;
 };
 
 /// "touch-liver/1 device=falcon calibration=- simulation=1 results=1 mode=assessment": attempts are compared only

@@ -68,11 +68,41 @@ void readMember(const SQLite::Column& from, std::optional<T>& to) {
   if (!from.isNull()) readMember(from, to.emplace());
 }
 
+/// Values that lists show: anything but bytes.
+template <class T>
+concept Listed = std::is_arithmetic_v<T> || std::is_enum_v<T> || std::is_same_v<T, std::string> ||
+    std::is_same_v<T, std::optional<double>>;
+
+template <Listed T>
+FieldValue fieldOf(const T& value) {
+  if constexpr (std::is_same_v<T, std::optional<double>>) {
+    return value ? FieldValue(*value) : FieldValue();
+  } else if constexpr (requires { recorder::wordFor(value); }) {
+    return recorder::wordFor(value);
+  } else if constexpr (std::is_enum_v<T>) {
+    return nameOf(value);
+  } else if constexpr (std::unsigned_integral<T> && !std::is_same_v<T, bool>) {
+    return std::uint64_t{value};
+  } else {
+    return value;
+  }
+}
+
+template <class Row, auto... Path>
+constexpr auto fieldReader() -> FieldValue (*)(const void* row) {
+  if constexpr (requires(const Row& row) { fieldOf((row.*....*Path)); }) {
+    return [](const void* row) { return fieldOf((*static_cast<const Row*>(row).*....*Path)); };
+  } else {
+    return nullptr;
+  }
+}
+
 /// The member of `Row` that the path leads to: at<Row, &Row::part, &Part::member>.
 template <class Row, auto... Path>
 inline constexpr ColumnMember at{
     [](SQLite::Statement& s, int i, const void* row) { bindMember(s, i, (*static_cast<const Row*>(row).*....*Path)); },
-    [](const SQLite::Column& from, void* row) { readMember(from, (*static_cast<Row*>(row).*....*Path)); }};
+    [](const SQLite::Column& from, void* row) { readMember(from, (*static_cast<Row*>(row).*....*Path)); },
+    fieldReader<Row, Path...>()};
 
 /// An unsigned number of 64 bits as text in decimal: SQLite's integers are signed.
 template <class Row, auto Member>
@@ -81,6 +111,7 @@ inline constexpr ColumnMember digits{[](SQLite::Statement& s, int i, const void*
                                      },
                                      [](const SQLite::Column& from, void* row) {
                                        static_cast<Row*>(row)->*Member = std::strtoull(from.getText(), nullptr, 10);
-                                     }};
+                                     },
+                                     fieldReader<Row, Member>()};
 
 }  // namespace calot::analytics

@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "analytics/cohort/embedded.h"
+#include "analytics/cohort/tables.h"
 #include "recorder/base/dates.h"
 
 namespace calot::analytics {
@@ -23,32 +24,32 @@ std::string printable(std::string words) {
 
 Error databaseError(int sqliteCode, const std::string& words, const std::string& path) {
   const std::string message = printable(words);
+  const auto failure = [&](const std::string& fault) { return Error(ErrorKind::failure, Where{path}, fault); };
+  const auto damaged = [&](const std::string& fault) { return Error(ErrorKind::damaged, Where{path}, fault); };
   switch (sqliteCode & 0xFF) {
     case SQLITE_NOTADB:
-      return {ErrorKind::damaged, Where{path}, "not a cohort database (not an SQLite file)"};
+      return damaged("not a cohort database (not an SQLite file)");
     case SQLITE_CORRUPT:
-      return {ErrorKind::damaged, Where{path},
-              fmt::format("damaged database ({}); restore a copy, or assess the recordings into a new one", message)};
+      return damaged(
+          fmt::format("damaged database ({}); restore a copy, or assess the recordings into a new one", message));
     case SQLITE_BUSY:
     case SQLITE_LOCKED:
-      return {ErrorKind::failure, Where{path}, "in use by another program; try again when it has finished"};
+      return failure("in use by another program; try again when it has finished");
     case SQLITE_READONLY:
-      return {ErrorKind::failure, Where{path}, "can't be written; check the permissions of the file and its folder"};
+      return failure("can't be written; check the permissions of the file and its folder");
     case SQLITE_FULL:
-      return {ErrorKind::failure, Where{path}, "disk full; nothing was changed, free space and run again"};
+      return failure("disk full; nothing was changed, free space and run again");
     case SQLITE_IOERR:
-      return {
-          ErrorKind::failure, Where{path},
-          fmt::format("reading or writing failed ({}); nothing was changed, check the disk and run again", message)};
+      return failure(
+          fmt::format("reading or writing failed ({}); nothing was changed, check the disk and run again", message));
     case SQLITE_CANTOPEN:
     case SQLITE_PERM:
     case SQLITE_AUTH:
-      return {ErrorKind::failure, Where{path}, "can't be opened; check that the folder exists and the permissions"};
+      return failure("can't be opened; check that the folder exists and the permissions");
     case SQLITE_ERROR:
-      return {ErrorKind::damaged, Where{path},
-              fmt::format("its tables are not those of a cohort database ({})", message)};
+      return damaged(fmt::format("its tables are not those of a cohort database ({})", message));
     default:
-      return {ErrorKind::failure, Where{path}, fmt::format("database failure ({})", message)};
+      return failure(fmt::format("database failure ({})", message));
   }
 }
 
@@ -56,22 +57,18 @@ namespace {
 
 using Access = CohortDatabase::Access;
 
-/// Refuses files that SQLite would silently treat as an empty database. @returns whether the file exists.
-bool checkFile(const std::string& path, Access access) {
+/// Refuses files that SQLite would silently treat as an empty database.
+void checkFile(const std::string& path, Access access) {
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
-  const bool exists = std::filesystem::exists(status);
-  if (!exists) {
-    if (access == Access::create) return false;
-    throw Error(ErrorKind::damaged, Where{path}, "no such cohort database");
+  const auto refuse = [&](const char* fault) { throw Error(ErrorKind::damaged, Where{path}, fault); };
+  if (!std::filesystem::exists(status)) {
+    if (access != Access::create) refuse("no such cohort database");
+    return;
   }
-  if (!std::filesystem::is_regular_file(status)) {
-    throw Error(ErrorKind::damaged, Where{path}, "not a cohort database (not a file)");
-  }
-  if (access != Access::create && std::filesystem::file_size(path, error) == 0) {
-    throw Error(ErrorKind::damaged, Where{path}, "not a cohort database (empty file)");
-  }
-  return true;
+  if (!std::filesystem::is_regular_file(status)) refuse("not a cohort database (not a file)");
+  if (access != Access::create && std::filesystem::file_size(path, error) == 0)
+    refuse("not a cohort database (empty file)");
 }
 
 int pragma(SQLite::Database& db, const char* name) { return db.execAndGet(fmt::format("PRAGMA {}", name)).getInt(); }
@@ -128,7 +125,7 @@ void setWriteAheadLog(SQLite::Database& db, std::chrono::milliseconds patience) 
   }
 }
 
-/// Which schema the file has; 0 for a new one. @pre within a transaction: another process may be making the database,
+/// Schema version of the file; 0 for a new one. @pre within a transaction: another process may be making the database,
 /// and half of before and half of after would look like another program's file. @throws Error for what is not ours or
 /// is newer.
 int schemaOf(SQLite::Database& db, const std::string& path) {
@@ -158,28 +155,25 @@ void backUp(SQLite::Database& db, const std::string& path, int version) {
   const std::string fresh = fmt::format("{}.{}.part", kept, ::getpid());
   std::error_code ignored;
   fs::remove(fresh, ignored);
+  const auto failed = [&](const std::string& why, const char* advice) {
+    fs::remove(fresh, ignored);
+    return Error(ErrorKind::failure, Where{path},
+                 fmt::format("cannot be backed up before its schema is brought up to date ({}); nothing was changed{}",
+                             why, advice));
+  };
   try {
-    SQLite::Statement copy(db, "VACUUM INTO ?");
-    copy.bind(1, fresh);
-    copy.exec();
-    const int copied = pragma(*std::make_unique<SQLite::Database>(fresh, SQLite::OPEN_READONLY), "user_version");
-    if (copied != version) {  // another process has already migrated it
+    execute(db, "VACUUM INTO ?", {fresh});
+    SQLite::Database copy(fresh, SQLite::OPEN_READONLY);
+    if (pragma(copy, "user_version") != version) {  // another process has already migrated it
       fs::remove(fresh);
       return;
     }
     fs::permissions(fresh, fs::status(path).permissions());
     fs::rename(fresh, kept);
   } catch (const SQLite::Exception& error) {
-    fs::remove(fresh, ignored);
-    throw Error(ErrorKind::failure, Where{path},
-                fmt::format("cannot be backed up before its schema is brought up to date ({}); nothing was changed, "
-                            "free space beside it and run again",
-                            error.what()));
+    throw failed(error.what(), ", free space beside it and run again");
   } catch (const fs::filesystem_error& error) {
-    fs::remove(fresh, ignored);
-    throw Error(ErrorKind::failure, Where{path},
-                fmt::format("cannot be backed up before its schema is brought up to date ({}); nothing was changed",
-                            error.code().message()));
+    throw failed(error.code().message(), "");
   }
 }
 

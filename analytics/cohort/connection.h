@@ -6,6 +6,7 @@
 #include <chrono>
 #include <memory>
 #include <string>
+#include <type_traits>
 
 #include "analytics/cohort/cohort_database.h"
 #include "recorder/base/errors.h"
@@ -38,6 +39,37 @@ auto guarded(const std::string& path, Work&& work) -> decltype(work()) {
     throw databaseError(error.getErrorCode(), error.what(), path);
   }
 }
+
+/// An open cohort database. Errors of SQLite within `work` become calot::Error.
+struct CohortConnection {
+  explicit CohortConnection(const std::string& file, CohortDatabase::Access access,
+                            std::chrono::milliseconds patience = std::chrono::seconds(10))
+      : path(file), db(openCohort(file, access, patience)) {}
+
+  /// work(database).
+  template <class Work>
+  auto read(Work work) const {
+    return guarded(path, [&] { return work(*db); });
+  }
+  /// work(database) in one transaction, which an exception takes back.
+  template <class Work>
+  auto change(Work work) {
+    return read([&](SQLite::Database& database) {
+      SQLite::Transaction transaction(database, SQLite::TransactionBehavior::IMMEDIATE);
+      if constexpr (std::is_void_v<decltype(work(database))>) {
+        work(database);
+        transaction.commit();
+      } else {
+        auto result = work(database);
+        transaction.commit();
+        return result;
+      }
+    });
+  }
+
+  std::string path;
+  std::unique_ptr<SQLite::Database> db;
+};
 
 /// Now, ISO 8601 UTC in seconds: "2014-05-17T09:30:00Z".
 std::string nowUtc();

@@ -113,8 +113,8 @@ const TableOf<Participant>& participantTable() {
   using R = Participant;
   static const TableOf<R> table{{"participant",
                                  {{"id", integerOrNull, "number of the row, which other tables name"},
-                                  {"pseudonym", sqlText, "pseudonym", at<R, &R::pseudonym>},
-                                  {"study_group", sqlText, "study group", at<R, &R::group>, "", "", "empty"},
+                                  {"pseudonym", sqlText, "pseudonym", at<R, &R::pseudonym>, "", "", "", "participant"},
+                                  {"study_group", sqlText, "study group", at<R, &R::group>, "", "", "empty", "group"},
                                   {"arm", sqlText, "study arm", at<R, &R::arm>, "", "", "empty"},
                                   {"site", sqlText, "where the participant belongs", at<R, &R::site>, "", "", "empty"},
                                   {"created_utc", sqlText, "when the row was made", {}, "", utc}}}};
@@ -126,13 +126,14 @@ const TableOf<AttemptRecord>& attemptTable() {
   static const TableOf<R> table{
       {"attempt",
        {{"id", integerOrNull, "number of the row, which other tables name"},
-        {"uuid", sqlText, "identity of the attempt", at<R, &R::uuid>},
-        {"parent_uuid", sqlText, "attempt that it branches from", at<R, &R::parent>, "", "", "empty"},
+        {"uuid", sqlText, "identity of the attempt", at<R, &R::uuid>, "", "", "", "attempt"},
+        {"parent_uuid", sqlText, "attempt that it branches from", at<R, &R::parent>, "", "", "empty", "parent"},
         {"participant", integerOrNull, "row of participant", {}, "", "", "empty"},
         {"scene", sqlText, "scene, or declared task of imported motion", at<R, &R::scene>},
         {"scene_major", sqlInteger, "version of the scene that comparison asks for", at<R, &R::sceneMajor>},
         {"scene_minor", sqlInteger, "version of the scene within it", at<R, &R::sceneMinor>},
-        {"operator_kind", sqlInteger, "who acted", at<R, &R::operatorKind>, "", "0 human, 1 kinematics, 2 performer"},
+        {"operator_kind", sqlInteger, "who acted", at<R, &R::operatorKind>, "", "0 human, 1 kinematics, 2 performer",
+         "", "operator"},
         {"profile", sqlText, "profile of a performer", at<R, &R::profile>, "", "", "empty"},
         {"profile_version", sqlText, "version of the profile", at<R, &R::profileVersion>, "", "", "empty"},
         {"mode", sqlInteger, "mode", at<R, &R::mode>, "", "0 practice, 1 assessment"},
@@ -145,7 +146,8 @@ const TableOf<AttemptRecord>& attemptTable() {
         {"calibration", sqlText, "calibration of the device", at<R, &R::calibration>, "", "", "empty"},
         {"simulation_version", sqlInteger, "version of the simulation; 0: motion without a scene",
          at<R, &R::simulationVersion>},
-        {"comparability_key", sqlText, "attempts are compared within one key only", at<R, &R::comparabilityKey>},
+        {"comparability_key", sqlText, "attempts are compared within one key only", at<R, &R::comparabilityKey>, "", "",
+         "", "key"},
         {"synthetic", sqlInteger, "made by a performer", at<R, &R::synthetic>, "", yesNo},
         {"imported_utc", sqlText, "when it first came in", {}, "", utc},
         {"station", sqlText, "where it was recorded", at<R, &R::station>, "", "", "empty"}}}};
@@ -157,7 +159,7 @@ const TableOf<AttemptRecord>& recordingTable() {
   static const TableOf<R> table{
       {"recording",
        {{"attempt", integerOrNull, "row of attempt"},
-        {"file_name", sqlText, "name of the recording's file, without folder", at<R, &R::fileName>},
+        {"file_name", sqlText, "name of the recording's file, without folder", at<R, &R::fileName>, "", "", "", "file"},
         {"chain_head", sqlBlob, "BLAKE2b-256 head of the content chain, as seen at import", at<R, &R::chainHead>},
         {"steps", sqlInteger, "number of steps", at<R, &R::steps>},
         {"step_seconds", sqlReal, "length of a step", at<R, &R::stepSeconds>, "s", "more than 0"},
@@ -182,8 +184,9 @@ const TableOf<Verification>& verificationTable() {
        {{"attempt", integerOrNull, "row of attempt"},
         {"verdict", sqlInteger, "what the newest replay said", at<R, &R::verdict>, "",
          "0 verified, 1 diverged, 2 damaged, 3 not checkable here, 4 not checked"},
-        {"detail", sqlText, "where it diverged, or what is damaged", at<R, &R::text>, "", "", "empty"},
-        {"software", sqlText, "what judged", at<R, &R::software>, "", "", "empty"},
+        {"detail", sqlText, "where it diverged, or what is damaged", at<R, &R::text>, "", "", "empty",
+         "verdict_detail"},
+        {"software", sqlText, "what judged", at<R, &R::software>, "", "", "empty", "verdict_software"},
         {"verified_utc", sqlText, "when", {}, "", utc}}}};
   return table;
 }

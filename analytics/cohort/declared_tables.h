@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The tables of a cohort database, each column declared once: name, SQLite's type, meaning, unit, values, and the
-// member of the struct that holds it. schemas/cohort/*.sql makes them; statements (row_statements.h), `cohort check`,
+// member of the struct that holds it. schemas/cohort/*.sql makes them; statements (tables.h), `cohort check`, lists,
 // codebook and exports follow from the declaration. A new column takes its line here, its member and a migration.
 #pragma once
 
@@ -9,16 +9,17 @@
 #include <string_view>
 #include <vector>
 
-#include "analytics/cohort/analysis_locks.h"
 #include "analytics/cohort/assessment_database.h"
+#include "analytics/cohort/blinding.h"
 #include "analytics/cohort/registers.h"
 
 namespace calot::analytics {
 
-/// Moves one member between its struct and a statement; empty where no struct holds the column.
+/// Moves one member between its struct and a statement or a list; empty where no struct holds the column.
 struct ColumnMember {
   void (*bind)(SQLite::Statement& statement, int index, const void* row) = nullptr;
   void (*read)(const SQLite::Column& from, void* row) = nullptr;
+  FieldValue (*value)(const void* row) = nullptr;
 };
 
 struct DeclaredColumn {
@@ -29,6 +30,7 @@ struct DeclaredColumn {
   const char* unit = "";
   const char* allowed = "";  ///< empty: any value of the type
   const char* missing = "";  ///< what stands where there is none; empty: never missing
+  const char* listed = "";   ///< its name in lists (fieldsOf()); empty: `name`
 };
 
 struct DeclaredTable {

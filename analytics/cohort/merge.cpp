@@ -8,7 +8,6 @@
 #include <map>
 #include <set>
 
-#include "analytics/cohort/any_table.h"
 #include "analytics/cohort/connection.h"
 #include "analytics/cohort/tables.h"
 #include "analytics/cohort/withdraw.h"
@@ -22,7 +21,7 @@ using namespace tables;
 bool ofAttempts(const std::string& table) {
   static const std::set<std::string> names{"attempt",      "recording",        "recording_signature",
                                            "verification", "checkpoint_value", "value_interval"};
-  return names.count(table) > 0;
+  return names.contains(table);
 }
 
 /// Tables of one cohort as it was: the merged one is another, with a mask and a lock of its own.
@@ -31,13 +30,11 @@ bool belongsToOneCohort(const std::string& table) { return table == "group_mask"
 /// Tables whose empty entries say "not known".
 bool mayBeFilled(const std::string& table) {
   static const std::set<std::string> names{"participant", "site", "arm", "station", "cohort"};
-  return names.count(table) > 0;
+  return names.contains(table);
 }
 
 /// Timestamps do not count as content, unless a row has no other key.
-bool isTime(const std::string& column) {
-  return column.size() > 4 && column.compare(column.size() - 4, 4, "_utc") == 0;
-}
+bool isTime(const std::string& column) { return column.ends_with("_utc"); }
 
 class Merge {
  public:
@@ -62,7 +59,7 @@ class Merge {
   void findSkipped() {
     std::map<std::string, std::pair<int, int>> attemptsOf;  // pseudonym -> all, withdrawn
     for (const AttemptRow& a : theirs_) {
-      const bool gone = isWithdrawn(into_, a.uuid) || (!a.parent.empty() && isWithdrawn(into_, a.parent));
+      const bool gone = isGone(a);
       if (gone) skippedWords_.push_back(a.uuid);
       if (a.participant.empty()) continue;
       ++attemptsOf[a.participant].first;
@@ -83,15 +80,19 @@ class Merge {
     }
   }
 
+  bool isGone(const AttemptRow& a) const {
+    return isWithdrawn(into_, a.uuid) || (!a.parent.empty() && isWithdrawn(into_, a.parent));
+  }
+
   void mergeAttempts() {
     std::map<std::string, std::int64_t> number;
     guarded(fromPath_, [&] {
-      SQLite::Statement ids(from_, "SELECT uuid, id FROM attempt");
-      while (ids.executeStep()) number[text(ids.getColumn(0))] = ids.getColumn(1).getInt64();
+      eachRow(from_, "SELECT uuid, id FROM attempt", {},
+              [&](SQLite::Statement& row) { number[text(row.getColumn(0))] = row.getColumn(1).getInt64(); });
     });
     for (const AttemptRow& a : theirs_) {
       checkAttempt(a, fromPath_);
-      if (isWithdrawn(into_, a.uuid) || (!a.parent.empty() && isWithdrawn(into_, a.parent))) continue;
+      if (isGone(a)) continue;
       try {
         mergeAttempt(a, number[a.uuid]);
       } catch (const Error& error) {
@@ -166,9 +167,10 @@ class Merge {
   }
 
   void mergeRow(const TableFacts& table, const Row& row) {
-    const std::optional<Row> here = find(table, row);
+    const std::vector<Row> found = readRows(into_, table, whereKey(table), keyOf(table, row));
+    const Row* here = found.empty() ? nullptr : &found.front();
     const std::int64_t there = table.number.empty() ? 0 : numberOf(row.at(table.number));
-    if (!here) {
+    if (here == nullptr) {
       const std::int64_t number = insert(table, row);
       if (!table.number.empty()) numbers_[table.name][there] = number;
       ++(table.name == "participant" ? result_.participants : table.name == "audit" ? result_.audit : result_.rows);
@@ -196,9 +198,9 @@ class Merge {
       if (key.column != column || !std::holds_alternative<std::int64_t>(cell)) continue;
       const char* word = key.parent == "attempt" ? "uuid" : key.parent == "participant" ? "pseudonym" : nullptr;
       if (word == nullptr) continue;
-      SQLite::Statement find(into_, fmt::format("SELECT {} FROM {} WHERE id = ?", word, quotedName(key.parent)));
-      bindCell(find, 1, cell);
-      if (find.executeStep()) return find.getColumn(0).getString();
+      const auto names =
+          firstTexts(into_, fmt::format("SELECT {} FROM {} WHERE id = ?", word, quotedName(key.parent)), {cell});
+      if (!names.empty()) return names.front();
     }
     return shownCell(cell);
   }
@@ -209,44 +211,33 @@ class Merge {
     return joined(tests, " AND ");
   }
 
-  std::optional<Row> find(const TableFacts& table, const Row& row) {
-    std::vector<std::string> columns;
-    for (const ColumnFacts& c : table.columns) columns.push_back(quotedName(c.name));
-    SQLite::Statement look(into_, fmt::format("SELECT {} FROM {} WHERE {} LIMIT 1", joined(columns, ", "),
-                                              quotedName(table.name), whereKey(table)));
-    int at = 1;
-    for (const std::string& k : table.key) bindCell(look, at++, row.at(k));
-    if (!look.executeStep()) return std::nullopt;
-    Row found;
-    for (std::size_t c = 0; c < table.columns.size(); ++c)
-      found[table.columns[c].name] = cellOf(look.getColumn(static_cast<int>(c)));
-    return found;
+  static std::vector<Cell> keyOf(const TableFacts& table, const Row& row) {
+    std::vector<Cell> key;
+    for (const std::string& k : table.key) key.push_back(row.at(k));
+    return key;
   }
 
   std::int64_t insert(const TableFacts& table, const Row& row) {
-    std::vector<std::string> columns, marks;
+    std::vector<std::string> columns;
+    std::vector<Cell> cells;
     for (const ColumnFacts& c : table.columns) {
       if (c.name == table.number) continue;
       columns.push_back(quotedName(c.name));
-      marks.emplace_back("?");
+      cells.push_back(row.at(c.name));
     }
-    SQLite::Statement put(into_, fmt::format("INSERT INTO {} ({}) VALUES ({})", quotedName(table.name),
-                                             joined(columns, ", "), joined(marks, ", ")));
-    int at = 1;
-    for (const ColumnFacts& c : table.columns) {
-      if (c.name != table.number) bindCell(put, at++, row.at(c.name));
-    }
-    put.exec();
+    execute(into_,
+            fmt::format("INSERT INTO {} ({}) VALUES ({})", quotedName(table.name), joined(columns, ", "),
+                        joined(std::vector<std::string>(cells.size(), "?"), ", ")),
+            cells);
     return into_.getLastInsertRowid();
   }
 
   void fill(const TableFacts& table, const Row& row, const std::string& column) {
-    SQLite::Statement put(into_, fmt::format("UPDATE {} SET {} = ? WHERE {}", quotedName(table.name),
-                                             quotedName(column), whereKey(table)));
-    bindCell(put, 1, row.at(column));
-    int at = 2;
-    for (const std::string& k : table.key) bindCell(put, at++, row.at(k));
-    put.exec();
+    std::vector<Cell> cells = keyOf(table, row);
+    cells.insert(cells.begin(), row.at(column));
+    execute(into_,
+            fmt::format("UPDATE {} SET {} = ? WHERE {}", quotedName(table.name), quotedName(column), whereKey(table)),
+            cells);
     ++result_.filled;
   }
 
@@ -265,16 +256,14 @@ CohortMerge mergeCohorts(const std::string& into, const std::string& from) {
   std::error_code ignored;
   if (std::filesystem::equivalent(into, from, ignored))
     throw Error(ErrorKind::invalid, Where{from}, fmt::format("is {}; name two databases", into));
-  constexpr auto patience = std::chrono::seconds(10);
-  const auto source = guarded(from, [&] { return openCohort(from, CohortDatabase::Access::read, patience); });
-  return guarded(into, [&] {
-    const auto target = openCohort(into, CohortDatabase::Access::create, patience);
-    SQLite::Transaction reading(*source);  // one moment of it
-    SQLite::Transaction transaction(*target, SQLite::TransactionBehavior::IMMEDIATE);
-    CohortMerge merge = Merge(*target, into, *source, from).run();
+  const CohortConnection source(from, CohortDatabase::Access::read);
+  return CohortConnection(into, CohortDatabase::Access::create).read([&](SQLite::Database& db) {
+    const SQLite::Transaction reading(*source.db);  // one moment of it
+    SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
+    CohortMerge merge = Merge(db, into, *source.db, from).run();
     if (!merge.conflicts.empty()) return merge;  // rolled back
     if (merge.changed()) {
-      audit(*target, "cohort-merge", std::filesystem::path(from).filename().string(),
+      audit(db, "cohort-merge", std::filesystem::path(from).filename().string(),
             fmt::format("{} participants, {} attempts, {} extended, {} other rows, {} filled", merge.participants,
                         merge.attempts, merge.extended, merge.rows, merge.filled));
     }

@@ -2,11 +2,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <map>
 #include <utility>
 
-#include "analytics/cohort/row_statements.h"
 #include "analytics/cohort/tables.h"
 #include "recorder/base/text_words.h"
 
@@ -16,6 +14,11 @@ using namespace tables;
 
 namespace {
 
+/// -1: there is none of its name and version.
+std::int64_t normId(SQLite::Database& db, const Norm& norm) {
+  return firstNumber(db, "SELECT id FROM norm WHERE name = ? AND version = ?", {norm.name, norm.version});
+}
+
 void writeCheckpoints(SQLite::Database& db, std::int64_t id, const Norm& norm) {
   InsertOf put(db, normCheckpointTable(), {"norm", "position"});
   for (std::size_t i = 0; i < norm.checkpoints.size(); ++i)
@@ -23,25 +26,19 @@ void writeCheckpoints(SQLite::Database& db, std::int64_t id, const Norm& norm) {
 }
 
 void writeMembers(SQLite::Database& db, const std::string& path, std::int64_t id, const Norm& norm) {
-  SQLite::Statement put(db, "INSERT INTO norm_member VALUES (?, ?, ?)");
-  SQLite::Statement value(db, "INSERT INTO norm_value VALUES (?, ?, ?, ?, ?)");
   for (const NormMember& m : norm.members) {
-    const std::int64_t attempt = attemptId(db, m.attempt);
-    if (attempt < 0) throw Error(ErrorKind::refused, Where{path}, fmt::format("no attempt {}", m.attempt));
-    put.reset();
-    SQLite::bind(put, id, attempt, m.competent ? 1 : 0);
-    put.exec();
+    const std::int64_t attempt = knownAttempt(db, path, m.attempt);
+    execute(db, "INSERT INTO norm_member VALUES (?, ?, ?)", {id, attempt, m.competent ? 1 : 0});
     for (std::size_t c = 0; c < m.values.size(); ++c) {
       if (!m.values[c]) continue;
-      value.reset();
-      SQLite::bind(value, id, attempt, norm.checkpoints[c].checkpoint, norm.checkpoints[c].subject, *m.values[c]);
-      value.exec();
+      execute(db, "INSERT INTO norm_value VALUES (?, ?, ?, ?, ?)",
+              {id, attempt, norm.checkpoints[c].checkpoint, norm.checkpoints[c].subject, *m.values[c]});
     }
   }
 }
 
 void readCheckpoints(SQLite::Database& db, std::int64_t id, Norm& norm) {
-  norm.checkpoints = selectRows(db, normCheckpointTable(), "WHERE norm = ? ORDER BY position", id);
+  norm.checkpoints = selectRows(db, normCheckpointTable(), "WHERE norm = ? ORDER BY position", {id});
   const std::vector<ExternalMetric> metrics = readExternalMetrics(db);
   for (NormCheckpoint& c : norm.checkpoints) {
     const auto metric = std::find_if(metrics.begin(), metrics.end(), [&](const ExternalMetric& m) {
@@ -55,22 +52,19 @@ void readMembers(SQLite::Database& db, std::int64_t id, Norm& norm) {
   std::map<std::pair<std::string, std::string>, std::size_t> position;
   for (std::size_t c = 0; c < norm.checkpoints.size(); ++c)
     position[{norm.checkpoints[c].checkpoint, norm.checkpoints[c].subject}] = c;
-  SQLite::Statement select(
-      db,
-      "SELECT a.uuid, m.competent, v.checkpoint, v.subject, v.value FROM norm_member m JOIN attempt "
-      "a ON a.id = m.attempt LEFT JOIN norm_value v ON v.norm = m.norm AND v.attempt = m.attempt "
-      "WHERE m.norm = ? ORDER BY a.start_utc, a.uuid");
-  select.bind(1, id);
-  while (select.executeStep()) {
-    const std::string attempt = text(select.getColumn(0));
-    if (norm.members.empty() || norm.members.back().attempt != attempt) {
-      norm.members.push_back(
-          {attempt, select.getColumn(1).getInt() != 0, std::vector<std::optional<double>>(norm.checkpoints.size())});
-    }
-    if (select.getColumn(2).isNull()) continue;
-    const auto at = position.find({text(select.getColumn(2)), text(select.getColumn(3))});
-    if (at != position.end()) norm.members.back().values[at->second] = select.getColumn(4).getDouble();
-  }
+  eachRow(db,
+          "SELECT a.uuid, m.competent, v.checkpoint, v.subject, v.value FROM norm_member m JOIN attempt a ON a.id = "
+          "m.attempt LEFT JOIN norm_value v ON v.norm = m.norm AND v.attempt = m.attempt WHERE m.norm = ? "
+          "ORDER BY a.start_utc, a.uuid",
+          {id}, [&](SQLite::Statement& row) {
+            const std::string attempt = text(row.getColumn(0));
+            if (norm.members.empty() || norm.members.back().attempt != attempt) {
+              norm.members.push_back({attempt, row.getColumn(1).getInt() != 0,
+                                      std::vector<std::optional<double>>(norm.checkpoints.size())});
+            }
+            const auto at = position.find({text(row.getColumn(2)), text(row.getColumn(3))});
+            if (at != position.end()) norm.members.back().values[at->second] = row.getColumn(4).getDouble();
+          });
 }
 
 }  // namespace
@@ -78,44 +72,30 @@ void readMembers(SQLite::Database& db, std::int64_t id, Norm& norm) {
 std::uint32_t AssessmentDatabase::storeNorm(const Norm& norm) {
   if (norm.by.empty()) throw Error(ErrorKind::invalid, "norm: name who makes it");
   checkPseudonym(norm.name);
-  return guarded(storage_->path, [&] {
-    SQLite::Database& db = *storage_->db;
-    SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
-    SQLite::Statement newest(db, "SELECT coalesce(max(version), 0) FROM norm WHERE name = ?");
-    newest.bind(1, norm.name);
-    newest.executeStep();
-    const std::uint32_t version = newest.getColumn(0).getUInt() + 1;
-    newest.reset();
+  return connection_->change([&](SQLite::Database& db) {
     Norm made = norm;
-    made.version = version;
+    made.version = static_cast<std::uint32_t>(
+        firstNumber(db, "SELECT coalesce(max(version), 0) + 1 FROM norm WHERE name = ?", {norm.name}));
     made.membersMade = norm.members.size();
     made.createdUtc = nowUtc();
     InsertOf(db, normTable())(made);
     const std::int64_t id = db.getLastInsertRowid();
     writeCheckpoints(db, id, norm);
-    writeMembers(db, storage_->path, id, norm);
-    audit(db, "norm-create", fmt::format("{} {}", norm.name, version),
+    writeMembers(db, connection_->path, id, norm);
+    audit(db, "norm-create", fmt::format("{} {}", norm.name, made.version),
           fmt::format("{} members, {} (by {})", norm.members.size(), norm.judgedBy, norm.by));
-    transaction.commit();
-    return version;
+    return made.version;
   });
 }
 
 std::vector<Norm> AssessmentDatabase::norms() const {
-  return guarded(storage_->path, [&] {
-    SQLite::Database& db = *storage_->db;
-    SQLite::Statement select(db,
-                             fmt::format("SELECT id, {} FROM norm ORDER BY name, version", memberColumns(normTable())));
-    std::vector<Norm> norms;
-    while (select.executeStep()) {
-      const std::int64_t id = select.getColumn(0).getInt64();
-      Norm norm;
-      int c = 1;
-      readMembers(normTable(), select, c, norm);
+  return connection_->read([](SQLite::Database& db) {
+    std::vector<Norm> norms = selectRows(db, normTable(), "ORDER BY name, version");
+    for (Norm& norm : norms) {
+      const std::int64_t id = normId(db, norm);
       readCheckpoints(db, id, norm);
       readMembers(db, id, norm);
-      norm.evidence = selectRows(db, normEvidenceTable(), "WHERE norm = ? ORDER BY id", id);
-      norms.push_back(std::move(norm));
+      norm.evidence = selectRows(db, normEvidenceTable(), "WHERE norm = ? ORDER BY id", {id});
     }
     return norms;
   });
@@ -129,7 +109,7 @@ Norm AssessmentDatabase::norm(const std::string& name, std::uint32_t version) co
     if (norm.name == name && (version == 0 || norm.version == version)) found = std::move(norm);
   }
   if (found) return std::move(*found);
-  throw Error(ErrorKind::refused, Where{storage_->path},
+  throw Error(ErrorKind::refused, Where{connection_->path},
               fmt::format("no norm \"{}\"{} (there are: {})", recorder::shown(name),
                           version == 0 ? "" : fmt::format(" version {}", version), known.empty() ? "none" : known));
 }
@@ -137,20 +117,17 @@ Norm AssessmentDatabase::norm(const std::string& name, std::uint32_t version) co
 void AssessmentDatabase::attachEvidence(const Norm& norm, const NormEvidence& evidence) {
   if (evidence.statement.empty()) throw Error(ErrorKind::invalid, "norm: say what the evidence shows");
   if (evidence.by.empty()) throw Error(ErrorKind::invalid, "norm: name who attaches the evidence");
-  guarded(storage_->path, [&] {
-    SQLite::Database& db = *storage_->db;
-    SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
-    SQLite::Statement find(db, "SELECT id FROM norm WHERE name = ? AND version = ?");
-    SQLite::bind(find, norm.name, norm.version);
-    if (!find.executeStep())
-      throw Error(ErrorKind::refused, Where{storage_->path},
+  connection_->change([&](SQLite::Database& db) {
+    const std::int64_t id = normId(db, norm);
+    if (id < 0) {
+      throw Error(ErrorKind::refused, Where{connection_->path},
                   fmt::format("no norm \"{}\" version {}", norm.name, norm.version));
+    }
     NormEvidence attached = evidence;
     attached.attachedUtc = nowUtc();
-    InsertOf(db, normEvidenceTable(), {"norm"})(attached, {find.getColumn(0).getInt64()});
+    InsertOf(db, normEvidenceTable(), {"norm"})(attached, {id});
     audit(db, "norm-evidence", fmt::format("{} {}", norm.name, norm.version),
           fmt::format("{} {} (by {})", evidence.fileName, evidence.sha256, evidence.by));
-    transaction.commit();
   });
 }
 

@@ -4,10 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstring>
 
 #include "analytics/cohort/connection.h"
-#include "analytics/cohort/row_statements.h"
 #include "analytics/cohort/tables.h"
 
 namespace calot::analytics {
@@ -15,39 +13,21 @@ namespace {
 
 using namespace tables;
 
-constexpr auto patience = std::chrono::seconds(10);
-
-void checkName(const char* what, const std::string& name) {
-  const auto control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; };
-  if (name.empty() || name.size() > 64 || name.front() == ' ' || name.back() == ' ' ||
-      std::any_of(name.begin(), name.end(), control)) {
-    throw Error(ErrorKind::invalid,
-                fmt::format("{}: a name has 1 to 64 characters, no control characters and no blank at its ends", what));
-  }
-}
-
 /// Adds a name to a table, and its note where one is given. @returns whether anything changed
 bool put(SQLite::Database& db, const char* table, const std::string& name, const std::optional<std::string>& note) {
-  SQLite::Statement add(db, fmt::format("INSERT INTO {} (name) VALUES (?) ON CONFLICT DO NOTHING", table));
-  add.bind(1, name);
-  bool changed = add.exec() > 0;
-  if (note) {
-    SQLite::Statement set(db, fmt::format("UPDATE {} SET note = ?1 WHERE name = ?2 AND note <> ?1", table));
-    SQLite::bind(set, *note, name);
-    changed = set.exec() > 0 || changed;
-  }
-  return changed;
+  const bool added =
+      execute(db, fmt::format("INSERT INTO {} (name) VALUES (?) ON CONFLICT DO NOTHING", table), {name}) > 0;
+  if (!note) return added;
+  return execute(db, fmt::format("UPDATE {} SET note = ?1 WHERE name = ?2 AND note <> ?1", table), {*note, name}) > 0 ||
+         added;
 }
 
 template <class Work>
 void change(const std::string& path, const char* kind, const std::string& name, Work work) {
-  checkName(kind, name);
-  guarded(path, [&] {
-    const auto db = openCohort(path, CohortDatabase::Access::create, patience);
-    SQLite::Transaction transaction(*db, SQLite::TransactionBehavior::IMMEDIATE);
+  checkName(fmt::format("{}: a name", kind), name);
+  CohortConnection(path, CohortDatabase::Access::create).change([&](SQLite::Database& db) {
     std::string detail;
-    if (work(*db, detail)) audit(*db, fmt::format("{}-set", kind), name, detail);
-    transaction.commit();
+    if (work(db, detail)) audit(db, fmt::format("{}-set", kind), name, detail);
   });
 }
 
@@ -63,40 +43,29 @@ void setArm(const std::string& path, const std::string& name, const std::optiona
 
 void setStation(const std::string& path, const std::string& name, const std::optional<std::string>& site,
                 const std::optional<PublicKey>& key, const std::optional<std::string>& note) {
-  if (site && !site->empty()) checkName("site", *site);
+  if (site && !site->empty()) checkName("site: a name", *site);
   change(path, "station", name, [&](SQLite::Database& db, std::string& detail) {
     bool changed = put(db, "station", name, note);
     if (site) {
       if (!site->empty()) put(db, "site", *site, {});
-      SQLite::Statement set(db, "UPDATE station SET site = ?1 WHERE name = ?2 AND site <> ?1");
-      SQLite::bind(set, *site, name);
-      if (set.exec() > 0) {
+      if (execute(db, "UPDATE station SET site = ?1 WHERE name = ?2 AND site <> ?1", {*site, name}) > 0) {
         changed = true;
         detail += fmt::format("site \"{}\"; ", *site);
       }
     }
-    if (key) {
-      SQLite::Statement known(db, "SELECT public_key FROM station WHERE name = ?");
-      known.bind(1, name);
-      known.executeStep();
-      const SQLite::Column column = known.getColumn(0);
-      const bool there = !column.isNull();
-      if (there && std::memcmp(column.getBlob(), key->data(), key->size()) != 0) {
-        throw Error(ErrorKind::refused, Where{path},
-                    fmt::format("station \"{}\" has another key already; a station with a new key needs a new name, so "
-                                "that old signatures keep their meaning",
-                                name));
-      }
-      if (!there) {
-        SQLite::Statement set(db, "UPDATE station SET public_key = ? WHERE name = ?");
-        set.bind(1, key->data(), static_cast<int>(key->size()));
-        set.bind(2, name);
-        set.exec();
-        changed = true;
-        detail += "key registered; ";
-      }
+    if (!key) return changed;
+    const Cell wanted = blobOf(*key),
+               known = firstColumn(db, "SELECT public_key FROM station WHERE name = ?", {name}).at(0);
+    if (known == wanted) return changed;
+    if (!isEmpty(known)) {
+      throw Error(ErrorKind::refused, Where{path},
+                  fmt::format("station \"{}\" has another key already; a station with a new key needs a new name, so "
+                              "that old signatures keep their meaning",
+                              name));
     }
-    return changed;
+    execute(db, "UPDATE station SET public_key = ? WHERE name = ?", {wanted, name});
+    detail += "key registered; ";
+    return true;
   });
 }
 
@@ -108,9 +77,7 @@ void setCohort(const std::string& path, const std::string& name, const std::opti
       for (const std::string& pseudonym : who) {
         const std::int64_t id = participantId(db, pseudonym);
         if (id < 0) throw Error(ErrorKind::refused, Where{path}, fmt::format("no participant \"{}\"", pseudonym));
-        SQLite::Statement one(db, sql);
-        SQLite::bind(one, name, id);
-        if (one.exec() == 0) continue;
+        if (execute(db, sql, {name, id}) == 0) continue;
         changed = true;
         detail += fmt::format("{} {}; ", word, pseudonym);
       }
@@ -122,26 +89,24 @@ void setCohort(const std::string& path, const std::string& name, const std::opti
 }
 
 Registers readRegisters(const std::string& path) {
-  return guarded(path, [&] {
-    const auto handle = openCohort(path, CohortDatabase::Access::read, patience);
-    SQLite::Database& db = *handle;
+  return CohortConnection(path, CohortDatabase::Access::read).read([](SQLite::Database& db) {
     Registers r;
-    const auto named = [&](const char* sql, std::vector<Named>& to) {
-      SQLite::Statement read(db, sql);
-      while (read.executeStep()) to.push_back({text(read.getColumn(0)), text(read.getColumn(1))});
+    const auto named = [&](const char* table, auto& to) {
+      eachRow(db, fmt::format("SELECT name, note FROM {} ORDER BY name", table), {}, [&](SQLite::Statement& row) {
+        auto& added = to.emplace_back();
+        added.name = text(row.getColumn(0));
+        added.note = text(row.getColumn(1));
+      });
     };
-    named("SELECT name, note FROM site ORDER BY name", r.sites);
-    named("SELECT name, note FROM arm ORDER BY name", r.arms);
+    named("site", r.sites);
+    named("arm", r.arms);
+    named("cohort", r.cohorts);
     r.stations = selectRows(db, stationTable(), "ORDER BY name");
-    SQLite::Statement cohorts(db, "SELECT name, note FROM cohort ORDER BY name");
-    while (cohorts.executeStep()) r.cohorts.push_back({text(cohorts.getColumn(0)), text(cohorts.getColumn(1)), {}});
-    SQLite::Statement members(db,
-                              "SELECT p.pseudonym FROM cohort_participant c JOIN participant p ON p.id = "
-                              "c.participant WHERE c.cohort = ? ORDER BY 1");
     for (NamedCohort& cohort : r.cohorts) {
-      members.reset();
-      members.bind(1, cohort.name);
-      while (members.executeStep()) cohort.participants.push_back(text(members.getColumn(0)));
+      cohort.participants = firstTexts(db,
+                                       "SELECT p.pseudonym FROM cohort_participant c JOIN participant p ON p.id = "
+                                       "c.participant WHERE c.cohort = ? ORDER BY 1",
+                                       {cohort.name});
     }
     return r;
   });

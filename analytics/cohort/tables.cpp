@@ -1,72 +1,226 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Rows of participants and of the audit trail.
+// Any table; rows of participants and of the audit trail.
 
 #include "analytics/cohort/tables.h"
-#include "analytics/cohort/row_statements.h"
 
 #include <fmt/format.h>
 #include <algorithm>
-#include <chrono>
+#include <set>
 
 #include "analytics/cohort/connection.h"
+#include "recorder/base/dates.h"
+
+namespace calot::analytics {
+namespace {
+
+TableFacts factsOf(SQLite::Database& db, const std::string& name) {
+  TableFacts t;
+  t.name = name;
+  eachRow(db, "SELECT name, type FROM pragma_table_info(?) ORDER BY cid", {name}, [&](SQLite::Statement& row) {
+    t.columns.push_back({row.getColumn(0).getString(), row.getColumn(1).getString()});
+  });
+  // A key that names no column of its parent refers to the primary key.
+  eachRow(
+      db,
+      "SELECT \"from\", \"table\", coalesce(\"to\", (SELECT name FROM pragma_table_info(\"table\") WHERE pk = 1), '') "
+      "FROM pragma_foreign_key_list(?) ORDER BY id, seq",
+      {name}, [&](SQLite::Statement& row) {
+        t.foreign.push_back({row.getColumn(0).getString(), row.getColumn(1).getString(), row.getColumn(2).getString()});
+      });
+  const auto primary = firstTexts(db, "SELECT name FROM pragma_table_info(?) WHERE pk > 0 ORDER BY pk", {name});
+  const auto isForeign = [&](const std::string& column) {
+    return std::any_of(t.foreign.begin(), t.foreign.end(), [&](const ForeignKey& k) { return k.column == column; });
+  };
+  const auto typeOf = [&](const std::string& column) {
+    const auto at = std::find_if(t.columns.begin(), t.columns.end(), [&](const auto& c) { return c.name == column; });
+    return at == t.columns.end() ? std::string() : at->type;
+  };
+  if (primary.size() == 1 && typeOf(primary[0]) == "INTEGER" && !isForeign(primary[0])) t.number = primary[0];
+  t.key = primary;
+  if (primary.empty() || !t.number.empty()) {
+    const auto unique =
+        firstTexts(db,
+                   "SELECT name FROM pragma_index_list(?) WHERE \"unique\" = 1 AND origin = 'u' AND partial = 0 "
+                   "ORDER BY seq DESC",
+                   {name});
+    t.key.clear();
+    if (!unique.empty()) {
+      t.key = firstTexts(db, "SELECT name FROM pragma_index_info(?) ORDER BY seqno", {unique.front()});
+    } else {
+      for (const ColumnFacts& c : t.columns) {
+        if (c.name != t.number) t.key.push_back(c.name);
+      }
+    }
+  }
+  return t;
+}
+
+}  // namespace
+
+std::vector<TableFacts> readTables(SQLite::Database& db) {
+  std::vector<TableFacts> rest, ordered;
+  for (const std::string& name : firstTexts(db,
+                                            "SELECT name FROM sqlite_master WHERE type = 'table' AND name NOT LIKE "
+                                            "'sqlite\\_%' ESCAPE '\\' ORDER BY name"))
+    rest.push_back(factsOf(db, name));
+  std::set<std::string> done;
+  while (!rest.empty()) {
+    const auto free = std::find_if(rest.begin(), rest.end(), [&](const TableFacts& t) {
+      return std::all_of(t.foreign.begin(), t.foreign.end(),
+                         [&](const ForeignKey& k) { return k.parent == t.name || done.count(k.parent) > 0; });
+    });
+    const auto next = free == rest.end() ? rest.begin() : free;  // tables that refer to each other: in any order
+    done.insert(next->name);
+    ordered.push_back(std::move(*next));
+    rest.erase(next);
+  }
+  return ordered;
+}
+
+std::string quotedName(const std::string& name) {
+  std::string quoted = "\"";
+  for (const char c : name) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
+}
+
+Cell cellOf(const SQLite::Column& column) {
+  if (column.isInteger()) return column.getInt64();
+  if (column.isFloat()) return column.getDouble();
+  if (column.isText()) return column.getString();
+  if (column.isBlob()) {
+    const auto* bytes = static_cast<const unsigned char*>(column.getBlob());
+    return Blob(bytes, bytes + column.getBytes());
+  }
+  return std::monostate{};
+}
+
+void bindCell(SQLite::Statement& statement, int at, const Cell& cell) {
+  if (const auto* i = std::get_if<std::int64_t>(&cell)) {
+    statement.bind(at, *i);
+  } else if (const auto* d = std::get_if<double>(&cell)) {
+    statement.bind(at, *d);
+  } else if (const auto* s = std::get_if<std::string>(&cell)) {
+    statement.bind(at, *s);
+  } else if (const auto* b = std::get_if<Blob>(&cell)) {
+    statement.bind(at, b->data(), static_cast<int>(b->size()));
+  } else {
+    statement.bind(at);
+  }
+}
+
+bool isEmpty(const Cell& cell) {
+  const auto* s = std::get_if<std::string>(&cell);
+  return std::holds_alternative<std::monostate>(cell) || (s != nullptr && s->empty());
+}
+
+std::string shownCell(const Cell& cell) {
+  if (const auto* i = std::get_if<std::int64_t>(&cell)) return fmt::format("{}", *i);
+  if (const auto* d = std::get_if<double>(&cell)) return fmt::format("{}", *d);
+  if (const auto* s = std::get_if<std::string>(&cell)) return fmt::format("\"{}\"", *s);
+  if (const auto* b = std::get_if<Blob>(&cell)) {
+    const std::string hex = hexOf(*b);
+    return hex.size() > 16 ? hex.substr(0, 16) + "..." : hex;
+  }
+  return "nothing";
+}
+
+std::string textOf(const Cell& cell) {
+  const auto* s = std::get_if<std::string>(&cell);
+  return s == nullptr ? std::string() : *s;
+}
+
+std::int64_t numberOf(const Cell& cell) {
+  const auto* i = std::get_if<std::int64_t>(&cell);
+  return i == nullptr ? 0 : *i;
+}
+
+std::string joined(const std::vector<std::string>& parts, const char* between) {
+  std::string text;
+  for (const std::string& part : parts) text += (text.empty() ? "" : between) + part;
+  return text;
+}
+
+std::string hexOf(const Blob& bytes) {
+  std::string hex;
+  for (const unsigned char byte : bytes) hex += fmt::format("{:02x}", byte);
+  return hex;
+}
+
+int execute(SQLite::Database& db, const std::string& sql, const std::vector<Cell>& parameters) {
+  SQLite::Statement statement(db, sql);
+  int at = 1;
+  for (const Cell& cell : parameters) bindCell(statement, at++, cell);
+  return statement.exec();
+}
+
+std::vector<Cell> firstColumn(SQLite::Database& db, const std::string& sql, const std::vector<Cell>& parameters) {
+  std::vector<Cell> cells;
+  eachRow(db, sql, parameters, [&](SQLite::Statement& row) { cells.push_back(cellOf(row.getColumn(0))); });
+  return cells;
+}
+
+std::vector<std::string> firstTexts(SQLite::Database& db, const std::string& sql, const std::vector<Cell>& parameters) {
+  std::vector<std::string> texts;
+  for (const Cell& cell : firstColumn(db, sql, parameters)) texts.push_back(textOf(cell));
+  return texts;
+}
+
+std::int64_t firstNumber(SQLite::Database& db, const std::string& sql, const std::vector<Cell>& parameters,
+                         std::int64_t otherwise) {
+  const std::vector<Cell> cells = firstColumn(db, sql, parameters);
+  return cells.empty() ? otherwise : numberOf(cells.front());
+}
+
+std::vector<Row> readRows(SQLite::Database& db, const TableFacts& table, const std::string& condition,
+                          const std::vector<Cell>& parameters) {
+  std::vector<std::string> columns, order;
+  for (const ColumnFacts& c : table.columns) columns.push_back(quotedName(c.name));
+  for (const std::string& k : table.key) order.push_back(quotedName(k));
+  if (!table.number.empty()) order = {quotedName(table.number)};
+  std::string query = fmt::format("SELECT {} FROM {}", joined(columns, ", "), quotedName(table.name));
+  if (!condition.empty()) query += " WHERE " + condition;
+  if (!order.empty()) query += " ORDER BY " + joined(order, ", ");
+  std::vector<Row> rows;
+  eachRow(db, query, parameters, [&](SQLite::Statement& read) {
+    Row& row = rows.emplace_back();
+    for (std::size_t c = 0; c < table.columns.size(); ++c)
+      row[table.columns[c].name] = cellOf(read.getColumn(static_cast<int>(c)));
+  });
+  return rows;
+}
+
+}  // namespace calot::analytics
 
 namespace calot::analytics::tables {
 
 void audit(SQLite::Database& db, const std::string& action, const std::string& subject, const std::string& detail) {
-  SQLite::Statement insert(db, "INSERT INTO audit (at_utc, action, subject, detail) VALUES (?, ?, ?, ?)");
-  SQLite::bind(insert, nowUtc(), action, subject, detail);
-  insert.exec();
+  execute(db, "INSERT INTO audit (at_utc, action, subject, detail) VALUES (?, ?, ?, ?)",
+          {nowUtc(), action, subject, detail});
 }
 
-void checkPseudonym(const std::string& pseudonym) {
+void checkName(const std::string& message, const std::string& name) {
   const auto control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; };
-  if (pseudonym.empty() || pseudonym.size() > 64 || pseudonym.front() == ' ' || pseudonym.back() == ' ' ||
-      std::any_of(pseudonym.begin(), pseudonym.end(), control)) {
+  if (name.empty() || name.size() > 64 || name.front() == ' ' || name.back() == ' ' ||
+      std::any_of(name.begin(), name.end(), control)) {
     throw Error(ErrorKind::invalid,
-                "participant: a pseudonym has 1 to 64 characters, no control characters and no blank at its ends");
+                message + " has 1 to 64 characters, no control characters and no blank at its ends");
   }
 }
-
-namespace {
-
-void checkDate(const std::string& purpose, const std::string& date) {
-  const auto digits = [&](std::size_t from, std::size_t n) {
-    unsigned v = 0;
-    for (std::size_t i = from; i < from + n; ++i) {
-      if (date[i] < '0' || date[i] > '9') return -1;
-      v = v * 10 + static_cast<unsigned>(date[i] - '0');
-    }
-    return static_cast<int>(v);
-  };
-  bool good = date.size() == 10 && date[4] == '-' && date[7] == '-';
-  if (good) {
-    const int y = digits(0, 4), m = digits(5, 2), d = digits(8, 2);
-    good = y > 0 && m > 0 && d > 0 &&
-           std::chrono::year_month_day(std::chrono::year(y), std::chrono::month(static_cast<unsigned>(m)),
-                                       std::chrono::day(static_cast<unsigned>(d)))
-               .ok();
-  }
-  if (!good)
-    throw Error(ErrorKind::invalid, fmt::format("consent {}: \"{}\" is not a date (YYYY-MM-DD)", purpose, date));
-}
-
-}  // namespace
 
 void checkDetails(const std::map<std::string, std::string>& experience,
                   const std::map<std::string, std::string>& consent) {
   for (const auto& item : experience) {
     if (item.first.empty()) throw Error(ErrorKind::invalid, "experience: a criterion needs a name (criterion=value)");
   }
-  for (const auto& item : consent) {
-    if (item.first.empty()) throw Error(ErrorKind::invalid, "consent: a purpose needs a name (purpose:YYYY-MM-DD)");
-    checkDate(item.first, item.second);
+  for (const auto& [purpose, date] : consent) {
+    if (purpose.empty()) throw Error(ErrorKind::invalid, "consent: a purpose needs a name (purpose:YYYY-MM-DD)");
+    if (!recorder::isDate(date + "T00:00:00Z"))
+      throw Error(ErrorKind::invalid, fmt::format("consent {}: \"{}\" is not a date (YYYY-MM-DD)", purpose, date));
   }
 }
 
 std::int64_t participantId(SQLite::Database& db, const std::string& pseudonym) {
-  SQLite::Statement find(db, "SELECT id FROM participant WHERE pseudonym = ?");
-  find.bind(1, pseudonym);
-  return find.executeStep() ? find.getColumn(0).getInt64() : -1;
+  return firstNumber(db, "SELECT id FROM participant WHERE pseudonym = ?", {pseudonym});
 }
 
 std::int64_t insertParticipant(SQLite::Database& db, const Participant& p) {
@@ -76,18 +230,87 @@ std::int64_t insertParticipant(SQLite::Database& db, const Participant& p) {
 
 void writeDetails(SQLite::Database& db, std::int64_t id, const std::map<std::string, std::string>& experience,
                   const std::map<std::string, std::string>& consent) {
-  for (const auto& item : experience) {
-    SQLite::Statement put(
-        db, "INSERT INTO participant_experience VALUES (?, ?, ?) ON CONFLICT DO UPDATE SET value = excluded.value");
-    SQLite::bind(put, id, item.first, item.second);
-    put.exec();
+  for (const auto& [criterion, value] : experience) {
+    execute(db, "INSERT INTO participant_experience VALUES (?, ?, ?) ON CONFLICT DO UPDATE SET value = excluded.value",
+            {id, criterion, value});
   }
-  for (const auto& item : consent) {
-    SQLite::Statement put(
-        db, "INSERT INTO consent VALUES (?, ?, ?) ON CONFLICT DO UPDATE SET given_on = excluded.given_on");
-    SQLite::bind(put, id, item.first, item.second);
-    put.exec();
+  for (const auto& [purpose, date] : consent) {
+    execute(db, "INSERT INTO consent VALUES (?, ?, ?) ON CONFLICT DO UPDATE SET given_on = excluded.given_on",
+            {id, purpose, date});
   }
+}
+
+std::string memberColumns(const DeclaredTable& table, const std::string& alias) {
+  std::vector<std::string> names;
+  for (const DeclaredColumn& c : table.columns) {
+    if (c.member.read != nullptr) names.push_back(alias.empty() ? c.name : alias + "." + c.name);
+  }
+  return joined(names, ", ");
+}
+
+void readMembers(const DeclaredTable& table, SQLite::Statement& from, int& column, void* row) {
+  for (const DeclaredColumn& c : table.columns) {
+    if (c.member.read != nullptr) c.member.read(from.getColumn(column++), row);
+  }
+}
+
+std::string orUpdateAllBut(const DeclaredTable& table, std::initializer_list<std::string_view> kept) {
+  std::vector<std::string> changes;
+  for (const DeclaredColumn& c : table.columns) {
+    if (std::find(kept.begin(), kept.end(), c.name) == kept.end())
+      changes.push_back(fmt::format("{0} = excluded.{0}", c.name));
+  }
+  return " ON CONFLICT DO UPDATE SET " + joined(changes, ", ");
+}
+
+namespace {
+
+std::string insertText(const DeclaredTable& table, std::initializer_list<const char*> others,
+                       const std::string& conflict) {
+  std::vector<std::string> names(others.begin(), others.end());
+  for (const DeclaredColumn& c : table.columns) {
+    if (c.member.bind != nullptr) names.emplace_back(c.name);
+  }
+  return fmt::format("INSERT INTO {} ({}) VALUES ({}){}", table.name, joined(names, ", "),
+                     joined(std::vector<std::string>(names.size(), "?"), ", "), conflict);
+}
+
+}  // namespace
+
+RowInsert::RowInsert(SQLite::Database& db, const DeclaredTable& table, std::initializer_list<const char*> others,
+                     const std::string& conflict)
+    : table_(table), statement_(db, insertText(table, others, conflict)) {}
+
+void RowInsert::insert(const void* row, const std::vector<Cell>& others) {
+  statement_.reset();
+  int at = 1;
+  for (const Cell& cell : others) bindCell(statement_, at++, cell);
+  for (const DeclaredColumn& c : table_.columns) {
+    if (c.member.bind != nullptr) c.member.bind(statement_, at++, row);
+  }
+  statement_.exec();
+}
+
+std::vector<std::string> schemaFaults(SQLite::Database& db) {
+  std::vector<std::string> faults;
+  for (const DeclaredTable* table : cohortTables()) {
+    std::map<std::string, std::string> there;
+    eachRow(db, "SELECT name, type || iif(\"notnull\", ' NOT NULL', '') FROM pragma_table_info(?)", {table->name},
+            [&](SQLite::Statement& row) { there[text(row.getColumn(0))] = text(row.getColumn(1)); });
+    for (const DeclaredColumn& c : table->columns) {
+      const auto at = there.find(c.name);
+      if (at == there.end()) {
+        faults.push_back(fmt::format("table {} has no column {}", table->name, c.name));
+        continue;
+      }
+      if (at->second != c.type)
+        faults.push_back(fmt::format("column {} of {} is {}, not {}", c.name, table->name, at->second, c.type));
+      there.erase(at);
+    }
+    for (const auto& [name, type] : there)
+      faults.push_back(fmt::format("column {} of {} is not of this schema", name, table->name));
+  }
+  return faults;
 }
 
 }  // namespace calot::analytics::tables

@@ -46,20 +46,20 @@ std::string withdraw(const std::string& path, const Withdrawal& withdrawal);
 /// Overwrites what earlier deletions left in the file and in its log, and removes the backups of migrations.
 void scrub(const std::string& path);
 
-/// Columns ("table.column") that still contain one of the words as a whole word.
-std::vector<std::string> placesNaming(const std::string& path, const std::vector<std::string>& words);
-
-/// Those of them that withdraw() will leave, tried on a copy in memory.
+/// Columns ("table.column") that will contain one of the words as a whole word after withdraw(), tried on a copy in
+/// memory; of a participant that is not known, those that do now.
 std::vector<std::string> placesLeft(const std::string& path, const Withdrawal& withdrawal,
                                     const std::vector<std::string>& words);
 
 /// Backups that migrations left beside a database, which withdraw() removes.
 std::vector<std::string> backupsOf(const std::string& path);
 
-/// Was the attempt withdrawn from this database?
+/// True if the attempt was withdrawn from this database.
 bool wasWithdrawn(const std::string& path, const std::string& uuid);
 
-/// Does the text hold the word, not as part of a longer one? Words are of letters, digits, '_' and '-'.
+/// A letter, beyond ASCII too, a digit, '_' or '-': words consist of these.
+bool isInWord(char c);
+/// True if the text holds the word, not as part of a longer one.
 bool namesWord(const std::string& text, const std::string& word);
 
 }  // namespace calot::analytics

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A cohort's attempts and values as a design needs them.
 
-#include "analytics/design/cohort_design_data.h"
-
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
@@ -10,7 +8,7 @@
 #include <map>
 #include <set>
 
-#include "analytics/checkpoints/registry.h"
+#include "analytics/checkpoints/checkpoint.h"
 #include "analytics/design/design_data.h"
 #include "analytics/report/study_population.h"
 #include "recorder/base/errors.h"
@@ -19,11 +17,167 @@
 namespace calot::analytics {
 namespace {
 
-std::string leftOutOf(const DesignData& data) {
-  std::string left;
-  for (const FlowRow& row : data.flow)
-    left += fmt::format("{}{} {}", left.empty() ? "" : ", ", row.attempts, row.reason);
-  return fmt::format(" of {} attempts{}", data.recruited, left.empty() ? "" : " (left out: " + left + ")");
+/// Facts about an analysed attempt that a design uses.
+struct Placed {
+  std::size_t person = 0, occasion = 0;
+  double order = 1.0;
+  bool completed = false;
+  double seconds = 0.0;  ///< how long it lasted
+};
+/// By uuid.
+using PlacedAttempts = std::map<std::string, Placed>;
+
+/// Place of a name, which is appended if it is new.
+std::size_t positionIn(std::vector<std::string>& names, const std::string& name) {
+  const auto at = std::find(names.begin(), names.end(), name);
+  if (at != names.end()) return static_cast<std::size_t>(at - names.begin());
+  names.push_back(name);
+  return names.size() - 1;
+}
+
+/// People, strata, occasions and counts of these attempts.
+PlacedAttempts place(DesignData& data, const std::map<std::string, std::vector<const AttemptRow*>>& people,
+                     const StudyOptions& options, const DesignChoices& choices) {
+  PlacedAttempts placed;
+  const bool byDevice = choices.design == Design::agreement && choices.against.empty();
+  data.occasionWord = byDevice ? "device" : "attempt";
+  data.numbered = !byDevice;
+  std::set<std::string> strata, devices;
+  std::size_t most = 0;
+  for (const auto& [person, list] : people) {
+    if (!choices.strata.empty()) strata.insert(stratumOf(*list[0], choices.strata));
+    for (const AttemptRow* a : list) devices.insert(a->device);
+    most = std::max(most, list.size());
+  }
+  data.strata.assign(strata.begin(), strata.end());
+  if (byDevice) data.occasions.assign(devices.begin(), devices.end());
+  for (std::size_t i = 0; !byDevice && i < most; ++i) data.occasions.push_back(fmt::format("{}", i + 1));
+  for (const auto& [person, list] : people) {
+    DesignPerson p{person, 0, 0};
+    if (!data.groups.empty()) p.group = positionIn(data.groups, groupOf(*list[0], options.grouping));
+    if (!choices.strata.empty()) p.stratum = positionIn(data.strata, stratumOf(*list[0], choices.strata));
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      const AttemptRow& a = *list[i];
+      placed[a.uuid] = {data.people.size(), byDevice ? positionIn(data.occasions, a.device) : i,
+                        static_cast<double>(i + 1), a.outcome == recorder::Outcome::completed,
+                        static_cast<double>(a.steps) * a.stepSeconds};
+      data.attempts.push_back(a.uuid);
+      data.synthetic = data.synthetic || a.synthetic;
+      ++data.analysed;
+    }
+    data.people.push_back(std::move(p));
+  }
+  return placed;
+}
+
+constexpr const char* timeFigure = "elapsed-time";
+constexpr const char* durationFigure = "attempt-duration";
+
+/// Mean of all items of a completed form, or none.
+std::optional<double> scoreOf(const Rating& rating, const std::vector<FormItem>& items) {
+  double sum = 0.0;
+  for (const FormItem& item : items) {
+    const auto at = rating.answers.find(item.key);
+    if (at == rating.answers.end()) return std::nullopt;
+    sum += at->second;
+  }
+  return items.empty() ? std::nullopt : std::optional(sum / static_cast<double>(items.size()));
+}
+
+/// Checkpoints that are outcomes or asked for, in the registry's order. @throws Error (refused) for values of several
+/// versions of a checkpoint, unless these are mixed.
+void addFigures(DesignData& data, const std::vector<AttemptValue>& values, const PlacedAttempts& placed,
+                const StudyOptions& options, const DesignChoices& choices, const std::string& name) {
+  const std::vector<std::string> unasked = unaskedPhases(options);
+  const std::set<std::string> aside(unasked.begin(), unasked.end());
+  std::map<std::pair<std::size_t, std::string>, DesignFigure> figures;
+  std::map<std::string, std::set<std::uint32_t>> versions;
+  const auto& registry = checkpointRegistry();
+  for (const AttemptValue& item : values) {
+    const auto at = placed.find(item.attempt);
+    const CheckpointDefinition* d = findCheckpoint(item.value.name);
+    if (at == placed.end() || d == nullptr || aside.count(item.value.name) > 0) continue;
+    const std::string full = figureName(d->name, item.value.subject);
+    const auto named = [&](const std::string& n) { return n == d->name || n == full; };
+    if (!d->notOutcome.empty() && !named(choices.against) &&
+        std::none_of(choices.family.begin(), choices.family.end(), named))
+      continue;
+    const auto place =
+        static_cast<std::size_t>(std::find_if(registry.begin(), registry.end(),
+                                              [&](const CheckpointEntry& e) { return e.definition.name == d->name; }) -
+                                 registry.begin());
+    DesignFigure& figure = figures[{place, full}];
+    figure.name = full;
+    figure.unit = d->displayUnit == "1" ? "" : d->displayUnit;
+    figure.direction = d->direction;
+    versions[full].insert(item.value.version);
+    const double shown = item.value.value.value_or(HUGE_VAL) * d->displayFactor;
+    if (std::isfinite(shown))
+      figure.values.push_back({at->second.person, at->second.occasion, at->second.order, at->second.completed, shown});
+  }
+  for (auto& [key, figure] : figures) {
+    if (versions[figure.name].size() > 1) {
+      if (!options.mixKeys)
+        throw Error(ErrorKind::refused, Where{name},
+                    fmt::format("checkpoint {} has values of {} versions", figure.name, versions[figure.name].size()),
+                    {Remedy::assessAgain, Remedy::mixKeys});
+      data.remarks.push_back(
+          fmt::format("Values of {} versions of {} are mixed, as asked.", versions[figure.name].size(), figure.name));
+    }
+    sortValues(figure);
+    data.figures.push_back(std::move(figure));
+  }
+}
+
+/// The elapsed time alone; an attempt that was not completed is followed as long as it lasted.
+void keepTimes(DesignData& data, const std::vector<AttemptValue>& values, const PlacedAttempts& placed) {
+  DesignFigure times{timeFigure, "s", Direction::lower, {}};
+  std::map<std::string, double> lasted;
+  for (const AttemptValue& item : values) {
+    if (item.value.name == durationFigure && item.value.value) lasted[item.attempt] = *item.value.value;
+  }
+  for (const DesignFigure& f : data.figures) {
+    if (f.name != timeFigure) continue;
+    for (const DesignValue& v : f.values) {
+      if (v.finished) times.values.push_back(v);
+    }
+  }
+  for (const auto& [uuid, p] : placed) {
+    if (p.completed) continue;
+    const auto at = lasted.find(uuid);
+    times.values.push_back({p.person, p.occasion, p.order, false, at == lasted.end() ? p.seconds : at->second});
+  }
+  sortValues(times);
+  data.figures = {std::move(times)};
+}
+
+/// Ratings by a form: mean of its items and of its raters, and of each rater of a participant's first rated attempt.
+void addForm(DesignData& data, const RatingForm& form, const std::vector<Rating>& ratings,
+             const PlacedAttempts& placed) {
+  std::map<std::string, std::map<std::string, double>> scores;  // by attempt, by rater
+  for (const Rating& r : ratings) {
+    if (r.form != form.name || r.formVersion != form.version || placed.count(r.attempt) == 0) continue;
+    if (const std::optional<double> score = scoreOf(r, form.items())) scores[r.attempt][r.rater] = *score;
+  }
+  if (scores.empty()) return;
+  DesignFigure figure{"rating " + form.name, "", Direction::higher, {}};
+  DesignFigure raters = figure;
+  std::map<std::size_t, std::pair<double, std::string>> first;  // of each person the earliest rated attempt
+  for (const auto& [uuid, given] : scores) {
+    const Placed& p = placed.at(uuid);
+    double sum = 0.0;
+    for (const auto& item : given) sum += item.second;
+    figure.values.push_back({p.person, p.occasion, p.order, true, sum / static_cast<double>(given.size())});
+    const auto at = first.find(p.person);
+    if (at == first.end() || p.order < at->second.first) first[p.person] = {p.order, uuid};
+  }
+  for (const auto& [person, attempt] : first) {
+    for (const auto& [rater, score] : scores[attempt.second])
+      raters.values.push_back({person, positionIn(data.raters, rater), attempt.first, true, score});
+  }
+  sortValues(figure);
+  data.figures.push_back(std::move(figure));
+  data.rated.push_back(std::move(raters));
 }
 
 DesignData populated(const std::vector<AttemptRow>& recruited, const std::vector<AttemptValue>& values,
@@ -34,36 +188,18 @@ DesignData populated(const std::vector<AttemptRow>& recruited, const std::vector
   data.counted = "attempts";
   data.where = std::filesystem::path(name).filename().string();
   const bool grouped = entryOf(choices.design).groups != GroupsNeeded::none || !choices.groups.empty();
-  std::map<std::string, std::uint64_t> out, present;
-  std::vector<const AttemptRow*> taken;
-  std::uint64_t withoutStratum = 0;
   StudyOptions rules = options;
   if (!grouped) rules.grouping = Grouping::group;
-  for (const AttemptRow& a : recruited) {
-    ++data.recruited;
-    AttemptRow judged = a;
-    if (!grouped) judged.group = "everybody";  // having none excludes nobody here
-    if (const std::string reason = whyOut(judged, rules); !reason.empty()) {
-      ++out[reason];
-    } else if (!choices.strata.empty() && stratumOf(a, choices.strata).empty()) {
-      ++withoutStratum;
-    } else {
-      ++present[groupOf(a, options.grouping)];
-      taken.push_back(&a);
-    }
-  }
-  data.flow = flowOf(out);
-  if (withoutStratum > 0) data.flow.push_back({"no " + choices.strata, withoutStratum});
+  data.recruited = recruited.size();
+  IncludedAttempts included = includedAttempts(recruited, rules, choices.strata, !grouped);
+  data.flow = std::move(included.flow);
+  std::vector<const AttemptRow*>& taken = included.taken;
   if (grouped) {
-    data.groups = groupsOfDesign(present, choices, name, leftOutOf(data));
-    const auto all = taken.size();
-    taken.erase(std::remove_if(taken.begin(), taken.end(),
-                               [&](const AttemptRow* a) {
-                                 return std::find(data.groups.begin(), data.groups.end(),
-                                                  groupOf(*a, options.grouping)) == data.groups.end();
-                               }),
-                taken.end());
-    if (taken.size() < all) data.flow.push_back({"another group", all - taken.size()});
+    data.groups = groupsOfDesign(included.present, choices, name, leftOutOf(data.recruited, data.flow));
+    const std::size_t others = std::erase_if(taken, [&](const AttemptRow* a) {
+      return std::find(data.groups.begin(), data.groups.end(), groupOf(*a, options.grouping)) == data.groups.end();
+    });
+    if (others > 0) data.flow.push_back({"another group", others});
   }
   if (data.groups.size() == 2) data.better = betterOf({data.groups[0], data.groups[1]}, choices);
   std::set<std::string> keys;
@@ -74,7 +210,12 @@ DesignData populated(const std::vector<AttemptRow>& recruited, const std::vector
   }
   const std::vector<std::string> keyList(keys.begin(), keys.end());
   askForOneKey(keyList, options, name, data.remarks);
-  placed = placeAttempts(data, taken, options, choices, name);
+  const bool byDevice = choices.design == Design::agreement && choices.against.empty();
+  const AttemptsOfUnits people =
+      attemptsOfUnits(taken, data.groups, options.grouping,
+                      {choices.attemptRule, entryOf(choices.design).oneEach, byDevice}, name, data.flow);
+  data.attemptRule = people.rule;
+  placed = place(data, people.units, options, choices);
   for (const std::string& key : keyList) {
     std::string words = comparabilityWords(key);
     if (!words.empty() && words[0] == 't') words[0] = 'T';
@@ -118,219 +259,6 @@ DesignData cohortDesignData(const CohortDatabase& database, const AssessmentData
   }
   keepNamedFigures(data, choices);
   return data;
-}
-
-namespace {
-
-/// By participant, by start.
-std::map<std::string, std::vector<const AttemptRow*>> attemptsByPerson(DesignData& data,
-                                                                       const std::vector<const AttemptRow*>& taken,
-                                                                       const StudyOptions& options,
-                                                                       const DesignChoices& choices,
-                                                                       const std::string& name) {
-  std::map<std::string, std::vector<const AttemptRow*>> people;
-  const bool byDevice = choices.design == Design::agreement && choices.against.empty();
-  for (const AttemptRow* a : taken) people[unitOf(*a)].push_back(a);
-  std::uint64_t later = 0;
-  std::size_t several = 0;
-  std::string whose;
-  for (auto& [person, list] : people) {
-    std::stable_sort(list.begin(), list.end(),
-                     [](const AttemptRow* a, const AttemptRow* b) { return a->startUtc < b->startUtc; });
-    for (const AttemptRow* a : list) {
-      if (!data.groups.empty() && groupOf(*a, options.grouping) != groupOf(*list[0], options.grouping))
-        throw Error(ErrorKind::refused, Where{name},
-                    fmt::format("participant \"{}\" is in two groups, which must be independent", person));
-    }
-    if (!entryOf(choices.design).oneEach) continue;
-    std::set<std::string> seen;
-    std::vector<const AttemptRow*> first;
-    for (const AttemptRow* a : list) {
-      if (seen.insert(byDevice ? a->device : std::string()).second) first.push_back(a);
-    }
-    if (first.size() == list.size()) continue;
-    if (several++ == 0) whose = fmt::format("\"{}\" has {}", person, list.size());
-    if (choices.attemptRule != AttemptRule::first) continue;
-    later += list.size() - first.size();
-    list = first;
-  }
-  if (several > 0 && !choices.attemptRule) {
-    throw Error(ErrorKind::refused, Where{name},
-                fmt::format("participant {} attempts{} ({} participant{} with several), which are not independent",
-                            whose, byDevice ? ", of a device more than one" : "", several, several == 1 ? "" : "s"),
-                {Remedy::chooseAttemptRule});
-  }
-  data.attemptRule = several == 0 ? (entryOf(choices.design).oneEach ? "one attempt each" : "all attempts of each")
-                     : choices.attemptRule == AttemptRule::first ? "the first of a participant's attempts"
-                                                                 : "the mean of a participant's attempts";
-  if (later > 0) data.flow.push_back({"later attempt of a participant (the first counts)", later});
-  return people;
-}
-
-void place(DesignData& data, const std::map<std::string, std::vector<const AttemptRow*>>& people,
-           const StudyOptions& options, const DesignChoices& choices, PlacedAttempts& placed) {
-  const bool byDevice = choices.design == Design::agreement && choices.against.empty();
-  data.occasionWord = byDevice ? "device" : "attempt";
-  data.numbered = !byDevice;
-  std::set<std::string> strata, devices;
-  std::size_t most = 0;
-  for (const auto& [person, list] : people) {
-    if (!choices.strata.empty()) strata.insert(stratumOf(*list[0], choices.strata));
-    for (const AttemptRow* a : list) devices.insert(a->device);
-    most = std::max(most, list.size());
-  }
-  data.strata.assign(strata.begin(), strata.end());
-  if (byDevice) data.occasions.assign(devices.begin(), devices.end());
-  for (std::size_t i = 0; !byDevice && i < most; ++i) data.occasions.push_back(fmt::format("{}", i + 1));
-  for (const auto& [person, list] : people) {
-    DesignPerson p{person, 0, 0};
-    if (!data.groups.empty()) p.group = positionIn(data.groups, groupOf(*list[0], options.grouping));
-    if (!choices.strata.empty()) p.stratum = positionIn(data.strata, stratumOf(*list[0], choices.strata));
-    for (std::size_t i = 0; i < list.size(); ++i) {
-      const AttemptRow& a = *list[i];
-      placed[a.uuid] = {data.people.size(), byDevice ? positionIn(data.occasions, a.device) : i,
-                        static_cast<double>(i + 1), a.outcome == recorder::Outcome::completed,
-                        static_cast<double>(a.steps) * a.stepSeconds};
-      data.attempts.push_back(a.uuid);
-      data.synthetic = data.synthetic || a.synthetic;
-      ++data.analysed;
-    }
-    data.people.push_back(std::move(p));
-  }
-}
-
-}  // namespace
-
-std::size_t positionIn(std::vector<std::string>& names, const std::string& name) {
-  const auto at = std::find(names.begin(), names.end(), name);
-  if (at != names.end()) return static_cast<std::size_t>(at - names.begin());
-  names.push_back(name);
-  return names.size() - 1;
-}
-
-std::string stratumOf(const AttemptRow& a, const std::string& strata) { return strata == "arm" ? a.arm : a.site; }
-
-PlacedAttempts placeAttempts(DesignData& data, const std::vector<const AttemptRow*>& taken, const StudyOptions& options,
-                             const DesignChoices& choices, const std::string& name) {
-  PlacedAttempts placed;
-  place(data, attemptsByPerson(data, taken, options, choices, name), options, choices, placed);
-  return placed;
-}
-
-namespace {
-
-constexpr const char* timeFigure = "elapsed-time";
-constexpr const char* durationFigure = "attempt-duration";
-
-void sortValues(DesignFigure& figure) {
-  std::stable_sort(figure.values.begin(), figure.values.end(), [](const DesignValue& a, const DesignValue& b) {
-    return a.person != b.person ? a.person < b.person : a.order < b.order;
-  });
-}
-
-/// Mean of all items of a completed form, or none.
-std::optional<double> scoreOf(const Rating& rating, const std::vector<FormItem>& items) {
-  double sum = 0.0;
-  for (const FormItem& item : items) {
-    const auto at = rating.answers.find(item.key);
-    if (at == rating.answers.end()) return std::nullopt;
-    sum += at->second;
-  }
-  return items.empty() ? std::nullopt : std::optional(sum / static_cast<double>(items.size()));
-}
-
-}  // namespace
-
-void addFigures(DesignData& data, const std::vector<AttemptValue>& values, const PlacedAttempts& placed,
-                const StudyOptions& options, const DesignChoices& choices, const std::string& name) {
-  const std::vector<std::string> unasked = unaskedPhases(options);
-  const std::set<std::string> aside(unasked.begin(), unasked.end());
-  std::map<std::pair<std::size_t, std::string>, DesignFigure> figures;
-  std::map<std::string, std::set<std::uint32_t>> versions;
-  const auto& registry = checkpointRegistry();
-  for (const AttemptValue& item : values) {
-    const auto at = placed.find(item.attempt);
-    const CheckpointDefinition* d = findCheckpoint(item.value.name);
-    if (at == placed.end() || d == nullptr || aside.count(item.value.name) > 0) continue;
-    const std::string figureName = item.value.subject.empty() ? d->name : d->name + " " + item.value.subject;
-    const auto named = [&](const std::string& n) { return n == d->name || n == figureName; };
-    if (!d->notOutcome.empty() && !named(choices.against) &&
-        std::none_of(choices.family.begin(), choices.family.end(), named))
-      continue;
-    const auto place =
-        static_cast<std::size_t>(std::find_if(registry.begin(), registry.end(),
-                                              [&](const CheckpointEntry& e) { return e.definition.name == d->name; }) -
-                                 registry.begin());
-    DesignFigure& figure = figures[{place, figureName}];
-    figure.name = figureName;
-    figure.unit = d->displayUnit == "1" ? "" : d->displayUnit;
-    figure.direction = d->direction;
-    versions[figureName].insert(item.value.version);
-    const double shown = item.value.value.value_or(HUGE_VAL) * d->displayFactor;
-    if (std::isfinite(shown))
-      figure.values.push_back({at->second.person, at->second.occasion, at->second.order, at->second.completed, shown});
-  }
-  for (auto& [key, figure] : figures) {
-    if (versions[figure.name].size() > 1) {
-      if (!options.mixKeys)
-        throw Error(ErrorKind::refused, Where{name},
-                    fmt::format("checkpoint {} has values of {} versions", figure.name, versions[figure.name].size()),
-                    {Remedy::assessAgain, Remedy::mixKeys});
-      data.remarks.push_back(
-          fmt::format("Values of {} versions of {} are mixed, as asked.", versions[figure.name].size(), figure.name));
-    }
-    sortValues(figure);
-    data.figures.push_back(std::move(figure));
-  }
-}
-
-void keepTimes(DesignData& data, const std::vector<AttemptValue>& values, const PlacedAttempts& placed) {
-  DesignFigure times{timeFigure, "s", Direction::lower, {}};
-  std::map<std::string, double> lasted;
-  for (const AttemptValue& item : values) {
-    if (item.value.name == durationFigure && item.value.value) lasted[item.attempt] = *item.value.value;
-  }
-  for (const DesignFigure& f : data.figures) {
-    if (f.name != timeFigure) continue;
-    for (const DesignValue& v : f.values) {
-      if (v.finished) times.values.push_back(v);
-    }
-  }
-  for (const auto& [uuid, p] : placed) {
-    if (p.completed) continue;
-    const auto at = lasted.find(uuid);
-    times.values.push_back({p.person, p.occasion, p.order, false, at == lasted.end() ? p.seconds : at->second});
-  }
-  sortValues(times);
-  data.figures = {std::move(times)};
-}
-
-void addForm(DesignData& data, const RatingForm& form, const std::vector<Rating>& ratings,
-             const PlacedAttempts& placed) {
-  std::map<std::string, std::map<std::string, double>> scores;  // by attempt, by rater
-  for (const Rating& r : ratings) {
-    if (r.form != form.name || r.formVersion != form.version || placed.count(r.attempt) == 0) continue;
-    if (const std::optional<double> score = scoreOf(r, form.items())) scores[r.attempt][r.rater] = *score;
-  }
-  if (scores.empty()) return;
-  DesignFigure figure{"rating " + form.name, "", Direction::higher, {}};
-  DesignFigure raters = figure;
-  std::map<std::size_t, std::pair<double, std::string>> first;  // of each person the earliest rated attempt
-  for (const auto& [uuid, given] : scores) {
-    const Placed& p = placed.at(uuid);
-    double sum = 0.0;
-    for (const auto& item : given) sum += item.second;
-    figure.values.push_back({p.person, p.occasion, p.order, true, sum / static_cast<double>(given.size())});
-    const auto at = first.find(p.person);
-    if (at == first.end() || p.order < at->second.first) first[p.person] = {p.order, uuid};
-  }
-  for (const auto& [person, attempt] : first) {
-    for (const auto& [rater, score] : scores[attempt.second])
-      raters.values.push_back({person, positionIn(data.raters, rater), attempt.first, true, score});
-  }
-  sortValues(figure);
-  data.figures.push_back(std::move(figure));
-  data.rated.push_back(std::move(raters));
 }
 
 }  // namespace calot::analytics

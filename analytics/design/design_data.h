@@ -1,20 +1,68 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Values of a cohort or a table as a design needs them: by participant, group, stratum and occasion.
+// Designs of studies other than two groups with one value per participant: which there are, and what each needs.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "analytics/cohort/assessment_database.h"
-#include "analytics/design/design.h"
 #include "analytics/report/study.h"
 #include "analytics/report/table_study.h"
 #include "recorder/base/csv.h"
 
 namespace calot::analytics {
+
+enum class Design : std::uint8_t {
+  twoGroups,
+  severalGroups,
+  strata,
+  repeated,
+  timeToCriterion,
+  learning,
+  correlation,
+  agreement,
+  reliability
+};
+
+/// Groups that a design compares.
+enum class GroupsNeeded : std::uint8_t {
+  none,  ///< groups, where they are named, choose who is in it
+  any,   ///< one or more, side by side
+  two,
+  several  ///< three or more
+};
+
+struct DesignEntry {
+  Design design;
+  const char* name;
+  const char* question;  ///< what it asks, without a full stop
+  const char* method;    ///< what is computed
+  GroupsNeeded groups;
+  bool oneEach;  ///< one value per participant
+};
+
+/// All designs, in the order of the enumeration.
+std::span<const DesignEntry> designs();
+const DesignEntry& entryOf(Design design);
+/// The design of a name, or none.
+std::optional<Design> designOf(std::string_view name);
+
+/// User's declarations for a design, besides those of every study.
+struct DesignChoices : StudyChoices {
+  Design design = Design::severalGroups;
+  std::string strata;               ///< column of a table; of a cohort "site" or "arm"; empty: none
+  std::string against;              ///< figure that the others are held against, or empty
+  std::string finishedColumn;       ///< of a table: whether the attempt reached its end
+  std::optional<double> criterion;  ///< in the figure's display unit; at it one passes
+  std::size_t run = 1;              ///< attempts in a row that meet the criterion
+  double errorRatio = 1.0;          ///< Deming: variance of the second method's errors over that of the first
+};
 
 struct DesignPerson {
   std::string name;
@@ -84,6 +132,9 @@ std::vector<std::string> groupsOfDesign(const std::map<std::string, std::uint64_
 /// Leaves the figures that `family` names and the one that is held against them, in their order.
 /// @throws Error (invalid) for a name that is no figure.
 void keepNamedFigures(DesignData& data, const DesignChoices& choices);
+
+/// By person, then by order.
+void sortValues(DesignFigure& figure);
 
 /// The values of one participant each: the only one, or the mean. @pre DesignEntry::oneEach was kept by the reader.
 struct OneEach {

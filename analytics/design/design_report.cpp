@@ -8,8 +8,8 @@
 #include <cmath>
 #include <utility>
 
-#include "analytics/report/report_text.h"
-#include "analytics/statistics/multiplicity.h"
+#include "analytics/report/report_document.h"
+#include "analytics/statistics/rank_tests.h"
 #include "recorder/attempt.h"
 #include "recorder/base/errors.h"
 
@@ -18,29 +18,10 @@ namespace {
 
 using Analyse = void (*)(const DesignData&, const DesignChoices&, DesignReport&);
 
-Analyse analysisOf(Design design) {
-  switch (design) {
-    case Design::severalGroups:
-      return analyseSeveralGroups;
-    case Design::strata:
-      return analyseStrata;
-    case Design::repeated:
-      return analyseRepeated;
-    case Design::timeToCriterion:
-      return analyseTimes;
-    case Design::learning:
-      return analyseLearning;
-    case Design::correlation:
-      return analyseCorrelation;
-    case Design::agreement:
-      return analyseAgreement;
-    case Design::reliability:
-      return analyseReliability;
-    case Design::twoGroups:
-      break;  // makeStudy() does it
-  }
-  return nullptr;
-}
+/// In Design's order; makeStudy() compares two groups.
+constexpr std::array<Analyse, 9> analyses{nullptr,           analyseSeveralGroups, analyseStrata,      analyseRepeated,
+                                          analyseTimes,      analyseLearning,      analyseCorrelation, analyseAgreement,
+                                          analyseReliability};
 
 /// "expert (8 participants), novice (9)", or how many participants there are.
 std::string populationOf(const DesignData& data) {
@@ -64,6 +45,15 @@ ReportTable flowOfDesign(const DesignData& data) {
   return table;
 }
 
+/// At most ten with their reasons, then their number.
+void noteRefused(DesignReport& report) {
+  constexpr std::size_t most = 10;
+  const auto& refused = report.refused;
+  for (std::size_t i = 0; i < refused.size() && i < most; ++i)
+    report.notes.push_back(fmt::format("Not analysed: {}: {}.", refused[i].first, refused[i].second));
+  if (refused.size() > most) report.notes.push_back(fmt::format("Nor {} more figures.", refused.size() - most));
+}
+
 }  // namespace
 
 DesignReport makeDesignReport(const DesignData& data, const DesignChoices& choices) {
@@ -74,21 +64,21 @@ DesignReport makeDesignReport(const DesignData& data, const DesignChoices& choic
   report.head = data.head;
   report.flow = flowOfDesign(data);
   report.attempts = data.attempts;
-  std::vector<std::string> groups = data.groups;
   report.json = {
       {"design", entry.name},
       {"heading", "exploratory"},
       {"source", data.source},
       {"synthetic", data.synthetic},
-      {"groups", groups},
+      {"groups", data.groups},
       {"better", data.better},
       {"participants", data.people.size()},
       {"attempt_rule", data.attemptRule},
-      {"flow", {{"recruited", data.recruited}, {"analysed", data.analysed}, {"left_out", DesignJson::array()}}}};
+      {"flow", {{"recruited", data.recruited}, {"analysed", data.analysed}, {"left_out", ValueTree::array()}}}};
   for (const FlowRow& row : data.flow)
     report.json["flow"]["left_out"].push_back({{"reason", row.reason}, {"count", row.attempts}});
-  analysisOf(choices.design)(data, choices, report);
-  for (const std::string& remark : data.remarks) report.notes.push_back(remark);
+  analyses[static_cast<std::size_t>(choices.design)](data, choices, report);
+  noteRefused(report);
+  report.notes.insert(report.notes.end(), data.remarks.begin(), data.remarks.end());
   report.methods =
       fmt::format("Methods. {}Of {} {} in the {}, {} of {} were analysed ({}); {} were left out. {} Computed by {}.",
                   data.synthetic ? "Attempts were made by performers, which are programs. " : "", data.recruited,
@@ -111,21 +101,11 @@ ReportDocument designDocument(const DesignReport& report) {
 }
 
 void printDesign(const DesignReport& report, std::ostream& out) {
-  if (report.synthetic) out << watermarkText << '\n';
-  printWrapped(report.title, out);
-  for (const std::string& line : report.head) printWrapped(line, out);
-  out << '\n';
-  for (const auto& row : report.flow.rows)
-    printWrapped(fmt::format("{} {} {}", row[0], report.flow.columns[0].first, row[1]), out);
-  out << '\n';
-  for (const ReportTable& table : report.tables) printTable(table, out);
-  for (const std::string& note : report.notes) printWrapped(note, out);
-  printWrapped(report.methods, out);
-  if (report.synthetic) out << watermarkText << '\n';
-}
-
-std::string designJson(const DesignReport& report) {
-  return report.json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  printReport({report.title, report.synthetic, report.head, report.flow}, out, [&] {
+    for (const ReportTable& table : report.tables) printTable(table, out);
+    for (const std::string& note : report.notes) printWrapped(note, out);
+    printWrapped(report.methods, out);
+  });
 }
 
 namespace {
@@ -183,65 +163,49 @@ std::optional<Drawing> drawLines(const LinePlot& plot) {
   return drawing;
 }
 
-std::string intervalText(double lower, double upper) {
-  return fmt::format("[{}, {}]", significant(lower), significant(upper));
-}
-std::string intervalText(const Interval& interval) { return intervalText(interval.lower, interval.upper); }
-std::string intervalText(const Expected<Interval>& interval) { return interval ? intervalText(*interval) : "-"; }
-
-DesignJson intervalJson(const Interval& interval) {
-  return {{"lower", interval.lower}, {"upper", interval.upper}, {"level", interval.level}, {"method", interval.method}};
-}
-DesignJson optionalJson(const std::optional<double>& value) { return value ? DesignJson(*value) : DesignJson(nullptr); }
-DesignJson reasonJson(const std::string& reason) { return {{"value", nullptr}, {"reason", reason}}; }
-
-ReportTable tableOf(const std::string& title, const std::vector<std::string>& columns) {
-  ReportTable table{title, {}, {}};
-  for (const std::string& column : columns) {
-    const bool left = column.empty() || column[0] == '=';
-    table.columns.emplace_back(left && !column.empty() ? column.substr(1) : column,
-                               left ? TextTable::Align::left : TextTable::Align::right);
+ValueTree& analyseFigures(const DesignData& data, DesignReport& report,
+                          const std::function<Expected<ValueTree>(const DesignFigure&)>& analyse,
+                          const DesignFigure* except) {
+  ValueTree& results = report.json["results"] = ValueTree::array();
+  for (const DesignFigure& figure : data.figures) {
+    if (&figure == except) continue;
+    if (const Expected<ValueTree> result = analyse(figure)) {
+      results.push_back({{"figure", figure.name}, {"unit", figure.unit}});
+      results.back().update(*result);
+    } else {
+      report.refused.emplace_back(figure.name, result.reason());
+    }
   }
-  return table;
+  askForResults(data, report, results.size());
+  return results;
 }
 
-std::vector<std::optional<double>> holmOver(const std::vector<std::optional<double>>& p) {
-  std::vector<double> known;
-  for (const auto& value : p) {
-    if (value) known.push_back(*value);
-  }
-  std::vector<std::optional<double>> adjusted(p.size());
-  const Expected<std::vector<double>> values = holm(known);
-  if (!values) return adjusted;
-  std::size_t next = 0;
-  for (std::size_t i = 0; i < p.size(); ++i) {
-    if (p[i]) adjusted[i] = (*values)[next++];
-  }
-  return adjusted;
-}
-
-std::string figureTitle(const DesignFigure& figure) {
-  return figure.unit.empty() ? figure.name : fmt::format("{} [{}]", figure.name, figure.unit);
-}
-
-void noteRefused(DesignReport& report, const std::vector<std::pair<std::string, std::string>>& refused) {
-  constexpr std::size_t most = 10;
-  for (std::size_t i = 0; i < refused.size() && i < most; ++i)
-    report.notes.push_back(fmt::format("Not analysed: {}: {}.", refused[i].first, refused[i].second));
-  if (refused.size() > most) report.notes.push_back(fmt::format("Nor {} more figures.", refused.size() - most));
-}
-
-void askForResults(const DesignData& data, std::size_t analysed,
-                   const std::vector<std::pair<std::string, std::string>>& refused) {
+void askForResults(const DesignData& data, const DesignReport& report, std::size_t analysed) {
   if (analysed > 0) return;
   throw Error(ErrorKind::refused, Where{data.where},
-              refused.empty() ? std::string("there is no figure to analyse")
-                              : fmt::format("no figure can be analysed; {}: {}", refused[0].first, refused[0].second));
+              report.refused.empty() ? std::string("there is no figure to analyse")
+                                     : fmt::format("no figure can be analysed; {}: {}", report.refused[0].first,
+                                                   report.refused[0].second));
 }
 
-std::optional<bool> firstShouldBeLarger(const DesignData& data, const DesignFigure& figure) {
-  if (figure.direction == Direction::none || data.better.empty()) return std::nullopt;
-  return (figure.direction == Direction::higher) == (data.better == data.groups[0]);
+void addHolm(ValueTree& rows, const std::string& place) {
+  const ValueTree::json_pointer at(place);
+  std::vector<double> p;
+  for (const ValueTree& row : rows) p.push_back(row.at(at).at("p").get<double>());
+  const Expected<std::vector<double>> adjusted = holm(p);
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    rows[i].at(at)["p_holm"] = adjusted ? ValueTree((*adjusted)[i]) : ValueTree(nullptr);
+}
+
+std::string figureTitle(const ValueTree& result) {
+  const std::string name = result.at("figure"), unit = result.at("unit");
+  return unit.empty() ? name : fmt::format("{} [{}]", name, unit);
+}
+
+std::string medianText(const ValueTree& times) {
+  if (times.contains("reason")) return times["reason"];
+  if (times.at("median").is_null()) return "not reached";
+  return fmt::format("{} [{}, {}]", digits4(times["median"]), digits4(times["lower"]), digits4(times["upper"]));
 }
 
 }  // namespace calot::analytics

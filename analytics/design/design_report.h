@@ -4,7 +4,6 @@
 #pragma once
 
 #include <functional>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <ostream>
 #include <string>
@@ -13,7 +12,7 @@
 
 #include "analytics/design/design_data.h"
 #include "analytics/report/plots.h"
-#include "analytics/report/report_document.h"
+#include "analytics/report/value_tree.h"
 #include "analytics/statistics/expected.h"
 
 namespace calot::analytics {
@@ -24,10 +23,11 @@ struct DesignReport {
   std::vector<std::string> head;
   ReportTable flow;
   std::vector<ReportTable> tables;
-  std::vector<std::string> notes;  ///< whole sentences
+  std::vector<std::string> notes;                            ///< whole sentences
+  std::vector<std::pair<std::string, std::string>> refused;  ///< what could not be analysed, and why
   std::vector<Drawing> drawings;
   std::string methods;                ///< what was done, without population and software
-  nlohmann::ordered_json json;        ///< "results" of designJson()
+  ValueTree json;                     ///< everything with all digits; missing numbers are null with a reason
   std::vector<std::string> attempts;  ///< uuids of a cohort's attempts that are in it
 };
 
@@ -37,8 +37,6 @@ DesignReport makeDesignReport(const DesignData& data, const DesignChoices& choic
 
 ReportDocument designDocument(const DesignReport& report);
 void printDesign(const DesignReport& report, std::ostream& out);
-/// Everything with all digits; missing numbers are null with a reason.
-std::string designJson(const DesignReport& report);
 
 /// One line, or points, of a plot.
 struct PlotSeries {
@@ -60,33 +58,21 @@ struct LinePlot {
 /// Values over another quantity. None where there are no points, or they are too large or too close for a scale.
 std::optional<Drawing> drawLines(const LinePlot& plot);
 
-using DesignJson = nlohmann::ordered_json;
+/// Results of `analyse` for each figure, beside the figure's name and unit: "results". Others are refused.
+/// @param except a figure that is left out @throws Error (refused) naming the first reason, where nothing was analysed.
+ValueTree& analyseFigures(const DesignData& data, DesignReport& report,
+                          const std::function<Expected<ValueTree>(const DesignFigure&)>& analyse,
+                          const DesignFigure* except = nullptr);
+/// The same where `analysed` results are there already.
+void askForResults(const DesignData& data, const DesignReport& report, std::size_t analysed);
 
-/// "[1.2, 3.4]".
-std::string intervalText(double lower, double upper);
-std::string intervalText(const Interval& interval);
-/// The same, or "-".
-std::string intervalText(const Expected<Interval>& interval);
+/// Adds "p_holm" beside each "p" of the rows. @param place of the object that holds it, "/log_rank", or the row itself
+void addHolm(ValueTree& rows, const std::string& place = "");
 
-DesignJson intervalJson(const Interval& interval);
-DesignJson optionalJson(const std::optional<double>& value);
-/// {"reason": ...}
-DesignJson reasonJson(const std::string& reason);
-
-/// Table of a title and its columns: text to the left, numbers to the right ("=" before a title: to the left).
-ReportTable tableOf(const std::string& title, const std::vector<std::string>& columns);
-
-/// Holm's p over those that there are, in their places.
-std::vector<std::optional<double>> holmOver(const std::vector<std::optional<double>>& p);
-
-/// "name [unit]".
-std::string figureTitle(const DesignFigure& figure);
-
-/// Figures that could not be analysed, with their reasons, as notes: at most ten, then their number.
-void noteRefused(DesignReport& report, const std::vector<std::pair<std::string, std::string>>& refused);
-/// @throws Error (refused) naming the first reason, where nothing was analysed.
-void askForResults(const DesignData& data, std::size_t analysed,
-                   const std::vector<std::pair<std::string, std::string>>& refused);
+/// "name [unit]" of a result.
+std::string figureTitle(const ValueTree& result);
+/// "12 [9, -]", "not reached", or why there is none, of {"median", "lower", "upper"} or {"reason"}.
+std::string medianText(const ValueTree& times);
 
 // The designs: tables, notes, methods, figures and "results" in JSON.
 void analyseSeveralGroups(const DesignData& data, const DesignChoices& choices, DesignReport& report);
@@ -97,9 +83,5 @@ void analyseLearning(const DesignData& data, const DesignChoices& choices, Desig
 void analyseCorrelation(const DesignData& data, const DesignChoices& choices, DesignReport& report);
 void analyseAgreement(const DesignData& data, const DesignChoices& choices, DesignReport& report);
 void analyseReliability(const DesignData& data, const DesignChoices& choices, DesignReport& report);
-
-/// Hypothesis about a figure of two groups from its direction and the better group: whether the first group's values
-/// should be larger; none without both.
-std::optional<bool> firstShouldBeLarger(const DesignData& data, const DesignFigure& figure);
 
 }  // namespace calot::analytics

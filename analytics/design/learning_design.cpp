@@ -4,9 +4,10 @@
 
 #include <algorithm>
 #include <map>
+#include <utility>
 
 #include "analytics/design/design_report.h"
-#include "analytics/design/learning_curves.h"
+#include "analytics/statistics/resampling.h"
 #include "analytics/statistics/survival.h"
 #include "recorder/base/errors.h"
 
@@ -14,6 +15,72 @@ namespace calot::analytics {
 namespace {
 
 constexpr std::size_t curveResamples = 1999, mostWithIntervals = 6;
+
+/// A participant's values over the number of the attempt.
+struct PersonalCourse {
+  std::vector<double> attempt, value;
+};
+
+struct GroupCurve {
+  std::vector<double> attempt, mean;  ///< attempts that at least half of the participants made
+  std::size_t participants = 0, attempts = 0;
+  Expected<LearningCurve> curve = NoResult{"not computed"};
+  /// Interval of the plateau: percentile bootstrap over participants, each with all attempts.
+  Expected<Interval> plateau = NoResult{"not computed"};
+};
+
+using AttemptMeans = std::map<double, std::pair<double, std::size_t>>;  // sum and number, by attempt
+
+void addCourse(AttemptMeans& means, const PersonalCourse& course) {
+  for (std::size_t i = 0; i < course.attempt.size(); ++i) {
+    auto& [sum, count] = means[course.attempt[i]];
+    sum += course.value[i];
+    ++count;
+  }
+}
+
+/// Means of the attempts that at least half of `people` made.
+void keepCommon(const AttemptMeans& means, std::size_t people, GroupCurve& curve) {
+  for (const auto& [attempt, of] : means) {
+    if (2 * of.second < people) continue;
+    curve.attempt.push_back(attempt);
+    curve.mean.push_back(of.first / static_cast<double>(of.second));
+  }
+}
+
+/// Curve through the means of each attempt. Values of one participant are not independent, so the fit's own errors are
+/// not used. @param resamples 0: no interval @pre courses not empty
+GroupCurve groupCurve(const std::vector<PersonalCourse>& courses, std::size_t resamples) {
+  GroupCurve result;
+  AttemptMeans means;
+  std::vector<double> indices;
+  for (const PersonalCourse& course : courses) {
+    addCourse(means, course);
+    indices.push_back(static_cast<double>(indices.size()));
+    result.attempts += course.attempt.size();
+  }
+  result.participants = courses.size();
+  keepCommon(means, courses.size(), result);
+  result.curve = fitLearningCurve(result.attempt, result.mean);
+  if (!result.curve || resamples == 0) return result;
+  if (courses.size() < 3) {
+    result.plateau = NoResult{"fewer than three participants"};
+    return result;
+  }
+  const auto plateauOf = [&](std::span<const double> drawn) -> Expected<double> {
+    AttemptMeans sums;
+    for (const double index : drawn) addCourse(sums, courses[static_cast<std::size_t>(index)]);
+    GroupCurve resampled;
+    keepCommon(sums, drawn.size(), resampled);
+    const Expected<LearningCurve> curve = fitLearningCurve(resampled.attempt, resampled.mean);
+    return curve ? Expected<double>(curve->plateau) : NoResult{curve.reason()};
+  };
+  BootstrapOptions options;
+  options.resamples = resamples;
+  const Expected<Bootstrap> interval = bootstrap(indices, plateauOf, options);
+  result.plateau = interval ? Expected<Interval>(interval->interval) : NoResult{interval.reason()};
+  return result;
+}
 
 using Courses = std::map<std::size_t, PersonalCourse>;  ///< by person
 
@@ -32,32 +99,42 @@ std::string groupTitle(const DesignData& data, std::size_t g) {
   return data.groups.empty() ? std::string("all") : data.groups[g];
 }
 
-DesignJson curveJson(const DesignData& data, const DesignFigure& figure, std::size_t g, const GroupCurve& c) {
-  DesignJson json{{"figure", figure.name},
-                  {"unit", figure.unit},
-                  {"group", groupTitle(data, g)},
-                  {"participants", c.participants},
-                  {"attempts", c.attempts},
-                  {"attempt", c.attempt},
-                  {"mean", c.mean}};
+ValueTree curveTree(const DesignData& data, const DesignFigure& figure, std::size_t g, const GroupCurve& c) {
+  ValueTree tree{{"figure", figure.name},
+                 {"unit", figure.unit},
+                 {"group", groupTitle(data, g)},
+                 {"participants", c.participants},
+                 {"attempts", c.attempts},
+                 {"attempt", c.attempt},
+                 {"mean", c.mean}};
   if (!c.curve) {
-    json["reason"] = c.curve.reason();
-    return json;
+    tree["reason"] = c.curve.reason();
+    return tree;
   }
-  json["plateau"] = c.curve->plateau;
-  json["gap"] = c.curve->gap;
-  json["sigma"] = c.curve->sigma;
-  json["plateau_interval"] = c.plateau ? intervalJson(*c.plateau) : reasonJson(c.plateau.reason());
-  return json;
+  tree.update({{"plateau", c.curve->plateau},
+               {"gap", c.curve->gap},
+               {"sigma", c.curve->sigma},
+               {"plateau_interval", c.plateau}});
+  return tree;
 }
 
+void addCurve(LinePlot& plot, const std::string& group, std::size_t g, const GroupCurve& c) {
+  PlotSeries points{group, g, {}, false, false}, line{"", g, {}, true, false};
+  for (std::size_t i = 0; i < c.attempt.size(); ++i) points.points.emplace_back(c.attempt[i], c.mean[i]);
+  constexpr int pieces = 40;
+  for (int i = 0; i <= pieces; ++i) {
+    const double x = c.attempt.front() + (c.attempt.back() - c.attempt.front()) * i / pieces;
+    line.points.emplace_back(x, c.curve->at(x));
+  }
+  plot.series.push_back(std::move(points));
+  plot.series.push_back(std::move(line));
+}
+
+std::string lastOf(const ValueTree& attempts) { return digits4(attempts.back()); }
+
 /// @returns how many curves could be fitted
-std::size_t addCurves(const DesignData& data, const DesignChoices& choices, DesignReport& report,
-                      std::vector<std::pair<std::string, std::string>>& refused) {
-  ReportTable table = tableOf("Curves a - b / x through the groups' means",
-                              {"=figure", "=group", "participants", "attempts", "up to", "plateau a", "95 %", "gap b"});
-  report.json["curves"] = DesignJson::array();
-  std::size_t fitted = 0;
+std::size_t addCurves(const DesignData& data, const DesignChoices& choices, DesignReport& report) {
+  ValueTree curves = ValueTree::array(), fitted = ValueTree::array();
   for (const DesignFigure& figure : data.figures) {
     const Courses courses = coursesOf(figure);
     LinePlot plot{figure.name, figure.unit, data.occasionWord, {}, {}, data.synthetic};
@@ -69,69 +146,66 @@ std::size_t addCurves(const DesignData& data, const DesignChoices& choices, Desi
       }
       if (of.empty()) continue;
       const GroupCurve c = groupCurve(of, data.figures.size() <= mostWithIntervals ? curveResamples : 0);
-      report.json["curves"].push_back(curveJson(data, figure, g, c));
+      curves.push_back(curveTree(data, figure, g, c));
       if (!c.curve) {
-        refused.emplace_back(fmt::format("the curve of {}, {}", figure.name, groupTitle(data, g)), c.curve.reason());
+        report.refused.emplace_back(fmt::format("the curve of {}, {}", figure.name, groupTitle(data, g)),
+                                    c.curve.reason());
         continue;
       }
-      ++fitted;
-      table.rows.push_back({figureTitle(figure), groupTitle(data, g), fmt::format("{}", c.participants),
-                            fmt::format("{}", c.attempts), significant(c.attempt.back()), significant(c.curve->plateau),
-                            intervalText(c.plateau), significant(c.curve->gap)});
-      PlotSeries points{groupTitle(data, g), g, {}, false, false}, line{"", g, {}, true, false};
-      for (std::size_t i = 0; i < c.attempt.size(); ++i) points.points.emplace_back(c.attempt[i], c.mean[i]);
-      constexpr int pieces = 40;
-      for (int i = 0; i <= pieces; ++i) {
-        const double x = c.attempt.front() + (c.attempt.back() - c.attempt.front()) * i / pieces;
-        line.points.emplace_back(x, c.curve->at(x));
-      }
-      plot.series.push_back(std::move(points));
-      plot.series.push_back(std::move(line));
+      fitted.push_back(curves.back());
+      addCurve(plot, groupTitle(data, g), g, c);
     }
     if (std::optional<Drawing> drawing = drawLines(plot)) report.drawings.push_back(std::move(*drawing));
   }
-  if (!table.rows.empty()) report.tables.push_back(std::move(table));
-  return fitted;
+  report.json["curves"] = std::move(curves);
+  if (!fitted.empty())
+    report.tables.push_back(tableOf("Curves a - b / x through the groups' means", fitted,
+                                    {{"=figure", "", figureTitle},
+                                     {"=group", "/group", plain},
+                                     {"participants", "/participants", plain},
+                                     {"attempts", "/attempts", plain},
+                                     {"up to", "/attempt", lastOf},
+                                     {"plateau a", "/plateau", digits4},
+                                     {"95 %", "/plateau_interval", range4},
+                                     {"gap b", "/gap", digits4}}));
+  return fitted.size();
 }
 
-void addCriterion(const DesignData& data, const DesignChoices& choices, const DesignFigure& figure,
-                  const Courses& courses, Better better, DesignReport& report) {
+void addCriterion(const DesignData& data, const DesignChoices& choices, const DesignFigure& figure, Better better,
+                  DesignReport& report) {
   std::vector<std::vector<CensoredTime>> times(groupsIn(data));
-  for (const auto& [person, course] : courses)
+  for (const auto& [person, course] : coursesOf(figure))
     times[data.people[person].group].push_back(
         attemptsToCriterion(course.value, *choices.criterion, better, choices.run));
-  ReportTable table =
+  ValueTree groups = ValueTree::array();
+  for (std::size_t g = 0; g < times.size(); ++g) {
+    const Expected<KaplanMeier> km = kaplanMeier(times[g]);
+    groups.push_back({{"group", groupTitle(data, g)},
+                      {"participants", times[g].size()},
+                      {"reached", km ? km->finished : 0},
+                      {"median", km ? km->median : std::nullopt},
+                      {"lower", km ? km->lower : std::nullopt},
+                      {"upper", km ? km->upper : std::nullopt}});
+  }
+  report.tables.push_back(
       tableOf(fmt::format("Attempts until {} is {} {}{}", figure.name, better == Better::lower ? "at most" : "at least",
                           significant(*choices.criterion),
                           choices.run > 1 ? fmt::format(", {} in a row", choices.run) : std::string()),
-              {"=group", "participants", "reached it", "median [95 %]"});
-  DesignJson json{{"figure", figure.name},
-                  {"criterion", *choices.criterion},
-                  {"run", choices.run},
-                  {"groups", DesignJson::array()}};
-  for (std::size_t g = 0; g < times.size(); ++g) {
-    const Expected<KaplanMeier> km = kaplanMeier(times[g]);
-    const auto end = [](const std::optional<double>& v) { return v ? significant(*v) : std::string("-"); };
-    table.rows.push_back({groupTitle(data, g), fmt::format("{}", times[g].size()),
-                          fmt::format("{}", km ? km->finished : 0),
-                          !km          ? "-"
-                          : km->median ? fmt::format("{} [{}, {}]", end(km->median), end(km->lower), end(km->upper))
-                                       : "not reached"});
-    json["groups"].push_back({{"group", groupTitle(data, g)},
-                              {"participants", times[g].size()},
-                              {"reached", km ? km->finished : 0},
-                              {"median", km ? optionalJson(km->median) : DesignJson(nullptr)},
-                              {"lower", km ? optionalJson(km->lower) : DesignJson(nullptr)},
-                              {"upper", km ? optionalJson(km->upper) : DesignJson(nullptr)}});
-  }
-  report.tables.push_back(std::move(table));
+              groups,
+              {{"=group", "/group", plain},
+               {"participants", "/participants", plain},
+               {"reached it", "/reached", plain},
+               {"median [95 %]", "",
+                [](const ValueTree& g) { return g["reached"] == 0 ? std::string("-") : medianText(g); }}}));
+  ValueTree json{
+      {"figure", figure.name}, {"criterion", *choices.criterion}, {"run", choices.run}, {"groups", std::move(groups)}};
   if (times.size() == 2) {
     const Expected<LogRank> test = logRank(times[0], times[1]);
     report.notes.push_back(
         test ? fmt::format("Attempts to the criterion, log-rank: z {:+.2f} (positive: {} sooner), p {}.", test->z,
                            data.groups[0], pText(test->p))
              : fmt::format("Attempts to the criterion were not compared: {}.", test.reason()));
-    json["log_rank"] = test ? DesignJson{{"z", test->z}, {"p", test->p}} : reasonJson(test.reason());
+    json["log_rank"] = treeOf(test, [](const LogRank& r) { return ValueTree{{"z", r.z}, {"p", r.p}}; });
   }
   report.json["to_criterion"] = json;
 }
@@ -140,13 +214,12 @@ void addCriterion(const DesignData& data, const DesignChoices& choices, const De
 
 void analyseLearning(const DesignData& data, const DesignChoices& choices, DesignReport& report) {
   if (std::all_of(data.figures.begin(), data.figures.end(), [](const DesignFigure& f) { return f.values.empty(); }))
-    askForResults(data, 0, {});
+    askForResults(data, report, 0);
   if (choices.criterion && data.figures.size() != 1)
     throw Error(ErrorKind::invalid, Where{data.where},
                 fmt::format("a criterion is of one figure; there are {}", data.figures.size()), {Remedy::nameFamily});
-  std::vector<std::pair<std::string, std::string>> refused;
-  const std::size_t fitted = addCurves(data, choices, report, refused);
-  if (!choices.criterion) askForResults(data, fitted, refused);
+  const std::size_t fitted = addCurves(data, choices, report);
+  if (!choices.criterion) askForResults(data, report, fitted);
   report.methods = fmt::format(
       "Curves a - b / x were fitted by least squares to the groups' means of each attempt that at least half of the "
       "participants made{}.",
@@ -161,14 +234,12 @@ void analyseLearning(const DesignData& data, const DesignChoices& choices, Desig
       throw Error(ErrorKind::refused, Where{data.where},
                   fmt::format("which values of {} are better, lower or higher, is not known", figure.name));
     const Better better = figure.direction == Direction::lower ? Better::lower : Better::higher;
-    const Courses courses = coursesOf(figure);
-    addCriterion(data, choices, figure, courses, better, report);
+    addCriterion(data, choices, figure, better, report);
     report.methods +=
         " Attempts to the criterion were censored for those who did not reach it, with Kaplan-Meier medians.";
     if (groupsIn(data) == 2) report.methods += " Groups were compared by the log-rank test.";
   }
   report.notes.emplace_back("An attempt without a value of the figure is passed over.");
-  noteRefused(report, refused);
 }
 
 }  // namespace calot::analytics

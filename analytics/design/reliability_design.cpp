@@ -6,7 +6,7 @@
 #include <map>
 
 #include "analytics/design/design_report.h"
-#include "analytics/report/report_text.h"
+#include "analytics/report/report_document.h"
 #include "analytics/statistics/reliability.h"
 #include "recorder/base/errors.h"
 
@@ -30,7 +30,7 @@ CrossedValues crossedValues(const DesignData& data, const DesignFigure& figure, 
   return values;
 }
 
-/// Which levels the variance components are of, and the people who have all of them.
+/// Levels of the variance components, and the people who have all of them.
 struct CrossedTable {
   RatingTable table;
   std::size_t incomplete = 0;  ///< people left out
@@ -67,13 +67,14 @@ CrossedTable completeTable(const CrossedValues& values, std::size_t levels, bool
   return result;
 }
 
-struct ReliabilityTables {
-  ReportTable components, decisions;
-};
+ValueTree iccInterval(const RatingTable& table, IccForm form) {
+  return treeOf(intraclassCorrelation(table, form),
+                [](const IntraclassCorrelation& icc) { return ValueTree(icc.interval); });
+}
 
-DesignJson componentsJson(const DesignFigure& figure, const std::string& facet, const Generalizability& g,
-                          std::size_t incomplete, const RatingTable& table) {
-  DesignJson decisions = DesignJson::array();
+ValueTree componentsTree(const DesignFigure& figure, const std::string& facet, const Generalizability& g,
+                         const CrossedTable& crossed) {
+  ValueTree decisions = ValueTree::array();
   for (std::size_t k = 1; k <= std::max(mostDecisions, g.levels); ++k) {
     const DecisionStudy d = g.at(k);
     decisions.push_back({{"k", k},
@@ -82,83 +83,71 @@ DesignJson componentsJson(const DesignFigure& figure, const std::string& facet, 
                          {"relative_error", d.relativeError},
                          {"absolute_error", d.absoluteError}});
   }
-  DesignJson json{{"figure", figure.name},       {"unit", figure.unit},       {"facet", facet},
-                  {"people", g.people},          {"levels", g.levels},        {"left_out", incomplete},
-                  {"person_variance", g.person}, {"facet_variance", g.facet}, {"residual_variance", g.residual},
-                  {"truncated", g.truncated},    {"decisions", decisions}};
-  for (const auto& [form, name] :
-       {std::pair{IccForm::threeAverage, "g_interval"}, {IccForm::twoAverage, "phi_interval"}}) {
-    const Expected<IntraclassCorrelation> icc = intraclassCorrelation(table, form);
-    json[name] = !icc            ? reasonJson(icc.reason())
-                 : icc->interval ? intervalJson(*icc->interval)
-                                 : reasonJson(icc->interval.reason());
-  }
-  return json;
+  return {{"figure", figure.name},
+          {"unit", figure.unit},
+          {"facet", facet},
+          {"people", g.people},
+          {"levels", g.levels},
+          {"left_out", crossed.incomplete},
+          {"person_variance", g.person},
+          {"facet_variance", g.facet},
+          {"residual_variance", g.residual},
+          {"truncated", g.truncated},
+          {"decisions", decisions},
+          {"g_interval", iccInterval(crossed.table, IccForm::threeAverage)},
+          {"phi_interval", iccInterval(crossed.table, IccForm::twoAverage)}};
 }
 
-std::string shareText(double variance, double total) {
+/// A variance and its share of all.
+std::string shareText(const ValueTree& row, const char* of) {
+  const double variance = row.at(of), total = row["person_variance"].get<double>() +
+                                              row["facet_variance"].get<double>() +
+                                              row["residual_variance"].get<double>();
   return fmt::format("{} ({:.0f} %)", significant(variance, 3), total > 0.0 ? 100.0 * variance / total : 0.0);
 }
 
-std::string iccInterval(const RatingTable& table, IccForm form) {
-  const Expected<IntraclassCorrelation> icc = intraclassCorrelation(table, form);
-  return icc && icc->interval ? fmt::format(" [{:.2f}, {:.2f}]", icc->interval->lower, icc->interval->upper) : "";
+/// A coefficient of all levels with its interval, where there is one.
+std::string coefficientText(const ValueTree& row, const std::string& of) {
+  const ValueTree &interval = row[of + "_interval"], &all = row["decisions"][row["levels"].get<std::size_t>() - 1];
+  return share2(all[of]) + (interval.contains("lower") ? " " + shares2(interval) : "");
 }
 
 /// @returns whether the figure has components
 bool addComponents(const DesignData& data, const DesignFigure& figure, const std::string& facet,
-                   const std::vector<std::string>& levels, bool leading, ReliabilityTables& tables,
-                   DesignReport& report, std::vector<std::pair<std::string, std::string>>& refused) {
+                   const std::vector<std::string>& levels, bool leading, DesignReport& report) {
   const CrossedTable crossed = completeTable(crossedValues(data, figure, facet, levels), levels.size(), leading);
   const Expected<Generalizability> g = generalizability(crossed.table);
   if (!g) {
-    refused.emplace_back(
+    report.refused.emplace_back(
         fmt::format("variance components of {} over {}s", figure.name, facet),
         crossed.table.subjects < 2 ? "fewer than two participants have values at all of them" : g.reason());
     return false;
   }
-  const double total = g->person + g->facet + g->residual;
-  const DecisionStudy all = g->at(g->levels);
-  tables.components.rows.push_back(
-      {figureTitle(figure), facet, fmt::format("{}", g->people), fmt::format("{}", crossed.incomplete),
-       fmt::format("{}", g->levels), shareText(g->person, total), shareText(g->facet, total),
-       shareText(g->residual, total), fmt::format("{:.2f}{}", all.g, iccInterval(crossed.table, IccForm::threeAverage)),
-       fmt::format("{:.2f}{}", all.phi, iccInterval(crossed.table, IccForm::twoAverage))});
-  std::vector<std::string> cells{figureTitle(figure), facet};
-  for (std::size_t k = 1; k <= mostDecisions; ++k) {
-    const DecisionStudy d = g->at(k);
-    cells.push_back(fmt::format("{:.2f} / {:.2f}", d.g, d.phi));
-  }
-  tables.decisions.rows.push_back(std::move(cells));
   if (g->truncated)
     report.notes.push_back(
         fmt::format("{}: a negative variance component was set to 0; there are too few data for it.", figure.name));
-  report.json["components"].push_back(componentsJson(figure, facet, *g, crossed.incomplete, crossed.table));
+  report.json["components"].push_back(componentsTree(figure, facet, *g, crossed));
   return true;
 }
 
 /// @returns whether the figure has an error of measurement
-bool addError(const DesignFigure& figure, ReportTable& table, DesignReport& report,
-              std::vector<std::pair<std::string, std::string>>& refused, std::vector<std::string>& warnings) {
+bool addError(const DesignFigure& figure, DesignReport& report, std::vector<std::string>& warnings) {
   std::vector<RepeatedValue> values;
   for (const DesignValue& v : figure.values) values.push_back({v.person, v.order, v.value});
   const Expected<MeasurementError> e = measurementError(values);
   if (!e) {
-    refused.emplace_back("error of measurement of " + figure.name, e.reason());
+    report.refused.emplace_back("error of measurement of " + figure.name, e.reason());
     return false;
   }
-  table.rows.push_back({figureTitle(figure), fmt::format("{}", e->people), fmt::format("{}", e->attempts),
-                        significant(e->sem), intervalText(e->semInterval), significant(e->sdc),
-                        intervalText(e->sdcInterval)});
   report.json["measurement_error"].push_back({{"figure", figure.name},
                                               {"unit", figure.unit},
                                               {"people", e->people},
                                               {"attempts", e->attempts},
                                               {"df", e->df},
                                               {"sem", e->sem},
-                                              {"sem_interval", intervalJson(e->semInterval)},
+                                              {"sem_interval", e->semInterval},
                                               {"sdc", e->sdc},
-                                              {"sdc_interval", intervalJson(e->sdcInterval)}});
+                                              {"sdc_interval", e->sdcInterval}});
   const std::string text = coverageWarning(CoveredInterval::sdc, "SEM and SDC", e->people, e->people, "participants");
   if (!text.empty() && std::find(warnings.begin(), warnings.end(), text) == warnings.end()) warnings.push_back(text);
   return true;
@@ -167,26 +156,44 @@ bool addError(const DesignFigure& figure, ReportTable& table, DesignReport& repo
 }  // namespace
 
 void analyseReliability(const DesignData& data, const DesignChoices&, DesignReport& report) {
-  ReliabilityTables tables{tableOf("Variance components", {"=figure", "=facet", "people", "left out", "levels",
-                                                           "person", "facet", "residual", "G [95 %]", "Phi [95 %]"}),
-                           tableOf("Decision study: G / Phi of the mean of so many", {"=figure", "=facet"})};
-  for (std::size_t k = 1; k <= mostDecisions; ++k)
-    tables.decisions.columns.emplace_back(fmt::format("{}", k), TextTable::Align::right);
-  ReportTable errors = tableOf("Error of measurement", {"=figure", "people", "attempts", "SEM", "95 %", "SDC", "95 %"});
-  std::vector<std::pair<std::string, std::string>> refused;
   std::vector<std::string> warnings;
-  report.json["components"] = report.json["measurement_error"] = DesignJson::array();
+  report.json["components"] = report.json["measurement_error"] = ValueTree::array();
   std::size_t analysed = 0;
   const bool leading = data.source == "cohort" || data.occasionWord == "row";
   for (const DesignFigure& figure : data.figures) {
-    if (addError(figure, errors, report, refused, warnings)) ++analysed;
-    if (addComponents(data, figure, data.occasionWord, data.occasions, leading, tables, report, refused)) ++analysed;
+    if (addError(figure, report, warnings)) ++analysed;
+    if (addComponents(data, figure, data.occasionWord, data.occasions, leading, report)) ++analysed;
   }
   for (const DesignFigure& form : data.rated) {
-    if (addComponents(data, form, "rater", data.raters, false, tables, report, refused)) ++analysed;
+    if (addComponents(data, form, "rater", data.raters, false, report)) ++analysed;
   }
-  askForResults(data, analysed, refused);
-  for (ReportTable table : {std::move(errors), std::move(tables.components), std::move(tables.decisions)}) {
+  askForResults(data, report, analysed);
+  std::vector<TreeColumn> decisions{{"=figure", "", figureTitle}, {"=facet", "/facet", plain}};
+  for (std::size_t k = 1; k <= mostDecisions; ++k)
+    decisions.push_back({fmt::format("{}", k), fmt::format("/decisions/{}", k - 1),
+                         [](const ValueTree& d) { return share2(d["g"]) + " / " + share2(d["phi"]); }});
+  const ValueTree& components = report.json["components"];
+  for (ReportTable table :
+       {tableOf("Error of measurement", report.json["measurement_error"],
+                {{"=figure", "", figureTitle},
+                 {"people", "/people", plain},
+                 {"attempts", "/attempts", plain},
+                 {"SEM", "/sem", digits4},
+                 {"95 %", "/sem_interval", range4},
+                 {"SDC", "/sdc", digits4},
+                 {"95 %", "/sdc_interval", range4}}),
+        tableOf("Variance components", components,
+                {{"=figure", "", figureTitle},
+                 {"=facet", "/facet", plain},
+                 {"people", "/people", plain},
+                 {"left out", "/left_out", plain},
+                 {"levels", "/levels", plain},
+                 {"person", "", [](const ValueTree& row) { return shareText(row, "person_variance"); }},
+                 {"facet", "", [](const ValueTree& row) { return shareText(row, "facet_variance"); }},
+                 {"residual", "", [](const ValueTree& row) { return shareText(row, "residual_variance"); }},
+                 {"G [95 %]", "", [](const ValueTree& row) { return coefficientText(row, "g"); }},
+                 {"Phi [95 %]", "", [](const ValueTree& row) { return coefficientText(row, "phi"); }}}),
+        tableOf("Decision study: G / Phi of the mean of N", components, decisions)}) {
     if (!table.rows.empty()) report.tables.push_back(std::move(table));
   }
   report.notes.emplace_back(
@@ -197,7 +204,6 @@ void analyseReliability(const DesignData& data, const DesignChoices&, DesignRepo
       "levels "
       "of the facet. Left out: participants without values at all of these levels.");
   for (const std::string& warning : warnings) report.notes.push_back("Warning: " + warning + ".");
-  noteRefused(report, refused);
   report.methods =
       "The error of measurement is the pooled deviation of participants' attempts about their own means, with "
       "intervals "

@@ -2,6 +2,8 @@
 // Three or more independent groups, and two groups compared within strata, such as sites.
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "analytics/design/design_report.h"
 #include "analytics/statistics/descriptive.h"
 #include "analytics/statistics/rank_tests.h"
@@ -10,103 +12,75 @@
 namespace calot::analytics {
 namespace {
 
-struct SeveralGroupsRow {
-  const DesignFigure* figure = nullptr;
-  std::vector<std::vector<double>> values;
-  KruskalWallis test;
-  std::vector<DunnPair> pairs;
-};
-
-std::string quartilesText(const std::vector<double>& values) {
-  return fmt::format("{} {}", significant(*median(values)),
-                     intervalText(*quantile(values, 0.25), *quantile(values, 0.75)));
+/// Median and quartiles of a group.
+std::string quartilesText(const ValueTree& group) {
+  return fmt::format("{} [{}, {}]", digits4(group["median"]), digits4(group["lower_quartile"]),
+                     digits4(group["upper_quartile"]));
 }
 
-DesignJson severalJson(const DesignData& data, const SeveralGroupsRow& row, const std::optional<double>& adjusted) {
-  DesignJson groups = DesignJson::array(), pairs = DesignJson::array();
-  for (std::size_t g = 0; g < row.values.size(); ++g) {
+ValueTree severalTree(const DesignData& data, const std::vector<std::vector<double>>& values,
+                      const KruskalWallis& test) {
+  ValueTree groups = ValueTree::array(), pairs = ValueTree::array();
+  for (std::size_t g = 0; g < values.size(); ++g) {
     groups.push_back({{"group", data.groups[g]},
-                      {"n", row.values[g].size()},
-                      {"median", *median(row.values[g])},
-                      {"lower_quartile", *quantile(row.values[g], 0.25)},
-                      {"upper_quartile", *quantile(row.values[g], 0.75)}});
+                      {"n", values[g].size()},
+                      {"median", *median(values[g])},
+                      {"lower_quartile", *quantile(values[g], 0.25)},
+                      {"upper_quartile", *quantile(values[g], 0.75)}});
   }
-  for (const DunnPair& pair : row.pairs) {
+  const std::vector<DunnPair> compared = *dunn(values);
+  for (const DunnPair& pair : compared) {
     pairs.push_back({{"first", data.groups[pair.first]},
                      {"second", data.groups[pair.second]},
                      {"z", pair.z},
                      {"p", pair.p},
                      {"p_holm", pair.adjusted}});
   }
-  return {{"figure", row.figure->name},
-          {"unit", row.figure->unit},
-          {"groups", groups},
-          {"kruskal_wallis",
-           {{"h", row.test.h},
-            {"df", row.test.df},
-            {"p", row.test.p},
-            {"p_holm", optionalJson(adjusted)},
-            {"epsilon_squared", row.test.epsilonSquared}}},
-          {"dunn", pairs}};
+  return {
+      {"groups", groups},
+      {"kruskal_wallis",
+       {{"h", test.h}, {"df", test.df}, {"p", test.p}, {"p_holm", nullptr}, {"epsilon_squared", test.epsilonSquared}}},
+      {"dunn", pairs}};
 }
 
 }  // namespace
 
 void analyseSeveralGroups(const DesignData& data, const DesignChoices&, DesignReport& report) {
-  std::vector<SeveralGroupsRow> rows;
-  std::vector<std::pair<std::string, std::string>> refused;
-  std::vector<std::optional<double>> p;
   bool small = false;
-  for (const DesignFigure& figure : data.figures) {
-    SeveralGroupsRow row{&figure, byGroup(data, oneEachOf(figure)), {}, {}};
-    const Expected<KruskalWallis> test = kruskalWallis(row.values);
-    if (!test) {
-      refused.emplace_back(figure.name, test.reason());
-      continue;
-    }
-    row.test = *test;
-    row.pairs = *dunn(row.values);
-    for (const auto& group : row.values) small = small || group.size() < 5;
-    p.emplace_back(test->p);
-    rows.push_back(std::move(row));
+  ValueTree& results = analyseFigures(data, report, [&](const DesignFigure& figure) {
+    const std::vector<std::vector<double>> values = byGroup(data, oneEachOf(figure));
+    const Expected<KruskalWallis> test = kruskalWallis(values);
+    if (!test) return Expected<ValueTree>(NoResult{test.reason()});
+    for (const auto& group : values) small = small || group.size() < 5;
+    return Expected<ValueTree>(severalTree(data, values, *test));
+  });
+  addHolm(results, "/kruskal_wallis");
+  std::vector<TreeColumn> tests{{"=figure", "", figureTitle}}, medians = tests;
+  for (std::size_t g = 0; g < data.groups.size(); ++g) {
+    const std::string group = fmt::format("/groups/{}", g);
+    tests.push_back({data.groups[g] + ": n", group + "/n", plain});
+    medians.push_back({data.groups[g], group, quartilesText});
   }
-  askForResults(data, rows.size(), refused);
-  const std::vector<std::optional<double>> adjusted = holmOver(p);
-  std::vector<std::string> columns{"=figure"};
-  for (const std::string& group : data.groups) columns.push_back(group + ": n");
-  for (const char* title : {"H", "p", "Holm", "epsilon2"}) columns.emplace_back(title);
-  ReportTable tests = tableOf("Kruskal-Wallis", columns);
-  ReportTable medians = tableOf("Medians and quartiles", {"=figure"});
-  for (const std::string& group : data.groups) medians.columns.emplace_back(group, TextTable::Align::right);
+  tests.push_back({"H", "/kruskal_wallis/h", digits4});
+  tests.push_back({"p", "/kruskal_wallis/p", pValue});
+  tests.push_back({"Holm", "/kruskal_wallis/p_holm", pValue});
+  tests.push_back({"epsilon2", "/kruskal_wallis/epsilon_squared", share3});
   ReportTable pairs = tableOf("Pairs (Dunn)", {"=figure", "=pair", "z", "p", "Holm"});
-  report.json["results"] = DesignJson::array();
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const SeveralGroupsRow& row = rows[i];
-    std::vector<std::string> cells{figureTitle(*row.figure)}, middle{figureTitle(*row.figure)};
-    for (const auto& group : row.values) {
-      cells.push_back(fmt::format("{}", group.size()));
-      middle.push_back(quartilesText(group));
+  for (const ValueTree& row : results) {
+    std::string title = figureTitle(row);
+    for (const ValueTree& pair : row["dunn"]) {
+      pairs.rows.push_back({std::exchange(title, ""), plain(pair["first"]) + " - " + plain(pair["second"]),
+                            signed2(pair["z"]), pValue(pair["p"]), pValue(pair["p_holm"])});
     }
-    for (const std::string& cell : {significant(row.test.h), pText(row.test.p), pOrDash(adjusted[i]),
-                                    fmt::format("{:.3f}", row.test.epsilonSquared)})
-      cells.push_back(cell);
-    tests.rows.push_back(cells);
-    medians.rows.push_back(middle);
-    for (const DunnPair& pair : row.pairs) {
-      pairs.rows.push_back({pair.first == 0 && pair.second == 1 ? figureTitle(*row.figure) : "",
-                            fmt::format("{} - {}", data.groups[pair.first], data.groups[pair.second]),
-                            fmt::format("{:+.2f}", pair.z), pText(pair.p), pText(pair.adjusted)});
-    }
-    report.json["results"].push_back(severalJson(data, row, adjusted[i]));
   }
-  report.tables = {std::move(tests), std::move(medians), std::move(pairs)};
+  report.tables = {tableOf("Kruskal-Wallis", results, tests), tableOf("Medians and quartiles", results, medians),
+                   std::move(pairs)};
   report.notes.push_back(fmt::format(
       "Holm beside H: over {} figures; beside a pair: over the pairs of its figure. Epsilon squared: share of the "
       "ranks' "
       "variance between the groups, 0 to 1. z: positive where the pair's first group has the higher values.",
-      rows.size()));
+      results.size()));
   if (small) report.notes.emplace_back("Warning: a group has fewer than five values; p by chi-squared is rough there.");
-  noteRefused(report, refused);
   report.methods =
       "Groups were compared by the Kruskal-Wallis test (chi-squared, corrected for ties) with epsilon squared, pairs "
       "by "
@@ -114,11 +88,8 @@ void analyseSeveralGroups(const DesignData& data, const DesignChoices&, DesignRe
 }
 
 void analyseStrata(const DesignData& data, const DesignChoices& choices, DesignReport& report) {
-  std::vector<std::pair<std::string, std::string>> refused;
-  std::vector<std::pair<const DesignFigure*, StratifiedRankSum>> rows;
-  std::vector<std::size_t> people;
-  std::vector<std::optional<double>> p;
-  for (const DesignFigure& figure : data.figures) {
+  report.json["strata"] = data.strata;
+  ValueTree& results = analyseFigures(data, report, [&](const DesignFigure& figure) {
     const OneEach each = oneEachOf(figure);
     std::vector<Stratum> strata(data.strata.size());
     for (std::size_t i = 0; i < each.person.size(); ++i) {
@@ -126,41 +97,28 @@ void analyseStrata(const DesignData& data, const DesignChoices& choices, DesignR
       (person.group == 0 ? strata[person.stratum].x : strata[person.stratum].y).push_back(each.value[i]);
     }
     const Expected<StratifiedRankSum> test = stratifiedRankSum(strata);
-    if (!test) {
-      refused.emplace_back(figure.name, test.reason());
-      continue;
-    }
-    rows.emplace_back(&figure, *test);
-    people.push_back(each.person.size());
-    p.emplace_back(test->p);
-  }
-  askForResults(data, rows.size(), refused);
-  const std::vector<std::optional<double>> adjusted = holmOver(p);
-  ReportTable table = tableOf(fmt::format("Within {} strata", data.strata.size()),
-                              {"=figure", "n", "strata", "left out", "A", "z", "p", "Holm"});
-  report.json["strata"] = data.strata;
-  report.json["results"] = DesignJson::array();
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const auto& [figure, test] = rows[i];
-    table.rows.push_back({figureTitle(*figure), fmt::format("{}", people[i]), fmt::format("{}", test.strata),
-                          fmt::format("{}", test.left), fmt::format("{:.3f}", test.a), fmt::format("{:+.2f}", test.z),
-                          pText(test.p), pOrDash(adjusted[i])});
-    report.json["results"].push_back({{"figure", figure->name},
-                                      {"unit", figure->unit},
-                                      {"n", people[i]},
-                                      {"strata", test.strata},
-                                      {"strata_left_out", test.left},
-                                      {"a", test.a},
-                                      {"z", test.z},
-                                      {"p", test.p},
-                                      {"p_holm", optionalJson(adjusted[i])}});
-  }
-  report.tables.push_back(std::move(table));
+    if (!test) return Expected<ValueTree>(NoResult{test.reason()});
+    return Expected<ValueTree>(ValueTree{{"n", each.person.size()},
+                                         {"strata", test->strata},
+                                         {"strata_left_out", test->left},
+                                         {"a", test->a},
+                                         {"z", test->z},
+                                         {"p", test->p}});
+  });
+  addHolm(results);
+  report.tables.push_back(tableOf(fmt::format("Within {} strata", data.strata.size()), results,
+                                  {{"=figure", "", figureTitle},
+                                   {"n", "/n", plain},
+                                   {"strata", "/strata", plain},
+                                   {"left out", "/strata_left_out", plain},
+                                   {"A", "/a", share3},
+                                   {"z", "/z", signed2},
+                                   {"p", "/p", pValue},
+                                   {"Holm", "/p_holm", pValue}}));
   report.notes.push_back(
       fmt::format("A: chance that a value of {} is larger than one of {} of the same stratum, ties counting one half. "
                   "Left out: strata with one group, or with all values equal. Holm: over {} figures.",
-                  data.groups[0], data.groups[1], rows.size()));
-  noteRefused(report, refused);
+                  data.groups[0], data.groups[1], results.size()));
   report.methods = fmt::format(
       "Groups were compared within the strata of \"{}\" by van Elteren's stratified rank sum test (normal "
       "approximation, corrected for ties); p values were adjusted by Holm's method.",

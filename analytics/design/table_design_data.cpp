@@ -25,45 +25,21 @@ struct TakenRow {
   bool finished = true;
 };
 
-/// A column that may not have been named.
-struct NamedColumn {
-  bool given = false;
-  std::size_t column = 0;
-};
-
-NamedColumn columnIfNamed(const CsvTable& table, const std::string& name) {
-  return name.empty() ? NamedColumn{} : NamedColumn{true, table.column(name)};
+std::optional<std::size_t> columnIfNamed(const CsvTable& table, const std::string& name) {
+  return name.empty() ? std::nullopt : std::optional(table.column(name));
 }
 
-bool finishedIn(const CsvTable& table, const CsvRow& row, const NamedColumn& named) {
-  if (!named.given) return true;
-  const std::size_t column = named.column;
-  const std::string& cell = row.cells[column];
+bool finishedIn(const CsvTable& table, const CsvRow& row, const std::optional<std::size_t>& column) {
+  if (!column) return true;
+  const std::string& cell = row.cells[*column];
   for (const char* yes : {"1", "yes", "true", "TRUE"}) {
     if (cell == yes) return true;
   }
   for (const char* no : {"0", "no", "false", "FALSE"}) {
     if (cell == no) return false;
   }
-  throw Error(ErrorKind::damaged, Where{table.path, fmt::format("line {}", row.line)},
-              fmt::format("column \"{}\": \"{}\" is neither 1, yes nor true, nor 0, no or false",
-                          shown(table.columns[column]), shown(cell)));
-}
-
-void checkDesignOptions(const TableStudyOptions& options, const DesignChoices& choices) {
-  const auto fail = [](const std::string& what, std::initializer_list<Remedy> remedies) {
-    throw Error(ErrorKind::invalid, "study: " + what, remedies);
-  };
-  const GroupsNeeded groups = entryOf(choices.design).groups;
-  if (options.participantColumn.empty())
-    fail("which column of the table names the participant is not said", {Remedy::nameParticipantColumn});
-  if (options.groupColumn.empty() && (groups == GroupsNeeded::two || groups == GroupsNeeded::several))
-    fail("which column of the table names the group is not said", {Remedy::nameGroupColumn});
-  if (options.groupColumn.empty() && !choices.groups.empty())
-    fail("groups need the column that names them", {Remedy::nameGroupColumn});
-  if (options.outcomes.empty()) fail("a table needs at least one outcome", {Remedy::nameOutcome});
-  if (options.occasionColumns.empty() && !options.occasion.empty())
-    fail("an occasion needs the column that names occasions", {Remedy::nameOccasionColumn});
+  failAt(table, row.line, table.columns[*column],
+         fmt::format("\"{}\" is neither 1, yes nor true, nor 0, no or false", shown(cell)));
 }
 
 /// By occasion in the order of the table, or by number where all are numbers.
@@ -138,7 +114,10 @@ std::size_t placeOf(const std::vector<std::string>& names, const std::string& na
 
 DesignData tableDesignData(const CsvTable& table, const TableStudyOptions& asked, const DesignChoices& choices) {
   TableStudyOptions options = asked;
-  checkDesignOptions(options, choices);
+  const GroupsNeeded needed = entryOf(choices.design).groups;
+  checkColumns(options, needed == GroupsNeeded::two || needed == GroupsNeeded::several);
+  if (options.groupColumn.empty() && !choices.groups.empty())
+    throw Error(ErrorKind::invalid, "study: groups need the column that names them", {Remedy::nameGroupColumn});
   DesignChoices kept = choices;
   if (!choices.against.empty()) {
     if (table.has(choices.against) || choices.against.find(':') != std::string::npos) {
@@ -158,21 +137,11 @@ DesignData tableDesignData(const CsvTable& table, const TableStudyOptions& asked
   data.where = std::filesystem::path(table.path).filename().string();
   data.recruited = records.size();
   data.head.push_back(fmt::format("Table {}.", data.where));
-  const NamedColumn stratum = columnIfNamed(table, choices.strata);
-  const NamedColumn finished = columnIfNamed(table, choices.finishedColumn);
-  std::map<std::string, std::uint64_t> present;
-  const bool grouped = !options.groupColumn.empty();
-  std::uint64_t ungrouped = 0, otherGroup = 0, otherOccasion = 0, without = 0;
-  for (const Record& r : records) {
-    if (r.group.empty()) {
-      ++ungrouped;
-    } else {
-      ++present[r.group];
-    }
-  }
-  if (grouped)
-    data.groups = groupsOfDesign(present, choices, table.path,
-                                 ungrouped == 0 ? "" : fmt::format(" ({} rows have none)", ungrouped));
+  const std::optional<std::size_t> stratum = columnIfNamed(table, choices.strata);
+  const std::optional<std::size_t> finished = columnIfNamed(table, choices.finishedColumn);
+  std::uint64_t otherGroup = 0, otherOccasion = 0, without = 0;
+  const RowsByGroup byGroup = rowsByGroup(records);
+  if (!options.groupColumn.empty()) data.groups = groupsOfDesign(byGroup.present, choices, table.path, byGroup.left);
   if (data.groups.size() == 2) data.better = betterOf({data.groups[0], data.groups[1]}, choices);
   std::vector<TakenRow> taken;
   std::set<std::string> strata;
@@ -182,22 +151,19 @@ DesignData tableDesignData(const CsvTable& table, const TableStudyOptions& asked
       if (!r.group.empty()) ++otherGroup;
     } else if (!options.occasion.empty() && r.occasion != options.occasion) {
       ++otherOccasion;
-    } else if (stratum.given && table.rows[i].cells[stratum.column].empty()) {
+    } else if (stratum && table.rows[i].cells[*stratum].empty()) {
       ++without;
     } else {
-      taken.push_back({&r, stratum.given ? table.rows[i].cells[stratum.column] : std::string(),
-                       finishedIn(table, table.rows[i], finished)});
-      if (stratum.given) strata.insert(taken.back().stratum);
+      taken.push_back(
+          {&r, stratum ? table.rows[i].cells[*stratum] : std::string(), finishedIn(table, table.rows[i], finished)});
+      if (stratum) strata.insert(taken.back().stratum);
     }
   }
   data.strata.assign(strata.begin(), strata.end());
-  for (const auto& [reason, count] :
-       std::initializer_list<std::pair<std::string, std::uint64_t>>{{"no group", data.groups.empty() ? 0 : ungrouped},
-                                                                    {"another group", otherGroup},
-                                                                    {"another occasion", otherOccasion},
-                                                                    {"no " + choices.strata, without}}) {
-    if (count > 0) data.flow.push_back({reason, count});
-  }
+  addReasons(data.flow, {{"no group", data.groups.empty() ? 0 : byGroup.ungrouped},
+                         {"another group", otherGroup},
+                         {"another occasion", otherOccasion},
+                         {"no " + choices.strata, without}});
   const bool named = !options.occasionColumns.empty();
   data.occasionWord = named ? options.occasionColumns[0] : "row";
   if (named) orderOccasions(data, taken);
@@ -205,7 +171,7 @@ DesignData tableDesignData(const CsvTable& table, const TableStudyOptions& asked
   for (const auto& [person, list] : rowsByPerson(data, taken, table, choices)) {
     DesignPerson p{person, 0, 0};
     if (!data.groups.empty()) p.group = placeOf(data.groups, list[0].record->group);
-    if (stratum.given) p.stratum = placeOf(data.strata, list[0].stratum);
+    if (stratum) p.stratum = placeOf(data.strata, list[0].stratum);
     for (std::size_t i = 0; i < list.size(); ++i) {
       const TakenRow& row = list[i];
       ++data.analysed;
@@ -220,11 +186,7 @@ DesignData tableDesignData(const CsvTable& table, const TableStudyOptions& asked
     }
     data.people.push_back(std::move(p));
   }
-  for (DesignFigure& figure : data.figures) {
-    std::stable_sort(figure.values.begin(), figure.values.end(), [](const DesignValue& a, const DesignValue& b) {
-      return a.person != b.person ? a.person < b.person : a.order < b.order;
-    });
-  }
+  for (DesignFigure& figure : data.figures) sortValues(figure);
   keepNamedFigures(data, kept);
   return data;
 }

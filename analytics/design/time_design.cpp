@@ -2,6 +2,9 @@
 // Times of attempts of which some were not finished.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <utility>
+
 #include "analytics/design/design_report.h"
 #include "analytics/statistics/survival.h"
 #include "recorder/base/errors.h"
@@ -17,45 +20,35 @@ GroupTimes timesByGroup(const DesignData& data, const DesignFigure& figure) {
   return times;
 }
 
-std::string medianText(const KaplanMeier& km) {
-  const auto end = [](const std::optional<double>& v) { return v ? significant(*v) : std::string("-"); };
-  return km.median ? fmt::format("{} [{}, {}]", significant(*km.median), end(km.lower), end(km.upper)) : "not reached";
-}
-
 PlotSeries stepsOf(const std::string& label, std::size_t ink, const KaplanMeier& km) {
   PlotSeries series{label, ink, {{0.0, 0.0}}, true, true};
   for (const SurvivalStep& step : km.steps) series.points.emplace_back(step.time, 100.0 * (1.0 - step.unfinished));
   return series;
 }
 
-void addGroupRows(const DesignData& data, const DesignFigure& figure, const GroupTimes& times, ReportTable& table,
-                  LinePlot& plot, DesignJson& json) {
-  json = DesignJson::array();
+/// @param[out] plot a line for each group
+ValueTree groupsTree(const DesignData& data, const GroupTimes& times, LinePlot& plot) {
+  ValueTree groups = ValueTree::array();
   for (std::size_t g = 0; g < times.size(); ++g) {
     const Expected<KaplanMeier> km = kaplanMeier(times[g]);
-    std::size_t finished = 0;
-    for (const CensoredTime& t : times[g]) finished += t.finished ? 1 : 0;
-    table.rows.push_back({g == 0 ? figureTitle(figure) : "", data.groups[g], fmt::format("{}", times[g].size()),
-                          fmt::format("{}", finished), km ? medianText(*km) : km.reason()});
-    json.push_back({{"group", data.groups[g]}, {"n", times[g].size()}, {"finished", finished}});
+    const auto finished = std::count_if(times[g].begin(), times[g].end(), [](const auto& t) { return t.finished; });
+    groups.push_back({{"group", data.groups[g]}, {"n", times[g].size()}, {"finished", finished}});
     if (!km) {
-      json.back()["reason"] = km.reason();
+      groups.back()["reason"] = km.reason();
       continue;
     }
-    json.back()["median"] = optionalJson(km->median);
-    json.back()["lower"] = optionalJson(km->lower);
-    json.back()["upper"] = optionalJson(km->upper);
+    groups.back().update({{"median", km->median}, {"lower", km->lower}, {"upper", km->upper}});
     plot.series.push_back(stepsOf(data.groups[g], g, *km));
   }
+  return groups;
 }
 
-DesignJson worstJson(const Expected<WorstRank>& worst) {
-  if (!worst) return reasonJson(worst.reason());
-  return {{"u", worst->test.u},
-          {"p", worst->test.p},
-          {"exact", worst->test.exact},
-          {"a", worst->effect.value.a},
-          {"interval", intervalJson(worst->effect.a)}};
+ValueTree worstTree(const WorstRank& worst) {
+  return {{"u", worst.test.u},
+          {"p", worst.test.p},
+          {"exact", worst.test.exact},
+          {"a", worst.effect.value.a},
+          {"interval", worst.effect.a}};
 }
 
 }  // namespace
@@ -63,46 +56,40 @@ DesignJson worstJson(const Expected<WorstRank>& worst) {
 void analyseTimes(const DesignData& data, const DesignChoices& choices, DesignReport& report) {
   if (choices.attemptRule == AttemptRule::mean)
     throw Error(ErrorKind::invalid, "study: times of which some are not finished have no mean", {Remedy::takeFirst});
-  ReportTable groups =
-      tableOf("Finished, and median time by Kaplan and Meier", {"=figure", "=group", "n", "finished", "median [95 %]"});
-  ReportTable tests = tableOf("Comparison", {"=figure", "observed", "expected", "z", "p, log-rank", "Holm",
-                                             "A, worst rank", "95 %", "p, worst rank"});
-  std::vector<std::pair<std::string, std::string>> refused;
-  std::vector<std::optional<double>> p;
-  report.json["results"] = DesignJson::array();
-  for (const DesignFigure& figure : data.figures) {
+  const bool firstFaster = data.better != data.groups[1];
+  ValueTree& results = analyseFigures(data, report, [&](const DesignFigure& figure) {
     const GroupTimes times = timesByGroup(data, figure);
     const Expected<LogRank> test = logRank(times[0], times[1]);
-    if (!test) {
-      refused.emplace_back(figure.name, test.reason());
-      continue;
-    }
+    if (!test) return Expected<ValueTree>(NoResult{test.reason()});
     LinePlot plot{"Finished: " + figure.name, "%", figure.unit.empty() ? "time" : figure.unit, {}, {}, data.synthetic};
-    DesignJson json;
-    addGroupRows(data, figure, times, groups, plot, json);
-    const bool firstFaster = data.better != data.groups[1];
     const Expected<WorstRank> worst =
         worstRank(times[0], times[1], firstFaster ? Hypothesis::firstSmaller : Hypothesis::firstLarger);
-    tests.rows.push_back({figureTitle(figure), significant(test->observed), significant(test->expected),
-                          fmt::format("{:+.2f}", test->z), pText(test->p), "",
-                          worst ? fmt::format("{:.3f}", worst->effect.value.a) : "-",
-                          worst ? intervalText(worst->effect.a) : "-", worst ? pText(worst->test.p) : "-"});
-    p.emplace_back(test->p);
-    report.json["results"].push_back(
-        {{"figure", figure.name},
-         {"unit", figure.unit},
-         {"groups", json},
-         {"log_rank", {{"observed", test->observed}, {"expected", test->expected}, {"z", test->z}, {"p", test->p}}},
-         {"worst_rank", worstJson(worst)}});
+    ValueTree result{
+        {"groups", groupsTree(data, times, plot)},
+        {"log_rank", {{"observed", test->observed}, {"expected", test->expected}, {"z", test->z}, {"p", test->p}}},
+        {"worst_rank", treeOf(worst, worstTree)}};
     if (std::optional<Drawing> drawing = drawLines(plot)) report.drawings.push_back(std::move(*drawing));
+    return Expected<ValueTree>(std::move(result));
+  });
+  addHolm(results, "/log_rank");
+  ReportTable groups =
+      tableOf("Finished, and median time by Kaplan and Meier", {"=figure", "=group", "n", "finished", "median [95 %]"});
+  for (const ValueTree& row : results) {
+    std::string title = figureTitle(row);
+    for (const ValueTree& group : row["groups"])
+      groups.rows.push_back(
+          {std::exchange(title, ""), group["group"], plain(group["n"]), plain(group["finished"]), medianText(group)});
   }
-  askForResults(data, p.size(), refused);
-  const std::vector<std::optional<double>> adjusted = holmOver(p);
-  for (std::size_t i = 0; i < p.size(); ++i) {
-    tests.rows[i][5] = pOrDash(adjusted[i]);
-    report.json["results"][i]["log_rank"]["p_holm"] = optionalJson(adjusted[i]);
-  }
-  report.tables = {std::move(groups), std::move(tests)};
+  report.tables = {std::move(groups), tableOf("Comparison", results,
+                                              {{"=figure", "", figureTitle},
+                                               {"observed", "/log_rank/observed", digits4},
+                                               {"expected", "/log_rank/expected", digits4},
+                                               {"z", "/log_rank/z", signed2},
+                                               {"p, log-rank", "/log_rank/p", pValue},
+                                               {"Holm", "/log_rank/p_holm", pValue},
+                                               {"A, worst rank", "/worst_rank/a", share3},
+                                               {"95 %", "/worst_rank/interval", range4},
+                                               {"p, worst rank", "/worst_rank/p", pValue}})};
   report.notes.push_back(fmt::format(
       "Observed and expected: attempts of {} that finished, and how many would have at one rate for both groups; z: "
       "positive where {} finishes sooner.",
@@ -113,9 +100,7 @@ void analyseTimes(const DesignData& data, const DesignChoices& choices, DesignRe
       "behind "
       "all others: right where not to finish is the worst result.");
   report.notes.push_back(fmt::format("A: chance that a participant of {} is faster than one of {}.",
-                                     data.better == data.groups[1] ? data.groups[1] : data.groups[0],
-                                     data.better == data.groups[1] ? data.groups[0] : data.groups[1]));
-  noteRefused(report, refused);
+                                     data.groups[firstFaster ? 0 : 1], data.groups[firstFaster ? 1 : 0]));
   report.methods =
       "Times were compared by the log-rank test with unfinished attempts censored, and by the rank test with "
       "unfinished "

@@ -1,15 +1,140 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "analytics/external/metric_input.h"
 
+#include <fmt/format.h>
+#include <stdlib.h>  // mkdtemp
+#include <cassert>
+#include <cerrno>
 #include <fstream>
+#include <string>
 #include <string_view>
+#include <system_error>
 #include <type_traits>
+#include <utility>
 
-#include "analytics/external/input_columns.h"
 #include "recorder/base/errors.h"
 #include "sim/judgement/judge.h"
 
 namespace calot::analytics {
+namespace {
+
+static_assert(std::endian::native == std::endian::little);
+
+constexpr std::size_t headBytes = 128;  // a multiple of 64, with room for 20 digits of each dimension
+constexpr std::size_t heldBack = 2048;  // numbers
+
+}  // namespace
+
+NpyColumn::NpyColumn(std::filesystem::path path, bool whole, std::size_t width)
+    : path_(std::move(path)), whole_(whole), width_(width) {
+  file_.reset(std::fopen(path_.c_str(), "wb"));
+  if (!file_) fail();
+  waiting_.reserve(heldBack);
+  writeHead();
+}
+
+void NpyColumn::putBits(std::uint64_t bits) {
+  waiting_.push_back(bits);
+  ++numbers_;
+  if (waiting_.size() == heldBack) flush();
+}
+
+void NpyColumn::clear() {
+  assert(numbers_ == waiting_.size());
+  waiting_.clear();
+  numbers_ = 0;
+}
+
+void NpyColumn::flush() {
+  if (std::fwrite(waiting_.data(), sizeof(std::uint64_t), waiting_.size(), file_.get()) != waiting_.size()) fail();
+  waiting_.clear();
+}
+
+void NpyColumn::close() {
+  assert(width_ == 0 || numbers_ % width_ == 0);
+  flush();
+  if (std::fseek(file_.get(), 0, SEEK_SET) != 0) fail();
+  writeHead();
+  if (std::fclose(file_.release()) != 0) fail();
+}
+
+void NpyColumn::writeHead() {
+  const std::uint64_t rows = width_ == 0 ? numbers_ : numbers_ / width_;
+  const std::string shape = width_ == 0 ? fmt::format("({},)", rows) : fmt::format("({}, {})", rows, width_);
+  std::string text =
+      fmt::format("{{'descr': '{}', 'fortran_order': False, 'shape': {}, }}", whole_ ? "<i8" : "<f8", shape);
+  constexpr std::size_t before = 10;  // magic, version, length
+  text.resize(headBytes - before - 1, ' ');
+  text += '\n';
+  const auto length = static_cast<std::uint16_t>(text.size());
+  std::string head("\x93NUMPY\x01\x00", 8);
+  head += static_cast<char>(length & 0xFFU);
+  head += static_cast<char>(length >> 8U);
+  head += text;
+  if (std::fwrite(head.data(), 1, head.size(), file_.get()) != head.size()) fail();
+}
+
+void NpyColumn::fail() const {
+  throw Error(ErrorKind::failure, Where{path_.string()},
+              fmt::format("cannot be written: {}", std::generic_category().message(errno)));
+}
+
+InputColumns::InputColumns(const std::filesystem::path& folder, std::string table)
+    : folder_(folder / table), table_(std::move(table)) {
+  std::filesystem::create_directory(folder_);
+}
+
+NpyColumn& InputColumns::column(const std::string& name, const char* unit, const char* frame, bool whole,
+                                std::size_t width, bool list) {
+  if (!made_) {
+    columns_.emplace_back(folder_ / (name + ".npy"), whole, list ? width : 0);
+    description_.push_back({{"table", table_}, {"name", name}, {"unit", unit}, {"frame", frame}});
+  }
+  assert(next_ < columns_.size());
+  return columns_[next_++];
+}
+
+void InputColumns::number(const std::string& name, const char* unit, double value) {
+  column(name, unit, "", false, 0, false).put(value);
+}
+
+void InputColumns::whole(const std::string& name, std::int64_t value) {
+  column(name, "", "", true, 0, false).put(value);
+}
+
+void InputColumns::vector(const std::string& name, const char* unit, const char* frame, const Vec3& value) {
+  NpyColumn& c = column(name, unit, frame, false, 3, true);
+  for (int i = 0; i < 3; ++i) c.put(value[i]);
+}
+
+void InputColumns::rotation(const std::string& name, const char* frame, const Quat& value) {
+  NpyColumn& c = column(name, "", frame, false, 4, true);
+  for (const double part : {value.w(), value.x(), value.y(), value.z()}) c.put(part);
+}
+
+void InputColumns::dropRows() {
+  for (NpyColumn& c : columns_) c.clear();
+}
+
+void InputColumns::close() {
+  for (NpyColumn& c : columns_) c.close();
+}
+
+TemporaryFolder::TemporaryFolder() {
+  std::error_code fault;
+  const std::filesystem::path place = std::filesystem::temp_directory_path(fault);
+  std::string name = ((fault ? std::filesystem::path(".") : place) / "calot-metric-XXXXXX").string();
+  if (mkdtemp(name.data()) == nullptr)
+    throw Error(ErrorKind::failure, Where{name}, "cannot be made: " + std::generic_category().message(errno));
+  path_ = name;
+}
+
+TemporaryFolder::~TemporaryFolder() {
+  std::error_code ignored;
+  if (!path_.empty()) std::filesystem::remove_all(path_, ignored);
+}
+
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -97,52 +222,38 @@ void writeDescription(const std::filesystem::path& folder, const Json& attempt, 
 
 }  // namespace
 
-struct MetricInput::Storage {
-  Storage(const recorder::AttemptHeader& h, const SceneDescription& scene, Origin origin)
-      : header(h),
-        judge(scene),
-        results(folder.path(), "results"),
-        samples(folder.path(), "samples"),
-        events(folder.path(), "events"),
-        source(nameOf(origin)) {}
-  TemporaryFolder folder;
-  recorder::AttemptHeader header;
-  Judge judge;
-  InputColumns results, samples, events;
-  std::string source;
-};
-
 MetricInput::MetricInput(const recorder::AttemptHeader& header, const SceneDescription& scene, Origin origin)
-    : storage_(std::make_unique<Storage>(header, scene, origin)) {
-  putEvent(storage_->events, 0.0, Event{});
-  storage_->events.dropRows();
+    : header_(header),
+      judge_(scene),
+      results_(folder_.path(), "results"),
+      samples_(folder_.path(), "samples"),
+      events_(folder_.path(), "events"),
+      origin_(origin) {
+  putEvent(events_, 0.0, Event{});
+  events_.dropRows();
 }
 
-MetricInput::~MetricInput() = default;
-
 void MetricInput::onStep(const recorder::StepRecord& record) {
-  Storage& s = *storage_;
-  const Judgement& judgement = s.judge.observe(record.result);
-  const std::uint64_t first = record.step * s.header.ticksPerStep;
-  const double tick = s.header.tickSeconds;
-  const double end = static_cast<double>(first + s.header.ticksPerStep) * tick;
+  const Judgement& judgement = judge_.observe(record.result);
+  const std::uint64_t first = record.step * header_.ticksPerStep;
+  const double tick = header_.tickSeconds;
+  const double end = static_cast<double>(first + header_.ticksPerStep) * tick;
   for (std::size_t t = 0; t < record.samples.size(); ++t)
-    putTick(s.samples, static_cast<double>(first + t) * tick, record.samples[t], record.ticks[t]);
-  s.results.beginRow();
-  s.results.number("time", "s", end);
-  s.results.whole("phase", static_cast<std::int64_t>(judgement.phase));
+    putTick(samples_, static_cast<double>(first + t) * tick, record.samples[t], record.ticks[t]);
+  results_.beginRow();
+  results_.number("time", "s", end);
+  results_.whole("phase", static_cast<std::int64_t>(judgement.phase));
   for (std::size_t h = 0; h < static_cast<std::size_t>(handCount); ++h)
-    s.results.number(std::string(handNames[h]) + "_force", "N", record.result.hand[h].contactForce.norm());
-  StepResult::fields(record.result, s.header.stepResultVersion, ResultVisitor{s.results});
-  s.results.endRow();
-  for (const Event& event : judgement.events) putEvent(s.events, end, event);
+    results_.number(std::string(handNames[h]) + "_force", "N", record.result.hand[h].contactForce.norm());
+  StepResult::fields(record.result, header_.stepResultVersion, ResultVisitor{results_});
+  results_.endRow();
+  for (const Event& event : judgement.events) putEvent(events_, end, event);
 }
 
 void MetricInput::onEnd(recorder::Outcome outcome) {
-  Storage& s = *storage_;
-  for (InputColumns* table : {&s.results, &s.samples, &s.events}) table->close();
-  const recorder::AttemptHeader& h = s.header;
-  const Json attempt{{"source", s.source},
+  for (InputColumns* table : {&results_, &samples_, &events_}) table->close();
+  const recorder::AttemptHeader& h = header_;
+  const Json attempt{{"source", nameOf(origin_)},
                      {"scene", h.sceneName},
                      {"scene_major", h.sceneMajor},
                      {"scene_minor", h.sceneMinor},
@@ -155,10 +266,8 @@ void MetricInput::onEnd(recorder::Outcome outcome) {
                      {"step_result_version", h.stepResultVersion},
                      {"tick_seconds", h.tickSeconds},
                      {"ticks_per_step", h.ticksPerStep}};
-  writeDescription(s.folder.path(), attempt, h.structures(), {&s.results, &s.samples, &s.events});
+  writeDescription(folder_.path(), attempt, h.structures(), {&results_, &samples_, &events_});
 }
-
-const std::filesystem::path& MetricInput::folder() const { return storage_->folder.path(); }
 
 TemporaryFolder writeMetricInput(const recorder::TrackedMotion& motion, recorder::Outcome outcome,
                                  const std::string& handedness, const std::string& task) {

@@ -65,14 +65,14 @@ def declared(space):
     found = {}
     for key, kind, what in (("NAME", str, "a text"), ("VERSION", int, "a whole number"), ("UNIT", str, "a text"), ("BETTER", str, "\"lower\", \"higher\" or \"none\"")):
         if key not in space:
-            raise Faulty(f"declares no {key}; {what} is wanted")
+            raise Faulty(f"declares no {key}; {what} is expected")
         value = space[key]
         if not isinstance(value, kind) or isinstance(value, bool):
-            raise Faulty(f"{key} is a {type(value).__name__}; {what} is wanted")
+            raise Faulty(f"{key} is a {type(value).__name__}; {what} is expected")
         found[key.lower()] = value
     title = space.get("TITLE", found["name"])
     if not isinstance(title, str):
-        raise Faulty(f"TITLE is a {type(title).__name__}; a text is wanted")
+        raise Faulty(f"TITLE is a {type(title).__name__}; a text is expected")
     found["title"] = title
     if not callable(space.get("compute")):
         raise Faulty("defines no function compute(attempt)")
@@ -90,12 +90,12 @@ def computed(result):
     if hasattr(result, "item") and getattr(result, "ndim", None) == 0:
         result = result.item()
     if isinstance(result, bool) or not isinstance(result, numbers.Real):
-        raise Faulty(f"compute returned a {type(result).__name__}; a number, None or (None, \"reason\") is wanted")
+        raise Faulty(f"compute returned a {type(result).__name__}; a number, None or (None, \"reason\") is expected")
     value = float(result)
     if math.isnan(value):
         return {"missing": "compute returned NaN"}
     if math.isinf(value):
-        raise Faulty("compute returned infinity; a finite number, None or (None, \"reason\") is wanted")
+        raise Faulty("compute returned infinity; a finite number, None or (None, \"reason\") is expected")
     return {"value": value}
 
 

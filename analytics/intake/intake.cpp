@@ -1,8 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "analytics/intake/intake.h"
 
+#include <poll.h>
+#include <sys/inotify.h>
+#include <unistd.h>
 #include <algorithm>
+#include <array>
+#include <cstdint>
 #include <exception>
+#include <system_error>
 #include <tuple>
 #include <utility>
 
@@ -44,7 +51,7 @@ milliseconds ageOf(const FileState& state) {
                   milliseconds(0));
 }
 
-/// A cohort or a folder that cannot serve is told at once, and leaves no journal.
+/// An unusable cohort or folder is reported at once, and leaves no journal.
 IntakeSettings checked(IntakeSettings settings) {
   std::error_code ignored;
   if (std::filesystem::exists(settings.cohort, ignored)) {
@@ -52,14 +59,6 @@ IntakeSettings checked(IntakeSettings settings) {
   }
   static_cast<void>(recorder::filesUnder(settings.folders));
   return settings;
-}
-
-IntakeItem fault(std::string file, TakenIn how, Error error) {
-  IntakeItem item;
-  item.file = std::move(file);
-  item.how = how;
-  item.fault = std::move(error);
-  return item;
 }
 
 }  // namespace
@@ -74,7 +73,7 @@ bool Intake::isDecided(const std::string& file, const FileState& state, IntakeRe
     rest.retries += later ? 1U : 0U;
     return later;
   }
-  // What another version could not decide, this one may.
+  // This version may decide recordings that another version could not.
   return !entry->otherVersion || entry->simulationVersion == simulationVersion;
 }
 
@@ -115,9 +114,12 @@ IntakeRest Intake::look(const std::function<void(const IntakeItem&)>& tell, cons
     try {
       item = take(candidate, rest, stop);
     } catch (const Error& e) {
-      item = fault(candidate.file, e.kind() == ErrorKind::refused ? TakenIn::refused : TakenIn::failed, e);
+      const TakenIn how = e.kind() == ErrorKind::refused ? TakenIn::refused : TakenIn::failed;
+      item = {.file = candidate.file, .how = how, .fault = e};
     } catch (const std::exception& e) {
-      item = fault(candidate.file, TakenIn::failed, Error(ErrorKind::failure, Where{candidate.file}, e.what()));
+      item = {.file = candidate.file,
+              .how = TakenIn::failed,
+              .fault = Error(ErrorKind::failure, Where{candidate.file}, e.what())};
     }
     if (!item) continue;
     if (item->how == TakenIn::failed) item->retryIn = backOff(candidate.tries + 1);
@@ -133,20 +135,15 @@ std::optional<IntakeItem> Intake::take(const Candidate& c, IntakeRest& rest, con
     identity = recorder::identify(c.file);
   } catch (const Error& e) {
     if (e.kind() != ErrorKind::damaged) throw;
-    if (c.unchanged >= settings_.settle) return fault(c.file, TakenIn::damaged, e);
+    if (c.unchanged >= settings_.settle) return IntakeItem{.file = c.file, .how = TakenIn::damaged, .fault = e};
   }
   if ((identity.attempt.empty() || !identity.complete) && c.unchanged < settings_.settle) {
     ++rest.growing;
     return std::nullopt;
   }
   CohortDatabase database(settings_.cohort, CohortDatabase::Access::create);
-  if (isVerified(database, identity)) {
-    IntakeItem item;
-    item.file = c.file;
-    item.how = TakenIn::known;
-    item.attempt = identity.attempt;
-    return item;
-  }
+  if (isVerified(database, identity))
+    return IntakeItem{.file = c.file, .how = TakenIn::known, .attempt = identity.attempt};
   JudgedRecording judged;
   try {
     AssessSettings assess{.threads = settings_.threads};
@@ -162,26 +159,16 @@ std::optional<IntakeItem> Intake::take(const Candidate& c, IntakeRest& rest, con
     ++rest.growing;
     return std::nullopt;
   }
-  IntakeItem item;
-  item.file = c.file;
-  item.attempt = identity.attempt;
-  item.judged = std::move(judged);
+  IntakeItem item{.file = c.file, .judged = std::move(judged), .attempt = identity.attempt};
   if (!item.judged.record) {
     item.how = TakenIn::damaged;
     item.fault = Error(ErrorKind::damaged, Where{c.file}, item.judged.report.message, item.judged.report.remedies);
     return item;
   }
-  switch (database.storeAttempt(*item.judged.record, item.judged.values)) {
-    case Imported::added:
-      item.how = TakenIn::added;
-      break;
-    case Imported::extended:
-      item.how = TakenIn::extended;
-      break;
-    case Imported::unchanged:
-      item.how = TakenIn::unchanged;
-      break;
-  }
+  const Imported imported = database.storeAttempt(*item.judged.record, item.judged.values);
+  item.how = imported == Imported::added      ? TakenIn::added
+             : imported == Imported::extended ? TakenIn::extended
+                                              : TakenIn::unchanged;
   return item;
 }
 
@@ -197,6 +184,41 @@ void Intake::enter(const IntakeItem& item, const Candidate& c) {
   }
   journal_.put(c.file, entry);
   seen_.erase(c.file);
+}
+
+namespace fs = std::filesystem;
+
+FolderWatch::FolderWatch(std::vector<fs::path> folders)
+    : folders_(std::move(folders)), notifier_(::inotify_init1(IN_NONBLOCK | IN_CLOEXEC)) {
+  watchAll();
+}
+
+FolderWatch::~FolderWatch() {
+  if (notifier_ >= 0) ::close(notifier_);
+}
+
+void FolderWatch::watchAll() {
+  if (notifier_ < 0) return;
+  // A folder that is watched already stays as it is. Writing is not watched: a recording that grows would never rest.
+  constexpr std::uint32_t events = IN_CREATE | IN_CLOSE_WRITE | IN_MOVED_TO | IN_ONLYDIR;
+  for (const fs::path& folder : folders_) {
+    ::inotify_add_watch(notifier_, folder.c_str(), events);
+    std::error_code error;
+    for (fs::recursive_directory_iterator at(folder, error), end; !error && at != end; at.increment(error)) {
+      std::error_code gone;
+      if (fs::is_directory(at->symlink_status(gone))) ::inotify_add_watch(notifier_, at->path().c_str(), events);
+    }
+  }
+}
+
+bool FolderWatch::wait(std::chrono::milliseconds longest) {
+  pollfd p{notifier_, POLLIN, 0};  // poll() passes over a negative one
+  if (::poll(&p, 1, static_cast<int>(longest.count())) <= 0) return false;
+  alignas(inotify_event) std::array<char, 16384> buffer;
+  while (::read(notifier_, buffer.data(), buffer.size()) > 0) {
+  }
+  watchAll();  // a folder may be new
+  return true;
 }
 
 }  // namespace calot::analytics

@@ -43,12 +43,12 @@ enum class TakenIn : std::uint8_t {
 
 /// Result for one file.
 struct IntakeItem {
-  std::string file;
+  std::string file = {};
   TakenIn how = TakenIn::added;
-  JudgedRecording judged;      ///< report alone where nothing was stored; empty where it was not re-simulated
-  std::string attempt;         ///< uuid, as far as it is known
-  std::optional<Error> fault;  ///< why it was not stored
-  std::int64_t retryIn = 0;    ///< s, where it failed
+  JudgedRecording judged = {};      ///< report alone where nothing was stored; empty where it was not re-simulated
+  std::string attempt = {};         ///< uuid, as far as it is known
+  std::optional<Error> fault = {};  ///< why it was not stored
+  std::int64_t retryIn = 0;         ///< s, where it failed
 };
 
 /// Remaining work after a pass over the folders.
@@ -59,7 +59,7 @@ struct IntakeRest {
 };
 
 /// The queue: what the folders hold, less what the journal and the cohort know. It survives the program: a recording is
-/// stored, then told, then entered in the journal, so that one killed at any moment loses none and stores none twice.
+/// stored, then reported, then entered in the journal: a process killed at any moment loses none and stores none twice.
 class Intake {
  public:
   /// @throws Error as CohortDatabase does, where there is one; failure, where the journal is another program's;
@@ -90,6 +90,26 @@ class Intake {
   IntakeSettings settings_;
   IntakeJournal journal_;
   std::map<std::string, Seen> seen_;  ///< files that are not decided
+};
+
+/// Notices that files come into folders and below, or are finished there (inotify). What other machines do to a network
+/// file system goes unnoticed, as does anything beyond the system's limit of watches: whoever waits also looks by
+/// himself from time to time.
+class FolderWatch {
+ public:
+  explicit FolderWatch(std::vector<std::filesystem::path> folders);
+  ~FolderWatch();
+  FolderWatch(const FolderWatch&) = delete;
+  FolderWatch& operator=(const FolderWatch&) = delete;
+
+  /// Waits until something has changed, the time is over, or a signal came. @returns whether something has changed
+  bool wait(std::chrono::milliseconds longest);
+
+ private:
+  void watchAll();
+
+  std::vector<std::filesystem::path> folders_;
+  int notifier_ = -1;  ///< none: only time passes
 };
 
 }  // namespace calot::analytics

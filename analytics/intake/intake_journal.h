@@ -8,8 +8,6 @@
 #include <memory>
 #include <string>
 
-#include "analytics/intake/checked_lines.h"
-
 namespace calot::analytics {
 
 /// State of a file, to detect changes.
@@ -31,13 +29,16 @@ struct JournalEntry {
   bool operator==(const JournalEntry&) const = default;
 };
 
-/// One entry a file, the newest counts. Entries are appended as checked lines; a line that was cut off, and what comes
-/// after damage, is dropped: those files are looked at again, and the cohort knows what it has. One program at a time
-/// has the journal.
+/// One entry a file, the newest counts. A text file of one JSON row a line, each with a checksum:
+/// `{"sum":"<XXH3-64 of the row's text, 16 hex digits>","row":<row>}`. Entries are appended; a line that was cut off,
+/// and what comes after damage, is dropped: those files are looked at again, and the cohort knows what it has. One
+/// program at a time has the journal.
 class IntakeJournal {
  public:
-  /// Opens or makes it. @throws Error (failure), where another program has it or it cannot be written.
+  /// Opens or makes it. @throws Error (failure), where another program has it or it cannot be written; (damaged) where
+  /// it is another file.
   explicit IntakeJournal(std::filesystem::path path);
+  ~IntakeJournal();
 
   /// Null: nothing is known of the file.
   [[nodiscard]] const JournalEntry* find(const std::string& file) const;
@@ -45,6 +46,7 @@ class IntakeJournal {
   void put(const std::string& file, const JournalEntry& entry);
 
  private:
+  class LineAppender;
   void load();
   /// Writes what counts into a new file, without files that are gone.
   void compact();

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "analytics/intake/motion_manifest.h"
 
 #include <fmt/format.h>
-
 #include <algorithm>
 #include <iterator>
+#include <optional>
 #include <string_view>
 #include <utility>
 
@@ -21,6 +22,13 @@ using recorder::shown;
 constexpr std::string_view criterionPrefix = "experience:";
 constexpr const char* declared[] = {"task", "participant", "mode", "purpose", "handedness", "outcome", "start"};
 
+using Details = std::map<std::string, std::string>;
+/// Columns of a row about its participant.
+constexpr std::pair<const char*, std::string Participant::*> textColumns[] = {
+    {"group", &Participant::group}, {"arm", &Participant::arm}, {"site", &Participant::site}};
+constexpr std::pair<const char*, Details Participant::*> pairColumns[] = {{"experience", &Participant::experience},
+                                                                          {"consent", &Participant::consent}};
+
 std::string trimmed(const std::string& text) {
   const std::size_t first = text.find_first_not_of(' ');
   return first == std::string::npos ? std::string() : text.substr(first, text.find_last_not_of(' ') - first + 1);
@@ -35,7 +43,7 @@ std::string readPairs(const std::string& cell, char mark, const char* form, std:
     if (item.empty()) continue;
     const std::size_t at = item.find(mark);
     if (at == std::string::npos || at == 0 || at + 1 == item.size())
-      return fmt::format("\"{}\": {} is wanted, several between semicolons", shown(item), form);
+      return fmt::format("\"{}\": {} is expected, several between semicolons", shown(item), form);
     if (!out.emplace(trimmed(item.substr(0, at)), trimmed(item.substr(at + 1))).second)
       return fmt::format("{} is given twice", shown(item.substr(0, at)));
   }
@@ -106,7 +114,8 @@ class Reader {
   }
 
   void readParticipant(const CsvRow& row, const std::string& pseudonym) {
-    Participant p{pseudonym, table_.cell(row, "group"), table_.cell(row, "arm"), table_.cell(row, "site"), {}, {}};
+    Participant p;
+    for (const auto& [column, member] : textColumns) p.*member = table_.cell(row, column);
     const auto ask = [&](const char* column, const std::string& fault) {
       if (!fault.empty()) throw table_.fault(row, column, fault);
     };
@@ -118,14 +127,14 @@ class Reader {
       if (!p.experience.emplace(column.substr(criterionPrefix.size()), value).second)
         throw table_.fault(row, column, "is given in column \"experience\", too");
     }
-    for (const auto& [column, value] : {std::pair("group", &p.group), {"arm", &p.arm}, {"site", &p.site}}) {
-      if (holdsControl(*value)) throw table_.fault(row, column, "holds a line break or a control character");
+    for (const auto& [column, member] : textColumns) {
+      if (holdsControl(p.*member)) throw table_.fault(row, column, "holds a line break or a control character");
     }
-    const bool saysAnything = !(p.group + p.arm + p.site).empty() || !p.experience.empty() || !p.consent.empty();
     if (pseudonym.empty()) {
-      if (saysAnything) throw table_.fault(row, "participant", "is empty; a group or experience is a participant's");
-      return;
+      if (p == Participant()) return;
+      throw table_.fault(row, "participant", "is empty; a group or experience is a participant's");
     }
+    p.pseudonym = pseudonym;
     try {
       checkParticipant(p);
     } catch (const Error& e) {
@@ -135,11 +144,8 @@ class Reader {
     manifest_.lineOf.emplace(pseudonym, row.line);
     if (fresh) return;
     Participant& known = at->second;
-    ask("group", combine(known.group, p.group));
-    ask("arm", combine(known.arm, p.arm));
-    ask("site", combine(known.site, p.site));
-    ask("experience", combine(known.experience, p.experience));
-    ask("consent", combine(known.consent, p.consent));
+    for (const auto& [column, member] : textColumns) ask(column, combine(known.*member, p.*member));
+    for (const auto& [column, member] : pairColumns) ask(column, combine(known.*member, p.*member));
   }
 
   const ManifestTable& table_;
@@ -170,6 +176,65 @@ MotionManifest readMotionManifest(const std::string& path, const MotionDeclarati
     }
   }
   return manifest;
+}
+
+Enrolment::Enrolment(const CohortDatabase& database) : path_(database.path()) {
+  for (Participant& p : database.participants()) known_.emplace(p.pseudonym, p);
+}
+
+Participant Enrolment::additionsOf(const Participant& wanted) const {
+  const auto at = known_.find(wanted.pseudonym);
+  if (at == known_.end()) return wanted;
+  const Participant& known = at->second;
+  Participant more;
+  const auto fill = [&](const std::string& what, const std::string& before, const std::string& value) {
+    if (before.empty() || before == value || value.empty()) return before.empty() ? value : std::string();
+    throw Error(ErrorKind::refused, Where{path_},
+                fmt::format("participant \"{}\" has {} \"{}\", not \"{}\"", shown(wanted.pseudonym), what,
+                            shown(before), shown(value)),
+                {Remedy::changeParticipant});
+  };
+  for (const auto& [what, member] : textColumns) more.*member = fill(what, known.*member, wanted.*member);
+  for (const auto& [what, member] : pairColumns) {
+    for (const auto& [name, value] : wanted.*member) {
+      const auto before = (known.*member).find(name);
+      const std::string added =
+          fill(fmt::format("{} {}", what, shown(name)), before == (known.*member).end() ? "" : before->second, value);
+      if (!added.empty()) (more.*member)[name] = added;
+    }
+  }
+  return more;
+}
+
+void Enrolment::add(CohortDatabase& database, const Participant& wanted) {
+  const auto [at, isNew] = known_.emplace(wanted.pseudonym, wanted);
+  if (isNew) {
+    database.addParticipant(wanted);
+    return;
+  }
+  const Participant more = additionsOf(wanted);
+  if (more == Participant()) return;
+  const auto given = [](const std::string& text) { return text.empty() ? std::nullopt : std::optional(text); };
+  database.setParticipant(wanted.pseudonym,
+                          {given(more.group), given(more.arm), given(more.site), more.experience, more.consent});
+  Participant& known = at->second;
+  for (const auto& [what, member] : textColumns) {
+    if (!(more.*member).empty()) known.*member = more.*member;
+  }
+  for (const auto& [what, member] : pairColumns) (known.*member).insert((more.*member).begin(), (more.*member).end());
+}
+
+std::vector<Error> Enrolment::conflicts(const MotionManifest& manifest) const {
+  std::vector<Error> conflicts;
+  for (const auto& [pseudonym, participant] : manifest.participants) {
+    try {
+      static_cast<void>(additionsOf(participant));
+    } catch (const Error& e) {
+      conflicts.emplace_back(e.kind(), Where{manifest.path, fmt::format("line {}", manifest.lineOf.at(pseudonym))},
+                             e.what(), e.remedies());
+    }
+  }
+  return conflicts;
 }
 
 }  // namespace calot::analytics

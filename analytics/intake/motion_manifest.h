@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A table of motion files with who made them: what `calot import --manifest` reads.
+// A table of motion files with who made them: what `calot import --manifest` reads; and registering its participants,
+// of whom nothing that a cohort knows is replaced.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +12,7 @@
 #include "analytics/cohort/cohort_database.h"
 #include "analytics/import_motion.h"
 #include "recorder/base/errors.h"
-#include "recorder/sources/column_map.h"
+#include "recorder/sources/tracked_motion.h"
 
 namespace calot::analytics {
 
@@ -39,5 +40,26 @@ struct MotionManifest {
 /// recorder::readColumnMap for `columns`.
 MotionManifest readMotionManifest(const std::string& path, const MotionDeclaration& otherwise,
                                   const std::string& columns, std::vector<Error>& faults);
+
+/// A cohort's participants when this was made, and those added through it.
+class Enrolment {
+ public:
+  explicit Enrolment(const CohortDatabase& database);
+
+  /// Adds a participant, or fills what the cohort has empty; nothing and no audit row where there is nothing new.
+  /// @param database that of the constructor. @throws Error (refused) where the cohort says something else of the
+  /// participant; as CohortDatabase.
+  void add(CohortDatabase& database, const Participant& wanted);
+
+  /// A manifest's participants that the cohort describes in another way, each naming the line.
+  [[nodiscard]] std::vector<Error> conflicts(const MotionManifest& manifest) const;
+
+ private:
+  /// Entries of a participant that the cohort lacks; all of them if it lacks the participant.
+  [[nodiscard]] Participant additionsOf(const Participant& wanted) const;
+
+  std::string path_;
+  std::map<std::string, Participant> known_;
+};
 
 }  // namespace calot::analytics

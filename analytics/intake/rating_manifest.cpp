@@ -93,7 +93,7 @@ class RatingReader {
       if (column != "participant" || !names_.isParticipant(cell)) {
         throw table_.fault(
             row, column,
-            fmt::format("form {} is filled in by a participant, and \"{}\" is none", form.name, shown(cell)));
+            fmt::format("form {} is filled in by a participant, and \"{}\" is not one", form.name, shown(cell)));
       }
       rating.participant = cell;
       return;
@@ -112,7 +112,8 @@ class RatingReader {
         checkParticipant({rater, "", "", "", {}, {}});
       } catch (const Error&) {
         throw table_.fault(
-            row, "rater", rater.empty() ? "is empty; every row needs its rater" : "is no pseudonym of 1 to 64 letters");
+            row, "rater",
+            rater.empty() ? "is empty; every row needs its rater" : "is not a pseudonym of 1 to 64 letters");
       }
       rating.rater = rater;
     } else if (!rater.empty()) {

@@ -26,7 +26,7 @@ struct RatingManifest {
   std::vector<RatingRow> rows;
 };
 
-/// Where a form's file is, by its name or path. @throws Error
+/// Path of a form's file, by its name or path. @throws Error
 using FindForm = std::function<std::filesystem::path(const std::string& name)>;
 
 /// Reads a table and checks every row against its form and the cohort's attempts. Columns: `form`; `attempt` (uuid or

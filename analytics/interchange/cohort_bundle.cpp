@@ -1,21 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "analytics/interchange/cohort_bundle.h"
 
 #include <fmt/format.h>
-
 #include <algorithm>
-#include <cassert>
+#include <array>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <tuple>
+#include <utility>
 
+#include "analytics/checkpoints/checkpoint.h"
+#include "analytics/cohort/assessment_database.h"
 #include "analytics/cohort/declared_tables.h"
+#include "analytics/cohort/registers.h"
 #include "analytics/cohort/withdraw.h"
-#include "analytics/interchange/bundle_manifest.h"
-#include "analytics/interchange/bundle_source.h"
-#include "analytics/interchange/codebook.h"
-#include "analytics/interchange/date_shift.h"
-#include "analytics/interchange/new_names.h"
+#include "analytics/interchange/bundle_names.h"
+#include "analytics/interchange/cohort_tables.h"
+#include "recorder/attempt.h"
 #include "recorder/base/csv_writer.h"
 #include "recorder/base/errors.h"
 #include "recorder/base/text_words.h"
@@ -25,19 +28,35 @@ namespace {
 
 constexpr std::uint64_t fewest = 3;  ///< minimum number of participants who share an item of experience
 
-/// Files of a bundle and their columns: name, type, meaning, unit, allowed values, what stands where there is none.
+/// A column that stands in the database under this or another name.
+/// @param words what is written instead of numbers; null: the number itself
+DeclaredColumn asIn(const char* table, const char* column, const char* name, const char* words = nullptr) {
+  DeclaredColumn c = *findColumn(table, column);
+  c.name = name;
+  c.member = {};
+  if (words != nullptr) {
+    c.type = "TEXT";
+    c.allowed = words;
+  }
+  return c;
+}
+
+DeclaredColumn asIn(const char* table, const char* column) { return asIn(table, column, column); }
+
+/// Files of a bundle and their columns. Nothing is handed out that is not named here.
 const DeclaredTable& bundleFile(std::string_view name) {
-  constexpr const char *text = "TEXT", *integer = "INTEGER", *real = "REAL", *yesNo = "0 no, 1 yes",
-                       *utc = "ISO 8601 UTC with Z";
+  constexpr const char* text = "TEXT";
+  const DeclaredColumn whose{"participant", text, "pseudonym in participants"};
+  const DeclaredColumn attempt{"attempt", text, "attempt in attempts"}, form{"form", text, "form and its version"};
   static const std::vector<DeclaredTable> files{
       {"participants",
        {{"participant", text, "new pseudonym, drawn for this bundle"},
-        {"group", text, "study group", {}, "", "", "empty"},
-        {"arm", text, "study arm", {}, "", "", "empty"},
+        asIn("participant", "study_group", "group"),
+        asIn("participant", "arm"),
         {"site", text, "site, a number without meaning", {}, "", "", "empty"}}},
       {"experience",
-       {{"participant", text, "pseudonym in participants"},
-        {"criterion", text, "what was asked"},
+       {whose,
+        asIn("participant_experience", "criterion"),
         {"value",
          text,
          "the answer; a word that fewer than three participants share is withheld",
@@ -55,65 +74,150 @@ const DeclaredTable& bundleFile(std::string_view name) {
          "days are not",
          {},
          "",
-         utc,
+         "ISO 8601 UTC with Z",
          "empty"},
-        {"scene", text, "scene, or declared task of imported motion"},
-        {"scene_version", integer, "version of the scene that comparison asks for"},
-        {"operator", text, "who acted", {}, "", "human, kinematics, performer"},
-        {"profile", text, "profile of a performer", {}, "", "", "empty"},
-        {"mode", text, "mode", {}, "", "practice, assessment"},
-        {"outcome",
-         text,
-         "how it ended",
-         {},
-         "",
-         "running, completed, time limit, abandoned, stopped, technical failure"},
-        {"device", text, "class of device", {}, "", "", "empty"},
+        asIn("attempt", "scene"),
+        asIn("attempt", "scene_major", "scene_version"),
+        asIn("attempt", "operator_kind", "operator", "human, kinematics, performer"),
+        asIn("attempt", "profile"),
+        asIn("attempt", "mode", "mode", "practice, assessment"),
+        asIn("attempt", "outcome", "outcome", "running, completed, time limit, abandoned, stopped, technical failure"),
+        asIn("attempt", "device"),
         {"calibration", text, "calibration, a number without meaning", {}, "", "", "empty"},
-        {"simulation_version", integer, "version of the simulation; 0: motion without a scene"},
+        asIn("attempt", "simulation_version"),
         {"comparability_key", text, "attempts are compared within one key only; a number without meaning"},
-        {"steps", integer, "number of steps"},
-        {"step_seconds", real, "length of a step", {}, "s"},
-        {"verdict", text, "what the newest replay said", {}, "", "verified, not checkable here, not checked"},
-        {"synthetic", integer, "made by a performer", {}, "", yesNo}}},
+        asIn("recording", "steps"),
+        asIn("recording", "step_seconds"),
+        asIn("verification", "verdict", "verdict", "verified, not checkable here, not checked"),
+        asIn("attempt", "synthetic")}},
       {"values",
-       {{"attempt", text, "attempt in attempts"},
-        {"checkpoint", text, "checkpoint"},
-        {"subject", text, "hand, organ or phase", {}, "", "", "empty: the attempt as a whole"},
-        {"version", integer, "version of the checkpoint"},
-        {"availability",
-         integer,
-         "whether there is a value",
-         {},
-         "",
-         "0 value, 1 not applicable, 2 not available, 3 absent hand, 4 too little coverage"},
-        {"value", real, "the value, in unit", {}, "", "finite", "empty where availability is not 0"},
-        {"reason", text, "why there is no value", {}, "", "", "empty where availability is 0"},
-        {"unit", text, "SI unit of the value"},
-        {"origin", text, "what it was computed from", {}, "", "re-simulated, observables, samples, external"},
-        {"filter", text, "resampling and filter when the value was made"},
-        {"coverage",
-         real,
-         "share of the window that samples cover",
-         {},
-         "1",
-         "0 to 1",
-         "empty: not of samples, or not known"}}},
+       {attempt, asIn("checkpoint_value", "name", "checkpoint"), asIn("checkpoint_value", "subject"),
+        asIn("checkpoint_value", "version"), asIn("checkpoint_value", "availability"),
+        asIn("checkpoint_value", "value"), asIn("checkpoint_value", "reason"), asIn("checkpoint_value", "unit"),
+        asIn("checkpoint_value", "origin", "origin", "re-simulated, observables, samples, external"),
+        asIn("checkpoint_value", "filter"), asIn("checkpoint_value", "coverage")}},
       {"ratings",
-       {{"form", text, "form and its version"},
-        {"attempt", text, "attempt in attempts"},
+       {form,
+        attempt,
         {"rater", text, "new pseudonym of the rater, drawn for this bundle"},
-        {"item", text, "key of the item"},
-        {"score", integer, "score", {}, "", "whole numbers of the form's scale", "an item left blank has no row"}}},
-      {"questionnaires",
-       {{"form", text, "form and its version"},
-        {"participant", text, "pseudonym in participants"},
-        {"item", text, "key of the item"},
-        {"score", integer, "score", {}, "", "whole numbers of the form's scale", "an item left blank has no row"}}}};
-  const auto at =
-      std::find_if(files.begin(), files.end(), [&](const DeclaredTable& file) { return file.name == name; });
-  assert(at != files.end());
-  return *at;
+        asIn("rating", "item"),
+        asIn("rating", "score")}},
+      {"questionnaires", {form, whose, asIn("questionnaire", "item"), asIn("questionnaire", "score")}}};
+  return *std::find_if(files.begin(), files.end(), [&](const DeclaredTable& file) { return file.name == name; });
+}
+
+/// All data for the bundle, read from the database.
+struct BundleSource {
+  std::vector<AttemptRow> attempts;
+  std::map<std::string, Participant> participants;
+  std::map<std::string, std::vector<CheckpointValue>> values;
+  std::vector<Rating> ratings;
+  Registers registers;
+  std::vector<ExternalMetric> metrics;  ///< of external values
+};
+
+BundleSource readBundleSource(const std::string& path) {
+  const auto read = CohortDatabase::Access::read;
+  const CohortDatabase cohort(path, read);
+  BundleSource source;
+  source.attempts = cohort.listAttempts();
+  for (Participant& p : cohort.participants()) source.participants.emplace(p.pseudonym, std::move(p));
+  for (AttemptValue& v : cohort.allValues()) source.values[v.attempt].push_back(std::move(v.value));
+  source.metrics = cohort.externalMetrics();
+  source.ratings = AssessmentDatabase(path, read).ratings();
+  source.registers = readRegisters(path);
+  return source;
+}
+
+/// Reasons for which attempts are withheld, in the order in which they are asked.
+constexpr std::array bundleReasons{"made by a performer",     "without participant", "withdrawn from research",
+                                   "no consent to the scope", "excluded by hand",    "recording diverged or damaged",
+                                   "recording incomplete",    "golden recording"};
+
+/// Index of the first reason that applies; their number if the attempt is handed out.
+std::size_t whyLeftOut(const AttemptRow& a, const BundleSource& source, const BundleOptions& options) {
+  if (a.synthetic && !options.includeSynthetic) return 0;
+  // A performer's branch of a person's attempt begins with that person's motion, and bears the pseudonym.
+  if (!a.synthetic || !a.parent.empty()) {
+    const auto person = source.participants.find(a.participant);
+    if (person == source.participants.end()) return 1;
+    if (a.withdrawn) return 2;
+    if (person->second.consent.count(options.scope) == 0) return 3;
+  }
+  if (a.excluded) return 4;
+  if (a.verification.verdict == Verdict::diverged || a.verification.verdict == Verdict::damaged) return 5;
+  if (!a.complete || a.outcome == recorder::Outcome::running) return 6;
+  return a.purpose == "golden" ? 7 : bundleReasons.size();
+}
+
+/// Names of people, places, times and files.
+OriginalNames originalsOf(const BundleSource& source) {
+  OriginalNames names;
+  for (const AttemptRow& a : source.attempts) {
+    names.add(a.uuid, "an attempt's uuid");
+    names.add(a.parent, "an attempt's uuid");
+    names.add(a.startUtc, "a start");
+    names.add(a.station, "a station");
+    names.add(a.fileName, "a file");
+    names.add(a.calibration, "a calibration");
+    names.add(a.comparabilityKey, "a comparability key");
+  }
+  for (const auto& [pseudonym, p] : source.participants) {
+    names.add(pseudonym, "a pseudonym");
+    names.add(p.site, "a site");
+  }
+  for (const Rating& r : source.ratings) names.add(r.rater, "a rater");
+  for (const Named& site : source.registers.sites) names.add(site.name, "a site");
+  for (const Station& station : source.registers.stations) names.add(station.name, "a station");
+  return names;
+}
+
+/// Words that this program gave, and that a place or a thing may by chance be called by, too.
+std::set<std::string> vocabularyOf(const BundleSource& source) {
+  std::set<std::string> words{"human", "kinematics", "performer", "practice", "assessment", "falcon", "gamepad"};
+  for (const AttemptRow& a : source.attempts) {
+    words.insert({a.device, a.scene, a.profile});
+  }
+  for (const auto& [attempt, values] : source.values) {
+    for (const CheckpointValue& value : values) words.insert({value.name, value.subject, value.unit});
+  }
+  for (const CheckpointEntry& e : checkpointRegistry()) words.insert(e.definition.name);
+  return words;
+}
+
+/// manifest.json of a bundle with all of its files but this one.
+std::string bundleManifest(const Bundle& bundle, const std::string& scope) {
+  using Json = nlohmann::ordered_json;
+  Json leftOut = Json::array(), files = Json::array();
+  for (const FlowRow& row : bundle.leftOut) leftOut.push_back({{"reason", row.reason}, {"attempts", row.attempts}});
+  for (const WrittenFile& f : bundle.files)
+    files.push_back({{"name", f.name}, {"bytes", f.bytes}, {"sha256", f.sha256}});
+  return Json{{"format", "calot-bundle"},
+              {"formatVersion", 1},
+              {"made_by", recorder::softwareName()},
+              {"scope", scope},
+              {"watermark", bundle.synthetic ? "SYNTHETIC" : ""},
+              {"participants", bundle.participants},
+              {"attempts", bundle.attempts},
+              {"values", bundle.values},
+              {"recruited", bundle.recruited},
+              {"left_out", leftOut},
+              {"smallest_group", bundle.smallest},
+              {"names",
+               "pseudonyms, attempts and raters have random names that were drawn for this bundle and are "
+               "kept nowhere; sites, calibrations and comparability keys are numbered"},
+              {"dates",
+               "starts are moved by one random length of time a participant, 30 to 365 days earlier or "
+               "later, kept nowhere; what lies between a participant's attempts is true"},
+              {"withheld",
+               "stations, keys, seeds, chain heads, file names, notes, tags, reasons of exclusion, audit, "
+               "protocols, norms; words of experience that fewer than three participants share"},
+              {"recordings",
+               "none: they hold pseudonym, start and station under a content chain that a rewritten "
+               "copy would no longer have, and motion by which a person may be known again"},
+              {"files", files}}
+             .dump(2, ' ', false, Json::error_handler_t::replace) +
+         "\n";
 }
 
 /// An attempt that is handed out, under its new names.
@@ -121,8 +225,6 @@ struct Handed {
   const AttemptRow* attempt;
   std::string name, participant, start;
 };
-
-std::string uintText(std::uint64_t n) { return fmt::format("{}", n); }
 
 class Writer {
  public:
@@ -216,9 +318,10 @@ class Writer {
       const AttemptRow& a = *h.attempt;
       const auto parent = nameOfAttempt_.find(a.parent);
       text += csvLine({h.name, h.participant, parent == nameOfAttempt_.end() ? "" : parent->second, h.start, a.scene,
-                       uintText(a.sceneMajor), recorder::wordFor(a.operatorKind), a.profile, recorder::wordFor(a.mode),
-                       recorder::wordFor(a.outcome), a.device, names_.numbered("calibration ", a.calibration),
-                       uintText(a.simulationVersion), names_.numbered("key ", a.comparabilityKey), uintText(a.steps),
+                       std::to_string(a.sceneMajor), recorder::wordFor(a.operatorKind), a.profile,
+                       recorder::wordFor(a.mode), recorder::wordFor(a.outcome), a.device,
+                       names_.numbered("calibration ", a.calibration), std::to_string(a.simulationVersion),
+                       names_.numbered("key ", a.comparabilityKey), std::to_string(a.steps),
                        fmt::format("{}", a.stepSeconds), nameOf(a.verification.verdict), a.synthetic ? "1" : "0"});
     }
     return text;
@@ -293,7 +396,7 @@ Bundle writeBundle(const std::string& database, const std::string& folder, const
   const BundleSource source = readBundleSource(database);
   Bundle bundle;
   bundle.recruited = source.attempts.size();
-  std::vector<std::uint64_t> left(bundleReasons().size());
+  std::array<std::uint64_t, bundleReasons.size()> left{};
   std::vector<const AttemptRow*> taken;
   for (const AttemptRow& a : source.attempts) {
     const std::size_t why = whyLeftOut(a, source, options);
@@ -306,8 +409,8 @@ Bundle writeBundle(const std::string& database, const std::string& folder, const
   std::string list;
   for (std::size_t i = 0; i < left.size(); ++i) {
     if (left[i] == 0) continue;
-    bundle.leftOut.push_back({bundleReasons()[i], left[i]});
-    list += fmt::format("{}{} {}", list.empty() ? ": " : ", ", left[i], bundleReasons()[i]);
+    bundle.leftOut.push_back({bundleReasons[i], left[i]});
+    list += fmt::format("{}{} {}", list.empty() ? ": " : ", ", left[i], bundleReasons[i]);
   }
   if (taken.empty())
     throw Error(ErrorKind::refused, Where{database},

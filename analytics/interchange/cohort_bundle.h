@@ -2,7 +2,6 @@
 // De-identified export of a cohort (docs/reference/cohort.md, "Handing out").
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>

@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Export of a cohort's tables, with the meaning of each variable for readers without this program.
 #pragma once
 
 #include <cstdint>
 #include <string>
 #include <vector>
+
+#include "analytics/checkpoints/definition.h"
+#include "analytics/cohort/declared_tables.h"
+#include "analytics/cohort/tables.h"
 
 namespace calot::analytics {
 
@@ -18,5 +23,34 @@ struct ExportedTable {
 /// In CSV nothing is an empty cell and bytes are hexadecimal; numbers have as many digits as give them back.
 /// @throws Error as CohortDatabase and FolderOutput do.
 std::vector<ExportedTable> exportCohort(const std::string& database, const std::string& folder, bool force = false);
+
+/// A variable: a checkpoint (a row of `checkpoint_value`, or of a bundle's values.csv), or a column of a table.
+struct CodebookEntry {
+  std::string table = {};      ///< file without ending; of a checkpoint "checkpoint"
+  std::string name = {};       ///< of the column or the checkpoint
+  std::string title = {};      ///< what it is, a clause
+  std::string type = {};       ///< "number", "whole number", "text", "bytes in hexadecimal"
+  std::string unit = {};       ///< SI, or empty
+  std::string allowed = {};    ///< allowed values; empty: any of its type
+  std::string missing = {};    ///< representation of a missing value; empty: never missing
+  std::string direction = {};  ///< of a checkpoint: which way is better
+  std::string window = {};     ///< of a checkpoint: the part of the attempt that it covers
+  std::string subjects = {};   ///< of a checkpoint: its subjects, and aggregation over instruments
+  std::string formula = {};    ///< of a checkpoint
+  std::string filter = {};     ///< of a checkpoint: resampling and filter with their constants
+  std::string origins = {};    ///< of a checkpoint: its possible origins
+  std::uint32_t version = 0;
+};
+
+/// Every checkpoint of the registry, in its order, then external metrics, whose origin says so.
+std::vector<CodebookEntry> checkpointEntries(const std::vector<ExternalMetric>& external = {});
+
+/// Columns of a declared table, in its order.
+std::vector<CodebookEntry> columnEntries(const DeclaredTable& table);
+/// Columns of a cohort database's table, in its order; unknown columns have an empty title.
+std::vector<CodebookEntry> columnEntries(const TableFacts& table);
+
+std::string codebookCsv(const std::vector<CodebookEntry>& entries);
+std::string codebookJson(const std::vector<CodebookEntry>& entries);
 
 }  // namespace calot::analytics

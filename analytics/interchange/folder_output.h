@@ -31,7 +31,7 @@ class FolderOutput {
 
   /// @throws Error (failure)
   void add(const std::string& name, std::string_view text);
-  /// Where it is filled, for files that add() does not write; files() does not list them.
+  /// The folder being filled, for files that add() does not write; files() does not list them.
   [[nodiscard]] const std::filesystem::path& folder() const { return temporary_; }
   [[nodiscard]] const std::vector<WrittenFile>& files() const { return files_; }
   /// Gives the folder its name. @throws Error (failure); (invalid) where a folder of this name is not to be replaced

@@ -7,7 +7,7 @@
 #include <array>
 #include <utility>
 
-#include "analytics/report/report_text.h"
+#include "analytics/report/report_document.h"
 
 namespace calot::analytics {
 namespace {

@@ -41,7 +41,7 @@ enum class Ink : std::uint8_t {
   watermark,
 };
 
-/// Where a text's position is: at its beginning, in its middle, at its end.
+/// Anchor of a text's position: its beginning, its middle, its end.
 enum class Anchor : std::uint8_t { start, middle, end };
 
 struct InkStyle {

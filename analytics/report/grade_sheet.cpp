@@ -4,23 +4,48 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "analytics/report/plots.h"
 
 namespace calot::analytics {
 namespace {
 
-using Align = TextTable::Align;
-using Json = nlohmann::ordered_json;
-
 std::string nameOf(const GradedFigure& f) {
   if (f.mark.metric) return f.mark.checkpoint + " (external)";
-  return f.mark.subject.empty() ? f.mark.checkpoint : f.mark.checkpoint + " " + f.mark.subject;
+  return figureName(f.mark.checkpoint, f.mark.subject);
 }
 
-std::string shown(const GradedFigure& f, const std::optional<double>& si) {
-  return si ? significant(*si * f.displayFactor) : "-";
+ValueTree treeOf(const GradedFigure& f) {
+  const auto number = [&](const std::optional<double>& si) { return si ? std::optional(*si * f.displayFactor) : si; };
+  ValueTree moments = ValueTree::array(), history = ValueTree::array();
+  for (const Moment& m : f.moments.moments) moments.push_back({{"begin", m.begin}, {"end", m.end}, {"share", m.share}});
+  for (const HistoryPoint& p : f.history)
+    history.push_back({{"attempt", p.attempt}, {"start_utc", p.startUtc}, {"value", p.value}});
+  return {{"checkpoint", f.mark.checkpoint},
+          {"subject", f.mark.subject},
+          {"unit", f.unit},
+          {"direction", analytics::nameOf(f.mark.direction)},
+          {"value", number(f.value)},
+          {"not_judged", f.missing},
+          {"cut", number(f.mark.cut)},
+          {"cut_lower", number(f.mark.lower)},
+          {"cut_upper", number(f.mark.upper)},
+          {"log_scale", f.mark.logScale},
+          {"in_rule", f.mark.inRule},
+          {"passed", f.passed},
+          {"open", f.open},
+          {"simulation_lower", number(f.interval ? f.interval->lower : std::nullopt)},
+          {"simulation_upper", number(f.interval ? f.interval->upper : std::nullopt)},
+          {"no_simulation_interval", f.interval ? f.interval->reason : "none was worked out"},
+          {"undecided", f.undecided},
+          {"percentile", f.rank ? std::optional(*f.rank) : std::nullopt},
+          {"no_percentile", f.rank.reason()},
+          {"competent_members", f.competent},
+          {"moments", moments},
+          {"no_moments", f.moments.none},
+          {"history", history},
+          {"plateau", f.curve ? std::optional(f.curve->plateau) : std::nullopt},
+          {"no_curve", f.curve.reason()}};
 }
 
 std::string clock(double seconds) {
@@ -53,37 +78,47 @@ std::vector<std::string> opening(const Grade& g) {
   return lines;
 }
 
+// Texts of cells.
+std::string unitText(const ValueTree& unit) { return unit == "1" ? "" : plain(unit); }
+std::string markText(const ValueTree& f) {
+  return f["cut_lower"].is_null() ? "-" : fmt::format("[{}, {}]", digits4(f["cut_lower"]), digits4(f["cut_upper"]));
+}
+std::string percentileText(const ValueTree& rank) {
+  return rank.is_null() ? "-" : fmt::format("{:.0f}", rank.get<double>());
+}
+std::string passedText(const ValueTree& f) {
+  if (f["passed"].is_null()) return "-";
+  return fmt::format("{}{}{}", f["passed"] == true ? "yes" : "no", f["open"] == true ? ", open" : "",
+                     f["undecided"] == true ? ", undecided" : "");
+}
+
 /// The simulation's interval; empty where none was worked out.
-std::string simulationText(const GradedFigure& f) {
+std::string simulationText(const GradedFigure& f, const ValueTree& tree) {
   if (!f.interval) return "";
   if (!f.interval->lower) return "not known";
   if (*f.interval->lower == *f.interval->upper) return "exact";
-  return fmt::format("[{}, {}]", shown(f, f.interval->lower), shown(f, f.interval->upper));
+  return fmt::format("[{}, {}]", digits4(tree["simulation_lower"]), digits4(tree["simulation_upper"]));
 }
 
 ReportTable figuresTable(const Grade& g) {
-  ReportTable table{"Figures",
-                    {{"checkpoint", Align::left},
-                     {"unit", Align::left},
-                     {"better", Align::left},
-                     {"value", Align::right},
-                     {"simulation", Align::right},
-                     {"pass mark", Align::right},
-                     {"95 %", Align::right},
-                     {"passed", Align::left},
-                     {"rule", Align::left},
-                     {"percentile", Align::right}},
-                    {}};
+  ValueTree rows = ValueTree::array();
   for (const GradedFigure& f : g.figures) {
-    table.rows.push_back({nameOf(f), f.unit == "1" ? "" : f.unit, analytics::nameOf(f.mark.direction),
-                          shown(f, f.value), simulationText(f), shown(f, f.mark.cut),
-                          f.mark.lower ? fmt::format("[{}, {}]", shown(f, f.mark.lower), shown(f, f.mark.upper)) : "-",
-                          !f.passed ? "-"
-                                    : fmt::format("{}{}{}", *f.passed ? "yes" : "no", f.open ? ", open" : "",
-                                                  f.undecided ? ", undecided" : ""),
-                          f.mark.inRule ? "counts" : "", f.rank ? fmt::format("{:.0f}", *f.rank) : "-"});
+    ValueTree& row = rows.emplace_back(treeOf(f));
+    row["simulation"] = simulationText(f, row);
+    row["rule"] = f.mark.inRule ? "counts" : "";
+    row["name"] = nameOf(f);
   }
-  return table;
+  return tableOf("Figures", rows,
+                 {{"=checkpoint", "/name", plain},
+                  {"=unit", "/unit", unitText},
+                  {"=better", "/direction", plain},
+                  {"value", "/value", digits4},
+                  {"simulation", "/simulation", plain},
+                  {"pass mark", "/cut", digits4},
+                  {"95 %", "", markText},
+                  {"=passed", "", passedText},
+                  {"=rule", "/rule", plain},
+                  {"percentile", "/percentile", percentileText}});
 }
 
 std::vector<std::string> notes(const Grade& g) {
@@ -119,30 +154,39 @@ std::string momentText(const Moment& m) {
   return fmt::format("{} to {} ({:.0f} % of it)", clock(m.begin), clock(m.end), 100.0 * m.share);
 }
 
+TextSpan span(const std::string& recording, const Moment& m) {
+  if (recording.empty()) return {momentText(m), {}};
+  return {momentText(m), fmt::format("{}#t={:.2f},{:.2f}", recording, m.begin, m.end)};
+}
+
+/// The weak figures with their moments, or why there are none.
+std::vector<Paragraph> weakFigures(const Grade& g, const std::string& recording) {
+  std::vector<Paragraph> items;
+  for (const GradedFigure& f : g.figures) {
+    if (!f.weak()) continue;
+    Paragraph& item = items.emplace_back(Paragraph{{nameOf(f) + ": ", {}}});
+    for (const Moment& m : f.moments.moments) {
+      if (item.size() > 1) item.push_back({", ", {}});
+      item.push_back(span(recording, m));
+    }
+    if (item.size() == 1)
+      item.push_back({"no moments, " + (g.momentsMissing.empty() ? f.moments.none : g.momentsMissing), {}});
+  }
+  return items;
+}
+
 std::vector<std::string> momentLines(const Grade& g) {
   std::vector<std::string> lines;
   for (const double t : g.criticalTimes) lines.push_back("critical error at " + clock(t));
-  for (const GradedFigure& f : g.figures) {
-    if (!f.weak()) continue;
-    std::string text = nameOf(f) + ": ";
-    for (const Moment& m : f.moments.moments) text += (text.back() == ' ' ? "" : ", ") + momentText(m);
-    if (f.moments.moments.empty())
-      text += "no moments, " + (g.momentsMissing.empty() ? f.moments.none : g.momentsMissing);
-    lines.push_back(text);
+  for (const Paragraph& item : weakFigures(g, {})) {
+    std::string& line = lines.emplace_back();
+    for (const TextSpan& part : item) line += part.text;
   }
   return lines;
 }
 
 ReportTable historyTable(const Grade& g) {
-  ReportTable table{"History",
-                    {{"checkpoint", Align::left},
-                     {"unit", Align::left},
-                     {"attempts", Align::right},
-                     {"first", Align::right},
-                     {"this", Align::right},
-                     {"plateau", Align::right},
-                     {"se", Align::right}},
-                    {}};
+  ReportTable table = tableOf("History", {"=checkpoint", "=unit", "attempts", "first", "this", "plateau", "se"});
   for (const GradedFigure& f : g.figures) {
     if (f.history.size() < 2) continue;
     table.rows.push_back({nameOf(f), f.unit == "1" ? "" : f.unit, fmt::format("{}", f.history.size()),
@@ -157,11 +201,6 @@ constexpr const char* curveNote =
     "History: the participant's attempts of the same comparability key up to this one, by their start. plateau: of the "
     "curve a - b / x by least squares over the number x of the attempt, with its standard error.";
 
-TextSpan span(const std::string& recording, const Moment& m) {
-  if (recording.empty()) return {momentText(m), {}};
-  return {momentText(m), fmt::format("{}#t={:.2f},{:.2f}", recording, m.begin, m.end)};
-}
-
 void addMomentsTo(ReportDocument& document, const Grade& g, const std::string& recording,
                   const std::string& howToDraw) {
   BulletList list;
@@ -169,17 +208,7 @@ void addMomentsTo(ReportDocument& document, const Grade& g, const std::string& r
     list.items.push_back(
         {{"critical error: ", {}}, span(recording, {t, t + 1.0, 1.0 / static_cast<double>(g.criticalTimes.size())})});
   }
-  for (const GradedFigure& f : g.figures) {
-    if (!f.weak()) continue;
-    Paragraph item{{nameOf(f) + ": ", {}}};
-    for (const Moment& m : f.moments.moments) {
-      if (item.size() > 1) item.push_back({", ", {}});
-      item.push_back(span(recording, m));
-    }
-    if (item.size() == 1)
-      item.push_back({"no moments, " + (g.momentsMissing.empty() ? f.moments.none : g.momentsMissing), {}});
-    list.items.push_back(std::move(item));
-  }
+  for (Paragraph& item : weakFigures(g, recording)) list.items.push_back(std::move(item));
   if (list.items.empty()) return;
   document.parts.emplace_back(Heading{"Moments"});
   document.parts.emplace_back(std::move(list));
@@ -187,81 +216,45 @@ void addMomentsTo(ReportDocument& document, const Grade& g, const std::string& r
     document.add("A link names the recording and the seconds." + (howToDraw.empty() ? "" : " " + howToDraw));
 }
 
-Json figureJson(const GradedFigure& f) {
-  const auto number = [&](const std::optional<double>& si) { return si ? Json(*si * f.displayFactor) : Json(nullptr); };
-  Json moments = Json::array();
-  for (const Moment& m : f.moments.moments) moments.push_back({{"begin", m.begin}, {"end", m.end}, {"share", m.share}});
-  Json history = Json::array();
-  for (const HistoryPoint& p : f.history)
-    history.push_back({{"attempt", p.attempt}, {"start_utc", p.startUtc}, {"value", p.value}});
-  return {{"checkpoint", f.mark.checkpoint},
-          {"subject", f.mark.subject},
-          {"unit", f.unit},
-          {"direction", analytics::nameOf(f.mark.direction)},
-          {"value", number(f.value)},
-          {"not_judged", f.missing},
-          {"cut", number(f.mark.cut)},
-          {"cut_lower", number(f.mark.lower)},
-          {"cut_upper", number(f.mark.upper)},
-          {"log_scale", f.mark.logScale},
-          {"in_rule", f.mark.inRule},
-          {"passed", f.passed ? Json(*f.passed) : Json(nullptr)},
-          {"open", f.open},
-          {"simulation_lower", number(f.interval ? f.interval->lower : std::nullopt)},
-          {"simulation_upper", number(f.interval ? f.interval->upper : std::nullopt)},
-          {"no_simulation_interval", f.interval ? f.interval->reason : "none was worked out"},
-          {"undecided", f.undecided},
-          {"percentile", f.rank ? Json(*f.rank) : Json(nullptr)},
-          {"no_percentile", f.rank.reason()},
-          {"competent_members", f.competent},
-          {"moments", moments},
-          {"no_moments", f.moments.none},
-          {"history", history},
-          {"plateau", f.curve ? Json(f.curve->plateau) : Json(nullptr)},
-          {"no_curve", f.curve.reason()}};
-}
-
 }  // namespace
 
 void printGrade(const Grade& g, std::ostream& out) {
-  if (synthetic(g)) out << watermarkText << '\n';
-  printWrapped(title(g), out);
-  for (const std::string& line : opening(g)) printWrapped(line, out);
-  out << '\n';
-  for (const ReportTable& table : {figuresTable(g), historyTable(g)}) {
-    if (!table.rows.empty()) printTable(table, out);
-  }
-  const std::vector<std::string> moments = momentLines(g);
-  if (!moments.empty()) out << "Moments\n";
-  for (const std::string& line : moments) printWrapped(line, out);
-  if (!moments.empty()) out << '\n';
-  for (const std::string& line : notes(g)) printWrapped(line, out);
-  if (!historyTable(g).rows.empty()) printWrapped(curveNote, out);
-  if (synthetic(g)) out << watermarkText << '\n';
+  printReport({title(g), synthetic(g), opening(g), {}}, out, [&] {
+    const ReportTable history = historyTable(g);
+    for (const ReportTable& table : {figuresTable(g), history}) {
+      if (!table.rows.empty()) printTable(table, out);
+    }
+    const std::vector<std::string> moments = momentLines(g);
+    if (!moments.empty()) out << "Moments\n";
+    for (const std::string& line : moments) printWrapped(line, out);
+    if (!moments.empty()) out << '\n';
+    for (const std::string& line : notes(g)) printWrapped(line, out);
+    if (!history.rows.empty()) printWrapped(curveNote, out);
+  });
 }
 
-std::string gradeJson(const Grade& g) {
-  Json j{{"synthetic", synthetic(g)},
-         {"use", g.norm.evidence.empty() ? "formative" : "evidence attached"},
-         {"use_text", useOf(g.norm)},
-         {"attempt", g.attempt.uuid},
-         {"participant", g.attempt.participant},
-         {"norm", {{"name", g.norm.name}, {"version", g.norm.version}, {"judged_by", g.norm.judgedBy}}},
-         {"critical_errors", g.criticalErrors ? Json(*g.criticalErrors) : Json(nullptr)},
-         {"critical_errors_missing", g.criticalMissing},
-         {"critical_times", g.criticalTimes},
-         {"passed", g.passed},
-         {"certain", g.certain},
-         {"verdict", g.verdict},
-         {"rule", {{"figures", g.inRule}, {"needed", g.needed}, {"passed", g.passedCount}}},
-         {"pass_rate",
-          {{"competent", {g.competentRate.passed, g.competentRate.members}},
-           {"others", {g.otherRate.passed, g.otherRate.members}}}},
-         {"remarks", g.remarks},
-         {"moments_missing", g.momentsMissing},
-         {"figures", Json::array()}};
-  for (const GradedFigure& f : g.figures) j["figures"].push_back(figureJson(f));
-  return j.dump(2, ' ', false, Json::error_handler_t::replace);
+ValueTree gradeTree(const Grade& g) {
+  ValueTree tree{{"synthetic", synthetic(g)},
+                 {"use", g.norm.evidence.empty() ? "formative" : "evidence attached"},
+                 {"use_text", useOf(g.norm)},
+                 {"attempt", g.attempt.uuid},
+                 {"participant", g.attempt.participant},
+                 {"norm", {{"name", g.norm.name}, {"version", g.norm.version}, {"judged_by", g.norm.judgedBy}}},
+                 {"critical_errors", g.criticalErrors},
+                 {"critical_errors_missing", g.criticalMissing},
+                 {"critical_times", g.criticalTimes},
+                 {"passed", g.passed},
+                 {"certain", g.certain},
+                 {"verdict", g.verdict},
+                 {"rule", {{"figures", g.inRule}, {"needed", g.needed}, {"passed", g.passedCount}}},
+                 {"pass_rate",
+                  {{"competent", {g.competentRate.passed, g.competentRate.members}},
+                   {"others", {g.otherRate.passed, g.otherRate.members}}}},
+                 {"remarks", g.remarks},
+                 {"moments_missing", g.momentsMissing},
+                 {"figures", ValueTree::array()}};
+  for (const GradedFigure& f : g.figures) tree["figures"].push_back(treeOf(f));
+  return tree;
 }
 
 ReportDocument gradeDocument(const Grade& g, const std::string& recording, const std::string& howToDraw) {

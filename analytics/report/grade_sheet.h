@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A grade as text, JSON and a document of its own.
+// A grade as text, one tree of values and a document of its own.
 #pragma once
 
 #include <ostream>
@@ -7,11 +7,12 @@
 
 #include "analytics/assessment/grade.h"
 #include "analytics/report/report_document.h"
+#include "analytics/report/value_tree.h"
 
 namespace calot::analytics {
 
 void printGrade(const Grade& grade, std::ostream& out);
-std::string gradeJson(const Grade& grade);
+ValueTree gradeTree(const Grade& grade);
 /// @param recording how the sheet names the recording, for links to its moments ("a.h5#t=12,13", a media fragment);
 /// empty: none
 /// @param howToDraw a sentence on how the program draws a moment of it; may be empty

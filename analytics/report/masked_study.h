@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "analytics/cohort/analysis_locks.h"
+#include "analytics/cohort/blinding.h"
 #include "analytics/report/study.h"
 
 namespace calot::analytics {

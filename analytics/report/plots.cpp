@@ -10,7 +10,7 @@
 #include <string>
 #include <utility>
 
-#include "analytics/report/report_text.h"
+#include "analytics/report/report_document.h"
 #include "analytics/statistics/descriptive.h"
 
 namespace calot::analytics {
@@ -80,7 +80,7 @@ constexpr double usualBoxHalf = 26.0, pointRadius = 2.6;
 constexpr double countLetter = 4.9, groupLetter = 6.5,
                  minName = 4.0;  // mean width of a letter; a name of fewer says nothing
 
-/// Where a group stands, and in what.
+/// Position and inks of a group's column.
 struct BoxColumn {
   double x, boxHalf;
   Ink box, point;
@@ -101,7 +101,7 @@ void drawBox(Drawing& drawing, const std::vector<double>& sorted, const BoxColum
   drawing.line(Ink::median, x - boxHalf, scale.y(q2), x + boxHalf, scale.y(q2));
 }
 
-/// Every value is drawn, or one in so many of those in order.
+/// Every value is drawn, or every n-th of them in order.
 std::size_t strideOf(std::size_t values) { return values == 0 ? 1 : 1 + (values - 1) / mostPoints; }
 
 void drawGroup(Drawing& drawing, const BoxPlot& plot, std::size_t group, const BoxColumn& column,

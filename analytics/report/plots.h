@@ -13,7 +13,7 @@
 
 #include "analytics/report/drawing.h"
 #include "analytics/report/ratings.h"
-#include "analytics/statistics/learning_curve.h"
+#include "analytics/statistics/regression.h"
 
 namespace calot::analytics {
 
@@ -74,7 +74,7 @@ struct BoxPlot {
 
 /// For each group a box from quartile to quartile (type 7) with the median, whiskers to the outermost
 /// values within 1.5 times the box's height (Tukey 1977), and every value as a point beside it; of fewer than five
-/// values the points alone, of over 200 one in so many in order, with both extremes, which is said. Groups are named
+/// values the points alone, of over 200 every n-th in order, with both extremes, which is said. Groups are named
 /// where there is space for names. Values too large or too close for a scale are answered with none, as are groups that
 /// are all empty.
 std::optional<Drawing> drawBoxPlot(const BoxPlot& plot);

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
-#include "analytics/report/report_text.h"
+#include "analytics/report/report_document.h"
 
 namespace calot::analytics {
 namespace {

@@ -1,128 +1,121 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Results of forms as tables and sentences.
-
 #include "analytics/report/rating_tables.h"
 
 #include <fmt/format.h>
-#include <algorithm>
 
-#include "analytics/report/ratings.h"
-#include "analytics/report/report_text.h"
+#include <algorithm>
+#include <utility>
 
 namespace calot::analytics {
 namespace {
 
-using Align = TextTable::Align;
-
-std::string withInterval(double value, const Expected<Interval>& interval) {
-  if (!interval) return fmt::format("{:.3f}", value);
-  return fmt::format("{:.3f} [{:.3f}, {:.3f}]", value, interval->lower, interval->upper);
+template <class T>
+ValueTree estimateTree(const Expected<T>& estimate) {
+  return treeOf(estimate, [](const T& e) { return ValueTree{{"value", e.value}, {"interval", e.interval}}; });
 }
 
-std::string iccText(const Expected<IntraclassCorrelation>& icc) {
-  return icc ? withInterval(icc->value, icc->interval) : "- (" + icc.reason() + ")";
+ValueTree summaryTree(const std::string& group, const ItemSummary& s) {
+  return {{"group", group},
+          {"n", s.n},
+          {"blank", s.blank},
+          {"median", s.median},
+          {"lower_quartile", s.lowerQuartile},
+          {"upper_quartile", s.upperQuartile},
+          {"mean", s.mean}};
 }
 
-/// A group of which nobody filled in this form has no rows.
-std::vector<std::size_t> groupsThatAnswered(const FormReport& report) {
-  std::vector<std::size_t> answered;
+ValueTree itemTree(const FormReport& report, const ItemReport& item) {
+  ValueTree groups = ValueTree::array();
   for (std::size_t g = 0; g < report.groups.size(); ++g) {
-    if (std::any_of(report.items.begin(), report.items.end(),
-                    [&](const ItemReport& item) { return item.groups[g].n + item.groups[g].blank > 0; }))
-      answered.push_back(g);
+    const ItemSummary& s = item.groups[g];
+    ValueTree counts = ValueTree::object();
+    for (const auto& [score, count] : s.counts) counts[std::to_string(score)] = count;
+    ValueTree& group = groups.emplace_back(ValueTree{
+        {"group", report.groups[g]}, {"primary", !item.primaryGroup.empty() && report.groups[g] == item.primaryGroup}});
+    group.update(summaryTree(report.groups[g], s));
+    group.update({{"published_mean", item.published[g]}, {"counts", counts}});
   }
-  return answered;
+  return {{"item", item.key}, {"text", item.text}, {"groups", groups}};
 }
 
-/// Titles and cells of what both tables say of a group's scores.
-void addSummaryColumns(ReportTable& table) {
-  for (const char* title : {"n", "blank", "median", "quartile 1", "quartile 3", "mean"})
-    table.columns.emplace_back(title, Align::right);
+ValueTree formTree(const FormReport& r) {
+  ValueTree items = ValueTree::array(), scales = ValueTree::array(), consistency = ValueTree::array(),
+            agreement = ValueTree::array();
+  for (const ItemReport& item : r.items) items.push_back(itemTree(r, item));
+  for (const ScaleReport& s : r.scales) {
+    ValueTree groups = ValueTree::array();
+    for (std::size_t g = 0; g < r.groups.size(); ++g) {
+      const std::optional<double>& mean = s.groups[g].mean;
+      groups.push_back(summaryTree(r.groups[g], s.groups[g]));
+      groups.back()["mean_of_an_item"] = mean ? std::optional(*mean / static_cast<double>(s.items)) : std::nullopt;
+    }
+    scales.push_back({{"scale", s.name}, {"items", s.items}, {"groups", groups}});
+  }
+  for (const SectionConsistency& s : r.sections)
+    consistency.push_back({{"section", s.section}, {"n", s.n}, {"alpha", estimateTree(s.alpha)}});
+  for (const Agreement& a : r.agreement) {
+    agreement.push_back({{"figure", a.figure},
+                         {"attempts", a.attempts},
+                         {"raters", a.raters},
+                         {"icc_2_1", estimateTree(a.single)},
+                         {"icc_2_k", estimateTree(a.average)}});
+  }
+  return {{"form", r.name},     {"version", r.version},  {"title", r.title},           {"source", r.source},
+          {"filled", r.filled}, {"left_out", r.leftOut}, {"groups", r.groups},         {"incomplete", r.incomplete},
+          {"items", items},     {"scales", scales},      {"consistency", consistency}, {"agreement", agreement}};
 }
 
-void addSummary(std::vector<std::string>& row, const ItemSummary& s) {
-  row.push_back(fmt::format("{}", s.n));
-  row.push_back(s.blank == 0 ? "" : fmt::format("{}", s.blank));
-  for (const std::optional<double>& value : {s.median, s.lowerQuartile, s.upperQuartile, s.mean})
-    row.push_back(significantOrDash(value, 3));
+// Texts of cells.
+std::string estimateText(const ValueTree& estimate) {
+  if (!estimate.contains("interval")) return "- (" + plain(estimate["reason"]) + ")";
+  const ValueTree& interval = estimate["interval"];
+  return share3(estimate["value"]) + (interval.contains("lower") ? " " + shares3(interval) : "");
+}
+std::string groupText(const ValueTree& group) { return group == "" ? "(no group)" : plain(group); }
+std::string countAboveZero(const ValueTree& count) { return count == 0 ? "" : plain(count); }
+std::string primaryText(const ValueTree& primary) { return primary == true ? "primary" : ""; }
+std::string publishedText(const ValueTree& mean) { return mean.is_null() ? "" : fmt::format("{}", mean.get<double>()); }
+std::string countsText(const ValueTree& counts) {
+  std::string text;
+  for (const auto& [score, count] : counts.items())
+    text += fmt::format("{}{}: {}", text.empty() ? "" : ", ", score, count.dump());
+  return text;
 }
 
-std::string groupName(const std::string& group) { return group.empty() ? "(no group)" : group; }
-
-ReportTable answersTable(const FormReport& report) {
-  ReportTable table{fmt::format("{} ({} {})", report.title, report.name, report.version),
-                    {{"item", Align::left}, {"group", Align::left}, {"", Align::left}},
-                    {}};
-  addSummaryColumns(table);
-  table.columns.emplace_back("paper", Align::right);
-  table.columns.emplace_back("answers", Align::left);
-  const std::vector<std::size_t> answered = groupsThatAnswered(report);
-  for (const ItemReport& item : report.items) {
-    for (const std::size_t g : answered) {
-      const ItemSummary& s = item.groups[g];
-      std::string counts;
-      for (const auto& [score, count] : s.counts)
-        counts += fmt::format("{}{}: {}", counts.empty() ? "" : ", ", score, count);
-      std::vector<std::string> row{
-          g == answered.front() ? item.text : "", groupName(report.groups[g]),
-          report.groups[g] == item.primaryGroup && !item.primaryGroup.empty() ? "primary" : ""};
-      addSummary(row, s);
-      row.push_back(item.published[g] ? fmt::format("{}", *item.published[g]) : "");
-      row.push_back(counts);
-      table.rows.push_back(std::move(row));
+/// The groups of every item or scale, one below the other, without those in which nobody filled in this form. The first
+/// of each has its item's `names`.
+ValueTree groupRows(const ValueTree& form, const ValueTree& items, const std::vector<std::string>& names) {
+  ValueTree rows = ValueTree::array();
+  const auto answered = [&](std::size_t g) {
+    return std::any_of(form["items"].begin(), form["items"].end(), [&](const ValueTree& item) {
+      return item["groups"][g]["n"].get<int>() + item["groups"][g]["blank"].get<int>() > 0;
+    });
+  };
+  for (const ValueTree& item : items) {
+    bool first = true;
+    for (std::size_t g = 0; g < item["groups"].size(); ++g) {
+      if (!answered(g)) continue;
+      ValueTree& row = rows.emplace_back(item["groups"][g]);
+      for (const std::string& name : names) row[name] = first ? item[name] : ValueTree(nullptr);
+      first = false;
     }
   }
-  return table;
+  return rows;
 }
 
-ReportTable scalesTable(const FormReport& report) {
-  ReportTable table{fmt::format("Sums of {}", report.name),
-                    {{"scale", Align::left}, {"range", Align::left}, {"group", Align::left}},
-                    {}};
-  addSummaryColumns(table);
-  table.columns.emplace_back("mean of an item", Align::right);
-  const std::vector<std::size_t> answered = groupsThatAnswered(report);
-  for (const ScaleReport& scale : report.scales) {
-    const auto items = static_cast<int>(scale.items);
-    for (const std::size_t g : answered) {
-      const ItemSummary& s = scale.groups[g];
-      const bool first = g == answered.front();
-      std::vector<std::string> row{first ? scale.name : "",
-                                   first ? fmt::format("{} to {}", report.least * items, report.most * items) : "",
-                                   groupName(report.groups[g])};
-      addSummary(row, s);
-      row.push_back(
-          significantOrDash(s.mean ? std::optional(*s.mean / static_cast<double>(scale.items)) : std::nullopt, 3));
-      table.rows.push_back(std::move(row));
-    }
-  }
-  return table;
-}
+const std::vector<TreeColumn> scoreColumns{{"n", "/n", plain},
+                                           {"blank", "/blank", countAboveZero},
+                                           {"median", "/median", digits3},
+                                           {"quartile 1", "/lower_quartile", digits3},
+                                           {"quartile 3", "/upper_quartile", digits3},
+                                           {"mean", "/mean", digits3}};
 
-ReportTable consistencyTable(const FormReport& report) {
-  ReportTable table{fmt::format("Internal consistency of {}", report.name),
-                    {{"subscale", Align::left}, {"n", Align::right}, {"Cronbach's alpha", Align::left}},
-                    {}};
-  for (const SectionConsistency& s : report.sections) {
-    table.rows.push_back({s.section, fmt::format("{}", s.n),
-                          s.alpha ? withInterval(s.alpha->value, s.alpha->interval) : "- (" + s.alpha.reason() + ")"});
-  }
-  return table;
-}
-
-ReportTable agreementTable(const FormReport& report) {
-  ReportTable table{fmt::format("Agreement between raters on {}", report.name),
-                    {{"figure", Align::left},
-                     {"attempts", Align::right},
-                     {"raters", Align::right},
-                     {"ICC(2,1), one rater", Align::left},
-                     {"ICC(2,k), their mean", Align::left}},
-                    {}};
-  for (const Agreement& a : report.agreement) {
-    table.rows.push_back(
-        {a.figure, fmt::format("{}", a.attempts), fmt::format("{}", a.raters), iccText(a.single), iccText(a.average)});
-  }
-  return table;
+/// Titles and cells of a group's scores between others.
+ReportTable summaryTable(const std::string& title, const ValueTree& rows, std::vector<TreeColumn> columns,
+                         const std::vector<TreeColumn>& behind) {
+  columns.insert(columns.end(), scoreColumns.begin(), scoreColumns.end());
+  columns.insert(columns.end(), behind.begin(), behind.end());
+  return tableOf(title, rows, columns);
 }
 
 }  // namespace
@@ -165,90 +158,36 @@ std::vector<std::string> ratingNotes(const FormReport& report) {
 std::vector<ReportTable> ratingTables(const FormReport& report) {
   std::vector<ReportTable> tables;
   if (report.filled == 0) return tables;
+  ValueTree form = formTree(report);
+  for (ValueTree& scale : form["scales"]) {
+    const int items = scale["items"];
+    scale["range"] = fmt::format("{} to {}", report.least * items, report.most * items);
+  }
   for (ReportTable table :
-       {answersTable(report), scalesTable(report), consistencyTable(report), agreementTable(report)}) {
+       {summaryTable(fmt::format("{} ({} {})", report.title, report.name, report.version),
+                     groupRows(form, form["items"], {"text"}),
+                     {{"=item", "/text", plain}, {"=group", "/group", groupText}, {"=", "/primary", primaryText}},
+                     {{"paper", "/published_mean", publishedText}, {"=answers", "/counts", countsText}}),
+        summaryTable("Sums of " + report.name, groupRows(form, form["scales"], {"scale", "range"}),
+                     {{"=scale", "/scale", plain}, {"=range", "/range", plain}, {"=group", "/group", groupText}},
+                     {{"mean of an item", "/mean_of_an_item", digits3}}),
+        tableOf("Internal consistency of " + report.name, form["consistency"],
+                {{"=subscale", "/section", plain}, {"n", "/n", plain}, {"=Cronbach's alpha", "/alpha", estimateText}}),
+        tableOf("Agreement between raters on " + report.name, form["agreement"],
+                {{"=figure", "/figure", plain},
+                 {"attempts", "/attempts", plain},
+                 {"raters", "/raters", plain},
+                 {"=ICC(2,1), one rater", "/icc_2_1", estimateText},
+                 {"=ICC(2,k), their mean", "/icc_2_k", estimateText}})}) {
     if (!table.rows.empty()) tables.push_back(std::move(table));
   }
   return tables;
 }
 
-namespace {
-
-using Json = nlohmann::ordered_json;
-
-Json orNull(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
-
-Json intervalJson(const Expected<Interval>& i) {
-  if (!i) return {{"value", nullptr}, {"reason", i.reason()}};
-  return {{"lower", i->lower}, {"upper", i->upper}, {"level", i->level}, {"method", i->method}};
-}
-
-template <class T>
-Json estimateJson(const Expected<T>& answer) {
-  if (!answer) return {{"value", nullptr}, {"reason", answer.reason()}};
-  return {{"value", answer->value}, {"interval", intervalJson(answer->interval)}};
-}
-
-Json itemJson(const FormReport& report, const ItemReport& item) {
-  Json groups = Json::array();
-  for (std::size_t g = 0; g < report.groups.size(); ++g) {
-    const ItemSummary& s = item.groups[g];
-    Json counts = Json::object();
-    for (const auto& [score, count] : s.counts) counts[std::to_string(score)] = count;
-    groups.push_back({{"group", report.groups[g]},
-                      {"primary", !item.primaryGroup.empty() && report.groups[g] == item.primaryGroup},
-                      {"n", s.n},
-                      {"blank", s.blank},
-                      {"median", orNull(s.median)},
-                      {"lower_quartile", orNull(s.lowerQuartile)},
-                      {"upper_quartile", orNull(s.upperQuartile)},
-                      {"mean", orNull(s.mean)},
-                      {"published_mean", orNull(item.published[g])},
-                      {"counts", counts}});
-  }
-  return {{"item", item.key}, {"text", item.text}, {"groups", groups}};
-}
-
-}  // namespace
-
-nlohmann::ordered_json ratingsJson(const std::vector<FormReport>& reports) {
-  Json all = Json::array();
-  for (const FormReport& r : reports) {
-    Json j{{"form", r.name},     {"version", r.version},       {"title", r.title},
-           {"source", r.source}, {"filled", r.filled},         {"left_out", r.leftOut},
-           {"groups", r.groups}, {"incomplete", r.incomplete}, {"items", Json::array()}};
-    for (const ItemReport& item : r.items) j["items"].push_back(itemJson(r, item));
-    j["scales"] = Json::array();
-    for (const ScaleReport& s : r.scales) {
-      Json groups = Json::array();
-      for (std::size_t g = 0; g < r.groups.size(); ++g) {
-        const ItemSummary& of = s.groups[g];
-        groups.push_back({{"group", r.groups[g]},
-                          {"n", of.n},
-                          {"blank", of.blank},
-                          {"median", orNull(of.median)},
-                          {"lower_quartile", orNull(of.lowerQuartile)},
-                          {"upper_quartile", orNull(of.upperQuartile)},
-                          {"mean", orNull(of.mean)},
-                          {"mean_of_an_item",
-                           orNull(of.mean ? std::optional(*of.mean / static_cast<double>(s.items)) : std::nullopt)}});
-      }
-      j["scales"].push_back({{"scale", s.name}, {"items", s.items}, {"groups", groups}});
-    }
-    j["consistency"] = Json::array();
-    for (const SectionConsistency& s : r.sections)
-      j["consistency"].push_back({{"section", s.section}, {"n", s.n}, {"alpha", estimateJson(s.alpha)}});
-    j["agreement"] = Json::array();
-    for (const Agreement& a : r.agreement) {
-      j["agreement"].push_back({{"figure", a.figure},
-                                {"attempts", a.attempts},
-                                {"raters", a.raters},
-                                {"icc_2_1", estimateJson(a.single)},
-                                {"icc_2_k", estimateJson(a.average)}});
-    }
-    all.push_back(j);
-  }
-  return all;
+ValueTree ratingsTree(const std::vector<FormReport>& reports) {
+  ValueTree forms = ValueTree::array();
+  for (const FormReport& report : reports) forms.push_back(formTree(report));
+  return forms;
 }
 
 }  // namespace calot::analytics

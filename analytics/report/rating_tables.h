@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Results of forms as tables, sentences and JSON.
+// Results of forms as one tree of values, tables and sentences.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "analytics/report/ratings.h"
 #include "analytics/report/report_document.h"
+#include "analytics/report/value_tree.h"
 
 namespace calot::analytics {
 
@@ -19,6 +19,6 @@ std::vector<std::string> ratingNotes(const FormReport& report);
 std::vector<ReportTable> ratingTables(const FormReport& report);
 
 /// Every report with all of its numbers; missing numbers are null, with a reason if there is one.
-nlohmann::ordered_json ratingsJson(const std::vector<FormReport>& reports);
+ValueTree ratingsTree(const std::vector<FormReport>& reports);
 
 }  // namespace calot::analytics

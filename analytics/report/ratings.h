@@ -48,14 +48,14 @@ struct ScaleReport {
 struct Agreement {
   std::string figure;  ///< an item's key, a subscale, or "mean of all items"
   std::uint64_t attempts = 0, raters = 0;
-  Expected<IntraclassCorrelation> single = Expected<IntraclassCorrelation>::none("not computed");   ///< ICC(2,1)
-  Expected<IntraclassCorrelation> average = Expected<IntraclassCorrelation>::none("not computed");  ///< ICC(2,k)
+  Expected<IntraclassCorrelation> single = NoResult{"not computed"};   ///< ICC(2,1)
+  Expected<IntraclassCorrelation> average = NoResult{"not computed"};  ///< ICC(2,k)
 };
 
 struct SectionConsistency {
   std::string section;
   std::uint64_t n = 0;  ///< complete forms
-  Expected<CronbachAlpha> alpha = Expected<CronbachAlpha>::none("not computed");
+  Expected<CronbachAlpha> alpha = NoResult{"not computed"};
 };
 
 struct FormReport {

@@ -2,15 +2,209 @@
 
 #include "analytics/report/report_document.h"
 
+#include <fmt/format.h>
 #include <algorithm>
-#include <cstddef>
+#include <cassert>
+#include <cmath>
+#include <sstream>
+#include <vector>
+
+#include "recorder/base/file_bytes.h"
 
 namespace calot::analytics {
 namespace {
 
-constexpr std::size_t terminalWidth = 120;
+unsigned byteAt(std::string_view text, std::size_t i) { return static_cast<unsigned char>(text[i]); }
+
+/// Length of the well-formed sequence of UTF-8 that begins at `i` (Unicode 15, table 3-7), or 0.
+std::size_t sequenceAt(std::string_view text, std::size_t i) {
+  const unsigned first = byteAt(text, i);
+  if (first < 0x80) return 1;
+  const std::size_t length = first >= 0xC2 && first <= 0xDF   ? 2
+                             : first >= 0xE0 && first <= 0xEF ? 3
+                             : first >= 0xF0 && first <= 0xF4 ? 4
+                                                              : 0;
+  if (length == 0 || i + length > text.size()) return 0;
+  for (std::size_t k = 1; k < length; ++k) {
+    if ((byteAt(text, i + k) & 0xC0U) != 0x80U) return 0;
+  }
+  const unsigned second = byteAt(text, i + 1);
+  const bool overlong = (first == 0xE0 && second < 0xA0) || (first == 0xF0 && second < 0x90);
+  const bool outside = (first == 0xED && second > 0x9F) || (first == 0xF4 && second > 0x8F);  // surrogates; the end
+  return overlong || outside ? 0 : length;
+}
 
 }  // namespace
+
+std::string escaped(std::string_view text) {
+  std::string out;
+  out.reserve(text.size());
+  for (std::size_t i = 0; i < text.size();) {
+    const std::size_t length = sequenceAt(text, i);
+    const unsigned c = byteAt(text, i);
+    if (length == 0 || (c < 0x20 && c != '\n' && c != '\t') || c == 0x7F) {
+      out += "\xEF\xBF\xBD";
+      ++i;
+      continue;
+    }
+    if (c == '&') {
+      out += "&amp;";
+    } else if (c == '<') {
+      out += "&lt;";
+    } else if (c == '>') {
+      out += "&gt;";
+    } else if (c == '"') {
+      out += "&quot;";
+    } else if (c == '\'') {
+      out += "&#39;";
+    } else {
+      out += text.substr(i, length);
+    }
+    i += length;
+  }
+  return out;
+}
+
+std::string coverageWarning(CoveredInterval interval, const std::string& name, std::size_t nx, std::size_t ny,
+                            const std::string& unit) {
+  CoverageDoubt doubt;
+  if (!doubtful(interval, nx, ny, doubt)) return {};
+  if (!doubt.known) return fmt::format("{}: coverage is not known for fewer than {} {}", name, doubt.size, unit);
+  return fmt::format("{}: with {} {} an interval at 95 % covers {} % (population: {})", name, doubt.size, unit,
+                     doubt.percent, doubt.population);
+}
+
+namespace {
+
+/// Columns on the terminal: code points, so that a degree sign counts once.
+std::size_t widthOf(const std::string& text) {
+  return static_cast<std::size_t>(
+      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
+}
+
+constexpr std::size_t narrowest = 10, terminalWidth = 120;
+
+/// How far columns are made narrower, one after the other.
+enum class Narrowing { wholeWords, othersCut, allCut };
+
+/// With the two blanks before it that a line below has.
+std::size_t longestWord(const std::string& text) {
+  std::size_t longest = 0;
+  std::istringstream words(text);
+  bool first = true;
+  for (std::string word; words >> word; first = false) longest = std::max(longest, widthOf(word) + (first ? 0 : 2));
+  return longest;
+}
+
+/// The text broken at blanks into lines, those below the first indented; a word longer than a line is cut.
+std::vector<std::string> wrapped(const std::string& text, std::size_t width) {
+  if (widthOf(text) <= width) return {text};
+  std::vector<std::string> lines;
+  std::string line(std::min(text.find_first_not_of(' '), text.size()), ' ');  // what is indented stays so
+  bool empty = true;
+  std::istringstream words(text);
+  for (std::string word; words >> word;) {
+    const std::string longer = empty ? line + word : line + " " + word;
+    if (empty || widthOf(longer) <= width) {
+      line = cutTo(longer, width);
+    } else {
+      lines.push_back(line);
+      line = cutTo("  " + word, width);
+    }
+    empty = false;
+  }
+  lines.push_back(line);
+  return lines;
+}
+
+}  // namespace
+
+ReportTable tableOf(const std::string& title, const std::vector<std::string>& columns) {
+  ReportTable table{title, {}, {}};
+  for (const std::string& column : columns) {
+    const bool left = column.rfind('=', 0) == 0;
+    table.columns.emplace_back(column.substr(left ? 1 : 0), left ? Align::left : Align::right);
+  }
+  return table;
+}
+
+void ReportTable::print(std::ostream& out, std::size_t most) const {
+  std::vector<std::size_t> width(columns.size(), 0);
+  std::vector<bool> shown(columns.size(), false);
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    width[c] = widthOf(columns[c].first);
+    for (const auto& row : rows) {
+      width[c] = std::max(width[c], widthOf(row[c]));
+      shown[c] = shown[c] || !row[c].empty();
+    }
+  }
+  const auto total = [&] {
+    std::size_t sum = 0;
+    for (std::size_t c = 0; c < columns.size(); ++c) sum += shown[c] ? width[c] + (sum == 0 ? 0 : 2) : 0;
+    return sum;
+  };
+  // Words are cut where nothing else helps, and those that say what a row is of last.
+  std::vector<std::size_t> wholeWords(columns.size(), narrowest);
+  for (const auto& row : rows) {
+    for (std::size_t c = 0; c < columns.size(); ++c) wholeWords[c] = std::max(wholeWords[c], longestWord(row[c]));
+  }
+  for (const Narrowing to : {Narrowing::wholeWords, Narrowing::othersCut, Narrowing::allCut}) {
+    while (total() > most) {
+      std::size_t widest = columns.size();
+      for (std::size_t c = 0; c < columns.size(); ++c) {
+        const bool whole = to == Narrowing::wholeWords || (to == Narrowing::othersCut && c == 0);
+        if (!shown[c] || columns[c].second != Align::left || width[c] <= (whole ? wholeWords[c] : narrowest)) continue;
+        if (widest == columns.size() || width[c] > width[widest]) widest = c;
+      }
+      if (widest == columns.size()) break;
+      --width[widest];
+    }
+  }
+  const auto line = [&](const auto& cell, char fill) {
+    std::string text;
+    bool first = true;
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+      if (!shown[c]) continue;
+      if (!first) text += "  ";
+      first = false;
+      const std::string content = cutTo(cell(c), width[c]);
+      const std::string padding(width[c] - std::min(width[c], widthOf(content)), fill);
+      text += columns[c].second == Align::left ? content + padding : padding + content;
+    }
+    text.erase(text.find_last_not_of(' ') + 1);
+    out << text << '\n';
+  };
+  line([&](std::size_t c) { return columns[c].first; }, ' ');
+  line([](std::size_t) { return std::string(); }, '-');
+  // The rest of cells that are too wide goes on below: in the next row if it belongs to this one (its first
+  // cell is empty) and has an empty cell there, else in a line of its own.
+  std::vector<std::vector<std::string>> rest(columns.size());
+  const auto takeRest = [&](std::size_t c) {
+    if (rest[c].empty()) return std::string();
+    std::string text = rest[c].front();
+    rest[c].erase(rest[c].begin());
+    return text;
+  };
+  const auto printRest = [&](const auto& wanted) {
+    const auto left = [&](std::size_t c) { return !rest[c].empty() && wanted(c); };
+    for (bool any = true; any;) {
+      any = false;
+      for (std::size_t c = 0; c < columns.size(); ++c) any = any || left(c);
+      if (any) line([&](std::size_t c) { return left(c) ? takeRest(c) : std::string(); }, ' ');
+    }
+  };
+  for (const auto& row : rows) {
+    printRest([&](std::size_t c) { return !row[0].empty() || !row[c].empty(); });
+    line(
+        [&](std::size_t c) {
+          if (row[c].empty() || columns[c].second != Align::left) return row[c].empty() ? takeRest(c) : row[c];
+          rest[c] = wrapped(row[c], width[c]);
+          return takeRest(c);
+        },
+        ' ');
+  }
+  printRest([](std::size_t) { return true; });
+}
 
 void dropEmptyColumns(ReportTable& table) {
   for (std::size_t c = table.columns.size(); c-- > 0;) {
@@ -21,10 +215,8 @@ void dropEmptyColumns(ReportTable& table) {
   }
 }
 
-void printTable(const ReportTable& content, std::ostream& out) {
-  TextTable table(content.columns);
-  for (const auto& row : content.rows) table.add(row);
-  out << content.title << '\n';
+void printTable(const ReportTable& table, std::ostream& out) {
+  out << table.title << '\n';
   table.print(out, terminalWidth);
   out << '\n';
 }
@@ -39,6 +231,131 @@ void printWrapped(const std::string& text, std::ostream& out) {
     begin = end + 1;
   }
   out << text.substr(begin) << '\n';
+}
+
+void printReport(const ReportOpening& opening, std::ostream& out, const std::function<void()>& body) {
+  if (opening.synthetic) out << watermarkText << '\n';
+  printWrapped(opening.title, out);
+  for (const std::string& line : opening.head) printWrapped(line, out);
+  out << '\n';
+  for (const auto& row : opening.flow.rows)
+    printWrapped(fmt::format("{} {} {}", row[0], opening.flow.columns[0].first, row[1]), out);
+  if (!opening.flow.rows.empty()) out << '\n';
+  body();
+  if (opening.synthetic) out << watermarkText << '\n';
+}
+
+std::string cutTo(const std::string& text, std::size_t width) {
+  if (widthOf(text) <= width) return text;
+  std::size_t end = 0;
+  for (std::size_t seen = 0; end < text.size(); ++end) {
+    if ((static_cast<unsigned char>(text[end]) & 0xC0U) != 0x80U && seen++ == width - 3) break;
+  }
+  return text.substr(0, end) + "...";
+}
+
+std::string significant(double value, int digits) {
+  if (!std::isfinite(value)) return "-";
+  const double size = std::abs(value);
+  if (size < arithmeticDust) return "0";
+  if (size < 1e-4 || size >= 1e7) return fmt::format("{:.{}e}", value, digits - 1);
+  const int magnitude = static_cast<int>(std::floor(std::log10(size)));
+  return fmt::format("{:.{}f}", value, std::clamp(digits - 1 - magnitude, 0, 8));
+}
+
+std::string pText(double p) { return p < 0.0001 ? "<0.0001" : fmt::format("{:.4f}", p); }
+
+std::string significantOrDash(const std::optional<double>& value, int digits) {
+  return value ? significant(*value, digits) : "-";
+}
+
+std::string pOrDash(const std::optional<double>& p) { return p ? pText(*p) : "-"; }
+
+namespace {
+
+// The policy forbids whatever is not in the page itself, should a text ever get through as markup.
+constexpr const char* head = R"(<!DOCTYPE html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta http-equiv="Content-Security-Policy" content="default-src 'none'; style-src 'unsafe-inline'">
+<meta name="viewport" content="width=device-width">
+<style>
+body { font: 15px/1.45 sans-serif; color: #1b1f24; max-width: 76em; margin: 2em auto; padding: 0 1em; }
+h1 { font-size: 1.5em; } h2 { font-size: 1.15em; margin-top: 2em; }
+.wide { overflow-x: auto; }
+table { border-collapse: collapse; font-variant-numeric: tabular-nums; }
+th, td { padding: .2em .7em; border-bottom: 1px solid #d8dde3; text-align: left; white-space: nowrap; }
+th { border-bottom: 2px solid #57606a; } .right { text-align: right; }
+.figures { display: flex; flex-wrap: wrap; gap: 1em; } svg { max-width: 100%; height: auto; }
+.watermark { background: #b00020; color: #fff; font-weight: bold; padding: .5em 1em; }
+.behind { position: fixed; inset: 0; display: flex; align-items: center; justify-content: center; pointer-events: none;
+  font: bold 14vw sans-serif; color: #b00020; opacity: .07; transform: rotate(-30deg); }
+@media print { .page { break-before: page; } body { max-width: none; } figure, svg { break-inside: avoid; } }
+)";
+
+std::string cells(const std::vector<std::string>& row, const ReportTable& table, const char* tag) {
+  std::string html = "<tr>";
+  for (std::size_t c = 0; c < row.size(); ++c) {
+    html += fmt::format("<{}{}>{}</{}>", tag, table.columns[c].second == Align::right ? " class=\"right\"" : "",
+                        escaped(row[c]), tag);
+  }
+  return html + "</tr>\n";
+}
+
+std::string spans(const Paragraph& paragraph) {
+  std::string html;
+  for (const TextSpan& span : paragraph) {
+    html += span.link.empty() ? escaped(span.text)
+                              : fmt::format("<a href=\"{}\">{}</a>", escaped(span.link), escaped(span.text));
+  }
+  return html;
+}
+
+struct Part {
+  std::string operator()(const Heading& heading) const {
+    return fmt::format("<h2{}>{}</h2>\n", heading.newPage ? " class=\"page\"" : "", escaped(heading.text));
+  }
+  std::string operator()(const Paragraph& paragraph) const { return fmt::format("<p>{}</p>\n", spans(paragraph)); }
+  std::string operator()(const BulletList& list) const {
+    std::string html = "<ul>\n";
+    for (const Paragraph& item : list.items) html += fmt::format("<li>{}</li>\n", spans(item));
+    return html + "</ul>\n";
+  }
+  std::string operator()(const ReportTable& table) const {
+    std::vector<std::string> names;
+    for (const auto& column : table.columns) names.push_back(column.first);
+    std::string html = fmt::format("<h2>{}</h2>\n<div class=\"wide\"><table>\n<thead>", escaped(table.title));
+    html += cells(names, table, "th") + "</thead>\n<tbody>\n";
+    for (const auto& row : table.rows) html += cells(row, table, "td");
+    return html + "</tbody>\n</table></div>\n";
+  }
+  std::string operator()(const Figures& figures) const {
+    std::string html = "<div class=\"figures\">\n";
+    for (const Drawing& drawing : figures.drawings) html += svgOf(drawing);
+    return html + "</div>\n";
+  }
+};
+
+}  // namespace
+
+std::string pageHtml(const ReportDocument& document, const CarriedRecording* recording) {
+  const std::string title = escaped(document.title);
+  const std::string mark =
+      document.synthetic ? fmt::format("<p class=\"watermark\">{}</p>\n", escaped(watermarkText)) : std::string();
+  std::string html = head + drawingCss() + "</style>\n";
+  html += fmt::format("<title>{}{}</title>\n</head>\n<body>\n", document.synthetic ? "SYNTHETIC: " : "", title);
+  if (document.synthetic) html += "<div class=\"behind\" aria-hidden=\"true\">SYNTHETIC</div>\n";
+  html += mark + fmt::format("<h1>{}</h1>\n", title);
+  for (const auto& part : document.parts) html += std::visit(Part{}, part);
+  html += mark;
+  if (recording != nullptr) {
+    html += fmt::format(
+        "<p>This page carries the recording {0}. Drop it on calot-page.html to see the attempt and its proof.</p>\n"
+        "<script type=\"application/x-calot-recording\" id=\"recording\" data-name=\"{0}\">\n{1}\n</script>\n",
+        escaped(recording->name), recorder::base64(recording->bytes));
+  }
+  return html + "</body>\n</html>\n";
 }
 
 }  // namespace calot::analytics

@@ -1,32 +1,77 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A report as an ordered list of parts, shown identically on a terminal, by a page (page_html.h) and on paper
-// (gui/report).
+// A report as an ordered list of parts, shown identically on a terminal, by a page (pageHtml()) and on paper
+// (gui/report); and text of reports: tables, numbers, text escaped for HTML, warnings about intervals.
 #pragma once
 
+#include <cstddef>
+#include <functional>
+#include <optional>
 #include <ostream>
+#include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <variant>
 #include <vector>
 
 #include "analytics/report/drawing.h"
-#include "analytics/report/report_text.h"
+#include "analytics/statistics/published_coverage.h"
 
 namespace calot::analytics {
 
+/// A text for HTML or SVG, between tags or in a quoted attribute: & < > " ' are escaped, control characters and bytes
+/// that are not UTF-8 become U+FFFD.
+std::string escaped(std::string_view text);
+
+/// Warning about an interval whose published coverage is low at these sizes: "g: with 40 a group an interval at 95 %
+/// covers 92.4 % (population: exponential, 0.8)"; empty where it isn't.
+/// @param name as the report calls the interval. @param unit of the sizes: "a group", "attempts", "people".
+std::string coverageWarning(CoveredInterval interval, const std::string& name, std::size_t nx, std::size_t ny,
+                            const std::string& unit = "a group");
+
+enum class Align { left, right };
+
 struct ReportTable {
   std::string title;
-  std::vector<std::pair<std::string, TextTable::Align>> columns;
+  std::vector<std::pair<std::string, Align>> columns;
   std::vector<std::vector<std::string>> rows;
+
+  /// Without the title: header, rule, rows; columns two blanks apart; columns without cells are left out. Where the
+  /// table is wider than `most`, the widest left-aligned columns are made narrower as far as it takes, but not below
+  /// ten: their cells go on below, in a line of their own or in an empty cell of the next row, if that begins with an
+  /// empty cell. Words are cut ("fat-remaini...") only where that does not suffice, and those of the first column last.
+  void print(std::ostream& out, std::size_t most = std::string::npos) const;
 };
+
+/// A table without rows. @param columns aligned to the right, as numbers are; "=" before a title: to the left
+ReportTable tableOf(const std::string& title, const std::vector<std::string>& columns);
 
 /// Leaves out columns of which every cell is empty.
 void dropEmptyColumns(ReportTable& table);
 
 /// Title, table and an empty line, for a terminal of 120 columns.
-void printTable(const ReportTable& content, std::ostream& out);
+void printTable(const ReportTable& table, std::ostream& out);
 /// A sentence over as many lines as it needs.
 void printWrapped(const std::string& text, std::ostream& out);
+
+/// The beginning of a text of more than `width` letters and three points: `width` in all. @pre width > 3.
+std::string cutTo(const std::string& text, std::size_t width);
+
+/// Bound on accumulated rounding of a zero, in any unit that figures are shown in: an instrument that
+/// nobody moved has a path of 1e-11 mm.
+inline constexpr double arithmeticDust = 1e-9;
+
+/// `digits` significant digits, never in a locale's way, no exponent between 1e-4 and 1e7: "0.0432", "113", "12.5"; "0"
+/// below arithmeticDust.
+std::string significant(double value, int digits = 4);
+
+/// The same, or "-" where there is none.
+std::string significantOrDash(const std::optional<double>& value, int digits = 4);
+
+/// "p" with what a reader may believe: "< 0.0001", "0.0433".
+std::string pText(double p);
+/// The same, or "-" where there is none.
+std::string pOrDash(const std::optional<double>& p);
 
 struct TextSpan {
   std::string text;
@@ -58,7 +103,27 @@ struct ReportDocument {
   }
 };
 
+/// The beginning of a report: `flow` may be empty.
+struct ReportOpening {
+  std::string title;
+  bool synthetic = false;
+  std::vector<std::string> head;
+  ReportTable flow;
+};
+/// A report for a terminal: its opening, the flow as sentences, then what `body` prints, between watermarks.
+void printReport(const ReportOpening& opening, std::ostream& out, const std::function<void()>& body);
+
 /// Watermark of everything that contains performers' figures.
 inline constexpr const char* watermarkText = "SYNTHETIC: made by performers, says nothing about people";
+
+/// A recording that a page carries as data, for calot-page.html to open (docs/how-to/page.md).
+struct CarriedRecording {
+  std::string name;  ///< of the file
+  std::span<const std::byte> bytes;
+};
+
+/// One page that needs nothing else: no scripts, one style, figures inline, every text escaped; watermarked where the
+/// report is synthetic. @param recording null: none
+std::string pageHtml(const ReportDocument& document, const CarriedRecording* recording = nullptr);
 
 }  // namespace calot::analytics

@@ -10,8 +10,7 @@
 #include <map>
 #include <set>
 
-#include "analytics/checkpoints/registry.h"
-#include "analytics/report/study_coverage.h"
+#include "analytics/checkpoints/checkpoint.h"
 #include "analytics/report/study_population.h"
 #include "analytics/report/study_protocol.h"
 #include "analytics/report/study_rows.h"
@@ -69,13 +68,6 @@ std::optional<SimulationRange> simulationRange(const std::array<std::vector<Rang
 
 namespace {
 
-std::string leftOut(const Study& study) {
-  std::string left;
-  for (const FlowRow& row : study.flow)
-    left += fmt::format("{}{} {}", left.empty() ? "" : ", ", row.attempts, row.reason);
-  return fmt::format(" of {} attempts{}", study.recruited, left.empty() ? "" : " (left out: " + left + ")");
-}
-
 /// Values of one checkpoint and subject. What depends on them alone is looked up once: a large cohort has millions of
 /// values.
 struct Column {
@@ -98,67 +90,28 @@ struct Member {
   bool completed = false;
 };
 
-/// Who is in the study, by attempt; fills the study's counts and the rest of its flow.
-std::map<std::string, Member> members(Study& study, const std::vector<AttemptRow>& attempts,
+/// Selects the study's attempts; fills the study's counts and the rest of its flow.
+std::map<std::string, Member> members(Study& study, const std::vector<const AttemptRow*>& attempts,
                                       const StudyOptions& options, const std::string& name) {
+  const AttemptsOfUnits people =
+      attemptsOfUnits(attempts, study.groups, options.grouping, {options.attemptRule}, name, study.flow);
+  study.attemptRule = people.rule;
   std::map<std::string, Member> member;
   std::set<std::string> keys;
-  std::array<std::map<std::string, std::vector<const AttemptRow*>>, 2> people;
-  std::uint64_t elsewhere = 0, later = 0;
-  for (const AttemptRow& a : attempts) {
-    const auto at = std::find(study.groups.begin(), study.groups.end(), groupOf(a, options.grouping));
-    if (at == study.groups.end()) {
-      ++elsewhere;
-    } else {
-      people[static_cast<std::size_t>(at - study.groups.begin())][unitOf(a)].push_back(&a);
+  for (const auto& [person, list] : people.units) {
+    const std::size_t g = groupOf(*list[0], options.grouping) == study.groups[0] ? 0 : 1;
+    ++study.participants[g];
+    study.attempts[g] += list.size();
+    study.analysed += list.size();
+    for (const AttemptRow* a : list) {
+      member.emplace(a->uuid, Member{g, person, member.size(), a->outcome == recorder::Outcome::completed});
+      study.groupOf[person] = study.groupOf[a->uuid] = study.groups[g];
+      study.attemptOf[a->uuid] = {person, a->startUtc};
+      keys.insert(a->comparabilityKey);
+      addToSetting(study.setting, *a);
+      study.synthetic = study.synthetic || a->synthetic;
     }
   }
-  std::size_t several = 0;
-  std::string whose;
-  for (std::size_t g = 0; g < 2; ++g) {
-    study.participants[g] = people[g].size();
-    for (auto& [person, list] : people[g]) {
-      if (g == 1 && people[0].count(person) > 0) {
-        throw Error(ErrorKind::refused, Where{name},
-                    fmt::format("participant \"{}\" is in both groups, which must be independent", person));
-      }
-      if (list.size() > 1 && several++ == 0) whose = fmt::format("\"{}\" has {}", person, list.size());
-      if (list.size() > 1 && options.attemptRule == AttemptRule::first) {
-        std::stable_sort(list.begin(), list.end(),
-                         [](const AttemptRow* a, const AttemptRow* b) { return a->startUtc < b->startUtc; });
-        if (list[0]->startUtc == list[1]->startUtc) {
-          throw Error(ErrorKind::refused, Where{name},
-                      fmt::format("two attempts of participant \"{}\" start at {}: neither is the first", person,
-                                  list[0]->startUtc),
-                      {Remedy::takeMean, Remedy::exclude});
-        }
-        later += list.size() - 1;
-        list.erase(list.begin() + 1, list.end());
-      }
-      for (const AttemptRow* a : list) {
-        member.emplace(a->uuid, Member{g, person, static_cast<std::size_t>(a - attempts.data()),
-                                       a->outcome == recorder::Outcome::completed});
-        study.groupOf[person] = study.groupOf[a->uuid] = study.groups[g];
-        study.attemptOf[a->uuid] = {person, a->startUtc};
-        ++study.attempts[g];
-        ++study.analysed;
-        keys.insert(a->comparabilityKey);
-        addToSetting(study.setting, *a);
-        study.synthetic = study.synthetic || a->synthetic;
-      }
-    }
-  }
-  if (several > 0 && !options.attemptRule) {
-    throw Error(ErrorKind::refused, Where{name},
-                fmt::format("participant {} attempts ({} participant{} with several), which are not independent", whose,
-                            several, several == 1 ? "" : "s"),
-                {Remedy::chooseAttemptRule});
-  }
-  study.attemptRule = several == 0                                ? "one attempt each"
-                      : options.attemptRule == AttemptRule::first ? "the first of a participant's attempts"
-                                                                  : "the mean of a participant's attempts";
-  if (elsewhere > 0) study.flow.push_back({"another group", elsewhere});
-  if (later > 0) study.flow.push_back({"later attempt of a participant (the first counts)", later});
   study.keys.assign(keys.begin(), keys.end());
   return member;
 }
@@ -201,21 +154,12 @@ Study studyOf(const std::vector<AttemptRow>& recruited, const std::function<void
   study.where = std::filesystem::path(name).filename().string();
   study.counted = "attempts";
   if (options.cohort) study.cohort = options.cohort->name;
-  std::map<std::string, std::uint64_t> out, present;
-  std::vector<AttemptRow> attempts;
-  for (const AttemptRow& a : recruited) {
-    ++study.recruited;
-    if (const std::string reason = whyOut(a, options); !reason.empty()) {
-      ++out[reason];
-      continue;
-    }
-    ++present[groupOf(a, options.grouping)];
-    attempts.push_back(a);
-  }
-  study.flow = flowOf(out);
-  study.groups = chooseGroups(present, options, name, leftOut(study));
+  study.recruited = recruited.size();
+  IncludedAttempts included = includedAttempts(recruited, options);
+  study.flow = std::move(included.flow);
+  study.groups = chooseGroups(included.present, options, name, leftOutOf(study.recruited, study.flow));
   study.better = betterOf(study.groups, options);
-  const std::map<std::string, Member> member = members(study, attempts, options, name);
+  const std::map<std::string, Member> member = members(study, included.taken, options, name);
   askForOneKey(study.keys, options, name, study.remarks);
   if (options.protocol) {
     std::vector<const AttemptRow*> data;

@@ -19,7 +19,6 @@
 #include "analytics/cohort/cohort_database.h"
 #include "analytics/report/ratings.h"
 #include "analytics/statistics/descriptive.h"
-#include "analytics/statistics/effect_sizes.h"
 #include "analytics/statistics/expected.h"
 #include "analytics/statistics/rank_tests.h"
 #include "analytics/statistics/regression.h"
@@ -31,7 +30,7 @@ namespace calot::analytics {
 struct SimulationRange {
   std::uint64_t known = 0, values = 0;  ///< attempts' values that have an interval, and all of them
   double halfWidth = 0.0;               ///< median over the intervals
-  /// Where every value has one: least and largest P(first group larger) + P(equal) / 2 over the worlds
+  /// If every value has an interval: least and largest P(first group larger) + P(equal) / 2 over the worlds
   /// (ValueInterval::worlds()), in each of which all attempts have the same step, mesh and constants.
   std::optional<std::pair<double, double>> area;
 
@@ -148,7 +147,7 @@ struct GroupSummary {
 struct BaselineAdjustment {
   std::array<std::uint64_t, 2> n{};
   std::array<std::uint64_t, 2> withoutBaseline{};  ///< have the outcome and not the baseline
-  Expected<CovarianceAnalysis> analysis = Expected<CovarianceAnalysis>::none("not computed");
+  Expected<CovarianceAnalysis> analysis = NoResult{"not computed"};
   std::optional<double> holm;  ///< p adjusted over the analyses of the family
 };
 
@@ -166,7 +165,7 @@ struct StudyRow {
   std::array<GroupSummary, 2> group;
   std::array<std::vector<std::string>, 2> participants;  ///< whose, ascending; "attempt UUID" for a performer's run
   std::array<std::vector<double>, 2> values;             ///< as many, in the display unit
-  Expected<MannWhitney> test = Expected<MannWhitney>::none("not computed");
+  Expected<MannWhitney> test = NoResult{"not computed"};
   std::optional<double> holm;                  ///< p adjusted over the family; none outside of it or without a test
   Role role = Role::undeclared;                ///< by the protocol, where there is one
   std::optional<double> benjaminiHochberg;     ///< with a protocol: p adjusted over the rows that are not primary
@@ -179,15 +178,14 @@ struct StudyRow {
   std::optional<bool> supported;
   std::optional<Hypothesis> hypothesis;  ///< from the direction and the group that is expected to do better
   std::optional<bool> asHypothesised;    ///< A of the hypothesis above one half; none at one half, or without one
-  Expected<Superiority> effect =
-      Expected<Superiority>::none("not computed");  ///< of the first group's values being larger
+  Expected<Superiority> effect = NoResult{"not computed"};  ///< of the first group's values being larger
   /// The same with its interval, in the direction of the hypothesis where there is one.
-  Expected<SuperiorityEstimate> area = Expected<SuperiorityEstimate>::none("not computed");
-  Expected<double> shift = Expected<double>::none("not computed");
-  Expected<ShiftInterval> shiftInterval = Expected<ShiftInterval>::none("not computed");
-  Expected<HedgesG> hedges = Expected<HedgesG>::none("not computed");
+  Expected<SuperiorityEstimate> area = NoResult{"not computed"};
+  Expected<double> shift = NoResult{"not computed"};
+  Expected<ShiftInterval> shiftInterval = NoResult{"not computed"};
+  Expected<HedgesG> hedges = NoResult{"not computed"};
   /// Over the participants of both groups; with `attempt-duration`, by the same rule.
-  Expected<Spearman> withDuration = Expected<Spearman>::none("not computed");
+  Expected<Spearman> withDuration = NoResult{"not computed"};
   std::uint64_t withDurationPairs = 0;                     ///< participants in it
   std::optional<BaselineAdjustment> adjusted;              ///< of a table with a baseline
   std::vector<std::string> coverageWarnings;               ///< intervals whose published coverage is low at these sizes
@@ -204,10 +202,10 @@ struct CoverageRow {
   std::string subject;                       ///< as of the figures: a hand, "" both, "left clipping"
   std::array<std::vector<double>, 2> share;  ///< in [0, 1], one per participant, the mean of several attempts
   std::array<std::uint64_t, 2> below{};      ///< participants with a figure that was refused for it
-  Expected<MannWhitney> test = Expected<MannWhitney>::none("not computed");
+  Expected<MannWhitney> test = NoResult{"not computed"};
 };
 
-/// Where and when the attempts of a study were made.
+/// Sites and dates of a study's attempts.
 struct StudySetting {
   std::vector<std::string> tasks;           ///< scenes, or what was done in imported motion; ascending
   std::string firstStartUtc, lastStartUtc;  ///< of those analysed; empty: not known
@@ -257,7 +255,7 @@ using StudyProgress = std::function<void(double share, const char* doing)>;
 /// Practice, branches, goldens, excluded attempts, unfinished recordings, technical failures and recordings that did
 /// not verify stay out, counted in the flow.
 /// @throws Error (refused) when there are not two groups, a participant has several attempts and there is no rule, or
-/// comparability keys or checkpoint versions would mix; Error (invalid) for a name that is none, of a cohort too.
+/// comparability keys or checkpoint versions would mix; Error (invalid) for an unknown name, of a cohort too.
 Study makeStudy(const CohortDatabase& database, const StudyOptions& options, const StudyProgress& progress = {});
 
 /// Additions of makeStudy() of a database to the options: the named cohort's participants, recorded experience.

@@ -2,14 +2,15 @@
 // Sentences of a study: its head, its protocol and methods, the meaning of its columns, and what is missing.
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "analytics/report/rating_tables.h"
-#include "analytics/report/study_coverage.h"
-#include "analytics/report/study_tables.h"
+#include "analytics/report/study_output.h"
+#include "analytics/report/study_rows.h"
 #include "recorder/attempt.h"
 
 namespace calot::analytics {
@@ -70,18 +71,14 @@ std::string untested(const StudyRow& row) {
   return fmt::format("no value in either group ({})", why);
 }
 
-/// Rows of which nothing else is to be said, by what is.
-using UntestedRows = std::vector<std::pair<std::string, std::string>>;
-
-void addTo(UntestedRows& untestedRows, const std::string& reason, const std::string& name) {
-  const auto at =
-      std::find_if(untestedRows.begin(), untestedRows.end(), [&](const auto& u) { return u.first == reason; });
-  if (at == untestedRows.end()) {
-    untestedRows.emplace_back(reason, name);
-  } else {
-    at->second += ", " + name;
-  }
+/// The entry of a key, in the order in which keys came.
+template <class Key, class Value>
+Value& entryOf(std::vector<std::pair<Key, Value>>& entries, const Key& key) {
+  const auto at = std::find_if(entries.begin(), entries.end(), [&](const auto& e) { return e.first == key; });
+  return at != entries.end() ? at->second : entries.emplace_back(key, Value()).second;
 }
+
+void addTo(std::string& names, const std::string& name) { names += (names.empty() ? "" : ", ") + name; }
 
 /// Missing parts of one row, one line each.
 void explainMissingOf(const Study& study, const StudyRow& row, std::vector<std::string>& notes) {
@@ -121,49 +118,28 @@ std::vector<std::string> intervalWarnings(const Study& study, bool leading) {
   for (const StudyRow& row : study.rows) {
     if (row.leading != leading) continue;
     ++rows;
-    for (const std::string& text : row.coverageWarnings) {
-      const auto at = std::find_if(counts.begin(), counts.end(), [&](const auto& c) { return c.first == text; });
-      if (at == counts.end()) {
-        counts.emplace_back(text, 1);
-      } else {
-        ++at->second;
-      }
-    }
+    for (const std::string& text : row.coverageWarnings) ++entryOf(counts, text);
   }
   // Intervals of which the same is to be said of as many rows share a line: "A, shift, g: ...".
-  struct Shared {
-    std::string names, said;
-    std::size_t count;
-  };
-  std::vector<Shared> shared;
+  std::vector<std::pair<std::pair<std::string, std::size_t>, std::string>> shared;
   for (const auto& [text, count] : counts) {
     const std::size_t colon = text.find(": ");
-    const std::string name = text.substr(0, colon);
-    const std::string said = colon == std::string::npos ? "" : text.substr(colon);
-    const auto at = std::find_if(shared.begin(), shared.end(), [said, count = count](const Shared& s) {
-      return !said.empty() && s.said == said && s.count == count;
-    });
-    if (at == shared.end()) {
-      shared.push_back({name, said, count});
-    } else {
-      at->names += ", " + name;
-    }
+    addTo(entryOf(shared, {text.substr(colon), count}), text.substr(0, colon));
   }
   std::vector<std::string> warnings;
-  warnings.reserve(shared.size());
-  for (const Shared& s : shared)
-    warnings.push_back(fmt::format("Warning ({} of {} rows): {}{}.", s.count, rows, s.names, s.said));
+  for (const auto& [said, names] : shared)
+    warnings.push_back(fmt::format("Warning ({} of {} rows): {}{}.", said.second, rows, names, said.first));
   return warnings;
 }
 
 void explainMissing(const Study& study, bool leading, std::vector<std::string>& notes) {
-  UntestedRows untestedRows;
+  std::vector<std::pair<std::string, std::string>> untestedRows;  // by what is said of them
   for (const StudyRow& row : study.rows) {
     if (row.leading != leading) continue;
     std::vector<std::string> own;
     explainMissingOf(study, row, own);
     if (own.size() == 1 && !untested(row).empty()) {
-      addTo(untestedRows, untested(row), rowName(row));
+      addTo(entryOf(untestedRows, untested(row)), rowName(row));
     } else {
       notes.insert(notes.end(), own.begin(), own.end());
     }
@@ -190,14 +166,9 @@ std::vector<std::string> appendixNotes(const Study& study) {
 
 namespace {
 
-template <class Test>
-bool anyRow(const Study& study, Test test) {
-  return std::any_of(study.rows.begin(), study.rows.end(), test);
-}
-
 std::string comparisons(const Study& study) {
-  const bool exact = anyRow(study, [](const StudyRow& r) { return r.test && r.test->exact; });
-  const bool normal = anyRow(study, [](const StudyRow& r) { return r.test && !r.test->exact; });
+  const bool exact = any(study, [](const StudyRow& r) { return r.test && r.test->exact; });
+  const bool normal = any(study, [](const StudyRow& r) { return r.test && !r.test->exact; });
   if (!exact && !normal) return "No figure could be tested. ";
   return fmt::format("Groups were compared by the two-sided Mann-Whitney test, {}. ",
                      exact && normal ? "exact with ties up to 80 values and by normal approximation beyond"
@@ -207,17 +178,17 @@ std::string comparisons(const Study& study) {
 
 std::string effects(const Study& study) {
   std::string text;
-  if (anyRow(study, [](const StudyRow& r) { return static_cast<bool>(r.area); }))
+  if (any(study, [](const StudyRow& r) { return static_cast<bool>(r.area); }))
     text +=
         "The effect is the probability of superiority (A, the area under the ROC curve) with Newcombe's score interval "
         "at 95 %. ";
-  if (anyRow(study, [](const StudyRow& r) { return static_cast<bool>(r.shiftInterval); }))
+  if (any(study, [](const StudyRow& r) { return static_cast<bool>(r.shiftInterval); }))
     text += "The shift is that of Hodges and Lehmann with a distribution-free interval. ";
-  if (anyRow(study, [](const StudyRow& r) { return static_cast<bool>(r.hedges); }))
+  if (any(study, [](const StudyRow& r) { return static_cast<bool>(r.hedges); }))
     text += "Hedges' g has an interval from the non-central t distribution. ";
-  if (anyRow(study, [](const StudyRow& r) { return static_cast<bool>(r.withDuration); }))
+  if (any(study, [](const StudyRow& r) { return static_cast<bool>(r.withDuration); }))
     text += "Correlation with the attempt's duration is Spearman's. ";
-  if (anyRow(study, [](const StudyRow& r) { return r.adjusted && r.adjusted->analysis; }))
+  if (any(study, [](const StudyRow& r) { return r.adjusted && r.adjusted->analysis; }))
     text += "Outcomes were compared at one baseline by analysis of covariance with HC3 errors. ";
   return text;
 }
@@ -242,10 +213,8 @@ std::string externalMetrics(const Study& study) {
   std::string list;
   for (const StudyRow& row : study.rows) {
     if (row.source.empty()) continue;
-    std::string versions;
-    for (const std::uint32_t version : row.versions)
-      versions += fmt::format("{}{}", versions.empty() ? "" : ", ", version);
-    list += fmt::format("{}{} version {} (SHA-256 {})", list.empty() ? "" : "; ", row.checkpoint, versions, row.source);
+    list += fmt::format("{}{} version {} (SHA-256 {})", list.empty() ? "" : "; ", row.checkpoint,
+                        fmt::join(row.versions, ", "), row.source);
   }
   return list.empty() ? list : fmt::format("External metrics are of scripts of the site: {}. ", list);
 }
@@ -255,8 +224,7 @@ std::string externalMetrics(const Study& study) {
 std::string lockText(const StudyProtocol& protocol) {
   if (protocol.masked) return "Groups are masked until the analysis is locked.";
   if (!protocol.lock) return "The analysis is not locked.";
-  std::string changed;
-  for (const std::string& what : protocol.lock->changed) changed += (changed.empty() ? "" : ", ") + what;
+  const std::string changed = fmt::format("{}", fmt::join(protocol.lock->changed, ", "));
   return fmt::format("Analysis locked on {} by {}; {}.", protocol.lock->lockedUtc, protocol.lock->by,
                      changed.empty() ? "nothing has changed since" : "changed since: " + changed);
 }
@@ -274,8 +242,7 @@ std::vector<std::string> protocolLines(const Study& study) {
   if (!p.whyExploratory.empty()) lines.push_back(fmt::format("Exploratory: {}.", p.whyExploratory));
   for (const ProtocolVersion& v : p.versions) {
     if (v.sha256 == p.sha256 && v.changed.empty()) continue;
-    std::string changed;
-    for (const std::string& place : v.changed) changed += (changed.empty() ? "" : ", ") + place;
+    const std::string changed = fmt::format("{}", fmt::join(v.changed, ", "));
     lines.push_back(fmt::format("Version {} was registered on {} by {}{}.", v.version, v.registeredUtc, v.by,
                                 changed.empty() ? "" : "; changed from the version before: " + changed));
   }

@@ -3,11 +3,12 @@
 #include "analytics/report/study_population.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "analytics/checkpoints/registry.h"
+#include "analytics/checkpoints/checkpoint.h"
 #include "analytics/cohort/embedded.h"
 #include "analytics/cohort/registers.h"
 #include "analytics/report/study_protocol.h"
@@ -41,7 +42,10 @@ std::string groupOf(const AttemptRow& a, Grouping grouping) {
   return a.operatorKind == recorder::OperatorKind::performer ? a.profile : "";
 }
 
-std::string whyOut(const AttemptRow& a, const StudyOptions& options) {
+namespace {
+
+/// First reason that excludes an attempt, or empty. Details that differ between attempts follow a colon.
+std::string whyOut(const AttemptRow& a, const StudyOptions& options, bool everybody) {
   const std::vector<std::string>& reason = exclusionReasons();
   if (options.cohort && options.cohort->participants.count(a.participant) == 0)
     return reason[0] + ": " + options.cohort->name;
@@ -55,38 +59,120 @@ std::string whyOut(const AttemptRow& a, const StudyOptions& options) {
   if (a.mode == recorder::Mode::practice && !options.includePractice) return reason[8];
   if (!a.parent.empty() && !options.includeBranches) return reason[9];
   if (a.purpose == "golden") return reason[10];
-  if (groupOf(a, options.grouping).empty()) return reason[11];
+  const std::string group = groupOf(a, options.grouping);
+  if (group.empty() && !everybody) return reason[11];
   if (options.protocol) {
-    if (std::string why = whyOutByProtocol(a, groupOf(a, options.grouping), *options.protocol); !why.empty())
-      return why;
+    if (std::string why = whyOutByProtocol(a, group, *options.protocol); !why.empty()) return why;
   }
   if (!options.key.empty() && a.comparabilityKey != options.key) return reason[12];
   return {};
 }
 
+}  // namespace
+
 std::string unitOf(const AttemptRow& a) { return a.participant.empty() ? "attempt " + a.uuid : a.participant; }
 
-std::vector<FlowRow> flowOf(const std::map<std::string, std::uint64_t>& counted) {
-  std::vector<FlowRow> flow;
+const std::string& stratumOf(const AttemptRow& a, const std::string& strata) {
+  return strata == "arm" ? a.arm : a.site;
+}
+
+IncludedAttempts includedAttempts(const std::vector<AttemptRow>& recruited, const StudyOptions& options,
+                                  const std::string& strata, bool everybody) {
+  IncludedAttempts included;
+  std::map<std::string, std::uint64_t> out;
+  std::uint64_t withoutStratum = 0;
+  for (const AttemptRow& a : recruited) {
+    if (const std::string reason = whyOut(a, options, everybody); !reason.empty()) {
+      ++out[reason];
+    } else if (!strata.empty() && stratumOf(a, strata).empty()) {
+      ++withoutStratum;
+    } else {
+      ++included.present[groupOf(a, options.grouping)];
+      included.taken.push_back(&a);
+    }
+  }
   for (const std::string& reason : exclusionReasons()) {
-    for (const auto& [why, count] : counted) {
-      if (why == reason || why.rfind(reason + ": ", 0) == 0) flow.push_back({why, count});
+    for (const auto& [why, count] : out) {
+      if (why == reason || why.rfind(reason + ": ", 0) == 0) included.flow.push_back({why, count});
     }
   }
   for (const std::string& reason : protocolReasons()) {
-    if (const auto at = counted.find(reason); at != counted.end()) flow.push_back({reason, at->second});
+    if (const auto at = out.find(reason); at != out.end()) included.flow.push_back({reason, at->second});
   }
-  return flow;
+  if (withoutStratum > 0) included.flow.push_back({"no " + strata, withoutStratum});
+  return included;
+}
+
+std::string leftOutOf(std::uint64_t recruited, const std::vector<FlowRow>& flow) {
+  std::string left;
+  for (const FlowRow& row : flow) left += fmt::format("{}{} {}", left.empty() ? "" : ", ", row.attempts, row.reason);
+  return fmt::format(" of {} attempts{}", recruited, left.empty() ? "" : " (left out: " + left + ")");
+}
+
+AttemptsOfUnits attemptsOfUnits(const std::vector<const AttemptRow*>& taken, std::span<const std::string> groups,
+                                Grouping grouping, const AttemptReduction& reduction, const std::string& name,
+                                std::vector<FlowRow>& flow) {
+  AttemptsOfUnits result;
+  std::uint64_t elsewhere = 0, later = 0;
+  for (const AttemptRow* a : taken) {
+    if (groups.empty() || std::find(groups.begin(), groups.end(), groupOf(*a, grouping)) != groups.end()) {
+      result.units[unitOf(*a)].push_back(a);
+    } else {
+      ++elsewhere;
+    }
+  }
+  std::size_t several = 0;
+  std::string whose;
+  for (auto& [unit, list] : result.units) {
+    std::stable_sort(list.begin(), list.end(),
+                     [](const AttemptRow* a, const AttemptRow* b) { return a->startUtc < b->startUtc; });
+    std::map<std::string, const AttemptRow*> firstOf;  // by device
+    std::vector<const AttemptRow*> kept;
+    for (const AttemptRow* a : list) {
+      if (!groups.empty() && groupOf(*a, grouping) != groupOf(*list[0], grouping))
+        throw Error(ErrorKind::refused, Where{name},
+                    fmt::format("participant \"{}\" is in {} groups, which must be independent", unit,
+                                groups.size() == 2 ? "both" : "two"));
+      if (!reduction.oneEach) continue;
+      const auto [first, added] = firstOf.try_emplace(reduction.byDevice ? a->device : "", a);
+      if (added) {
+        kept.push_back(a);
+      } else if (reduction.rule == AttemptRule::first && a->startUtc == first->second->startUtc) {
+        throw Error(
+            ErrorKind::refused, Where{name},
+            fmt::format("two attempts of participant \"{}\" start at {}: neither is the first", unit, a->startUtc),
+            {Remedy::takeMean, Remedy::exclude});
+      }
+    }
+    if (!reduction.oneEach || kept.size() == list.size()) continue;
+    if (several++ == 0) whose = fmt::format("\"{}\" has {}", unit, list.size());
+    if (reduction.rule != AttemptRule::first) continue;
+    later += list.size() - kept.size();
+    list = std::move(kept);
+  }
+  if (several > 0 && !reduction.rule) {
+    throw Error(
+        ErrorKind::refused, Where{name},
+        fmt::format("participant {} attempts{} ({} participant{} with several), which are not independent", whose,
+                    reduction.byDevice ? ", of a device more than one" : "", several, several == 1 ? "" : "s"),
+        {Remedy::chooseAttemptRule});
+  }
+  result.rule = !reduction.oneEach                     ? "all attempts of each"
+                : several == 0                         ? "one attempt each"
+                : reduction.rule == AttemptRule::first ? "the first of a participant's attempts"
+                                                       : "the mean of a participant's attempts";
+  if (elsewhere > 0) flow.push_back({"another group", elsewhere});
+  if (later > 0) flow.push_back({"later attempt of a participant (the first counts)", later});
+  return result;
 }
 
 void askForOneKey(const std::vector<std::string>& keys, const StudyOptions& options, const std::string& name,
                   std::vector<std::string>& remarks) {
   if (keys.size() < 2) return;
   if (!options.mixKeys) {
-    std::string list;
-    for (const auto& key : keys) list += (list.empty() ? "" : "; ") + key;
     throw Error(ErrorKind::refused, Where{name},
-                fmt::format("the attempts don't compare, they have {} comparability keys ({})", keys.size(), list),
+                fmt::format("the attempts don't compare, they have {} comparability keys ({})", keys.size(),
+                            fmt::join(keys, "; ")),
                 {Remedy::chooseKey, Remedy::mixKeys});
   }
   remarks.push_back(
@@ -131,12 +217,6 @@ std::size_t levelOf(const std::string& group) {
   return group == "novice" || group == "unskilled" ? 2 : notALevel;
 }
 
-std::string listed(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text;
-}
-
 }  // namespace
 
 bool groupBefore(const std::string& a, const std::string& b) {
@@ -161,14 +241,14 @@ std::array<std::string, 2> chooseGroups(const std::map<std::string, std::uint64_
       if (present.count(name) == 0) {
         throw Error(ErrorKind::refused, Where{path},
                     fmt::format("nothing for the study in group \"{}\" (there are: {}){}", name,
-                                names.empty() ? "none" : listed(names), left));
+                                names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", ")), left));
       }
     }
     return {choices.groups[0], choices.groups[1]};
   }
   if (names.size() == 2) return {names[0], names[1]};
   if (names.size() > 2) {
-    throw Error(ErrorKind::refused, Where{path}, fmt::format("{} groups ({})", names.size(), listed(names)),
+    throw Error(ErrorKind::refused, Where{path}, fmt::format("{} groups ({})", names.size(), fmt::join(names, ", ")),
                 {Remedy::nameGroups});
   }
   throw Error(ErrorKind::refused, Where{path},

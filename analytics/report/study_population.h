@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <map>
 #include <set>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -20,12 +21,42 @@ std::string groupOf(const AttemptRow& attempt, Grouping grouping);
 /// Unit of analysis: a participant's pseudonym, or "attempt UUID" for one performer's run.
 std::string unitOf(const AttemptRow& attempt);
 
-/// First reason that excludes an attempt, or empty. Details that differ between attempts follow a colon.
-std::string whyOut(const AttemptRow& attempt, const StudyOptions& options);
+/// Attempts that may be analysed, and why the others may not, in the order in which reasons are checked.
+struct IncludedAttempts {
+  std::vector<const AttemptRow*> taken;
+  std::map<std::string, std::uint64_t> present;  ///< number of them by group
+  std::vector<FlowRow> flow;
+};
+/// @param strata "site" or "arm", which an attempt must have; or empty
+/// @param everybody having no group excludes nobody
+IncludedAttempts includedAttempts(const std::vector<AttemptRow>& recruited, const StudyOptions& options,
+                                  const std::string& strata = "", bool everybody = false);
 
-/// Number of attempts excluded for each reason, in the order in which reasons are checked.
-/// @param counted by what whyOut() said
-std::vector<FlowRow> flowOf(const std::map<std::string, std::uint64_t>& counted);
+/// " of 48 attempts (left out: 8 no group)".
+std::string leftOutOf(std::uint64_t recruited, const std::vector<FlowRow>& flow);
+
+/// Site or arm of an attempt.
+const std::string& stratumOf(const AttemptRow& attempt, const std::string& strata);
+
+/// How the attempts of one unit of analysis become one value.
+struct AttemptReduction {
+  std::optional<AttemptRule> rule;  ///< none: several are refused
+  bool oneEach = true;              ///< else all attempts stay
+  bool byDevice = false;            ///< one of each device
+};
+
+/// Attempts of each unit of analysis, by start.
+struct AttemptsOfUnits {
+  std::map<std::string, std::vector<const AttemptRow*>> units;
+  std::string rule;  ///< a clause: "one attempt each"
+};
+/// Leaves the attempts of `groups` (empty: all) and of these the first of each unit, where the rule says so. Adds to
+/// `flow` what goes out.
+/// @throws Error (refused) for a participant in two groups, several attempts without a rule, and two that could be the
+/// first.
+AttemptsOfUnits attemptsOfUnits(const std::vector<const AttemptRow*>& taken, std::span<const std::string> groups,
+                                Grouping grouping, const AttemptReduction& reduction, const std::string& name,
+                                std::vector<FlowRow>& flow);
 
 /// Adds a remark where attempts of several comparability keys are mixed, as asked.
 /// @throws Error (refused) where they would be mixed and nobody asked for it.
@@ -49,7 +80,7 @@ bool groupBefore(const std::string& a, const std::string& b);
 std::array<std::string, 2> chooseGroups(const std::map<std::string, std::uint64_t>& present,
                                         const StudyChoices& choices, const std::string& path, const std::string& left);
 
-/// The group that is expected to do better, or empty. @throws Error (invalid) where `choices.better` is none of the
+/// The group that is expected to do better, or empty. @throws Error (invalid) where `choices.better` is not one of the
 /// two.
 std::string betterOf(const std::array<std::string, 2>& groups, const StudyChoices& choices);
 

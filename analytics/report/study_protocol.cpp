@@ -7,8 +7,8 @@
 #include <map>
 #include <utility>
 
-#include "analytics/report/study_tables.h"
-#include "analytics/statistics/multiplicity.h"
+#include "analytics/report/study_output.h"
+#include "analytics/statistics/rank_tests.h"
 
 namespace calot::analytics {
 namespace {
@@ -101,9 +101,7 @@ void chooseByProtocol(StudyChoices& choices, const Protocol& protocol) {
   choices.family.clear();
 }
 
-std::string figureOf(const DirectedHypothesis& h) {
-  return h.subject.empty() ? h.checkpoint : h.checkpoint + " " + h.subject;
-}
+std::string figureOf(const DirectedHypothesis& h) { return figureName(h.checkpoint, h.subject); }
 
 StudyOptions byProtocol(const StudyOptions& options) {
   StudyOptions chosen = options;

@@ -1,25 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "analytics/report/study_rows.h"
 
 #include <fmt/format.h>
-
+#include <fmt/ranges.h>
 #include <algorithm>
 #include <cmath>
 
-#include "analytics/report/report_text.h"
+#include "analytics/report/report_document.h"
+#include "analytics/report/study_output.h"
 #include "analytics/report/study_protocol.h"
 #include "analytics/statistics/descriptive.h"
-#include "analytics/statistics/multiplicity.h"
+#include "analytics/statistics/rank_tests.h"
 #include "recorder/base/errors.h"
 
 namespace calot::analytics {
 namespace {
-
-std::string joined(const std::vector<std::string>& parts) {
-  std::string text;
-  for (const std::string& part : parts) text += (text.empty() ? "" : ", ") + part;
-  return text;
-}
 
 /// Values that agree to eleven digits are treated as tied: ranks must not depend on rounding errors. Each becomes the
 /// least one that it agrees with.
@@ -70,7 +66,7 @@ void countMissing(GroupSummary& s, const std::vector<std::string>& present,
 }
 
 Expected<Spearman> correlation(StudyRow& row, const std::array<std::map<std::string, double>, 2>& duration) {
-  if (row.checkpoint == "attempt-duration") return Expected<Spearman>::none("it is the duration");
+  if (row.checkpoint == "attempt-duration") return NoResult{"it is the duration"};
   std::vector<double> values, seconds;
   for (std::size_t g = 0; g < 2; ++g) {
     for (std::size_t i = 0; i < row.values[g].size(); ++i) {
@@ -80,7 +76,7 @@ Expected<Spearman> correlation(StudyRow& row, const std::array<std::map<std::str
       seconds.push_back(at->second);
     }
   }
-  if (seconds.empty()) return Expected<Spearman>::none("no durations");
+  if (seconds.empty()) return NoResult{"no durations"};
   row.withDurationPairs = values.size();
   return spearman(values, seconds);
 }
@@ -152,8 +148,9 @@ void adjustFamily(Study& study, const StudyChoices& choices) {
         return r.adjusted && r.adjusted->analysis ? std::optional(r.adjusted->analysis->p) : std::nullopt;
       },
       [](StudyRow& r, double p) { r.adjusted->holm = p; });
-  study.family = fmt::format("Holm: adjusted over the {} rank test{} of {}", tests, tests == 1 ? "" : "s",
-                             choices.family.empty() ? "this study" : joined(choices.family));
+  study.family =
+      fmt::format("Holm: adjusted over the {} rank test{} of {}", tests, tests == 1 ? "" : "s",
+                  choices.family.empty() ? "this study" : fmt::format("{}", fmt::join(choices.family, ", ")));
   if (analyses > 0) study.family += fmt::format("; the {} with the baseline are a family of their own", analyses);
   study.family += ".";
 }
@@ -221,7 +218,7 @@ void addSimulationRange(StudyRow& row, const StudySample& sample) {
 
 void compareGroups(StudyRow& row, const Study& study, const std::array<std::map<std::string, double>, 2>& duration) {
   if (!row.notOutcome.empty()) {
-    row.test = Expected<MannWhitney>::none(row.notOutcome);
+    row.test = NoResult{row.notOutcome};
     return;
   }
   const std::vector<double>&x = row.values[0], &y = row.values[1];
@@ -251,6 +248,105 @@ void finishRows(Study& study, const StudyChoices& choices, const Protocol* proto
   }
   chooseLeading(study, choices);
   for (StudyRow& row : study.rows) warnOfCoverage(row);
+}
+
+namespace {
+
+std::string percent(double share) { return fmt::format("{:.1f}", 100.0 * share); }
+
+std::string subjectName(const std::string& subject) {
+  if (subject.empty()) return "both hands";
+  return subject.find(' ') == std::string::npos ? subject + " hand" : subject;  // "left clipping"
+}
+
+double lowest(const std::vector<double>& shares) { return *std::min_element(shares.begin(), shares.end()); }
+
+bool isWhole(const CoverageRow& row) {
+  return std::all_of(row.share.begin(), row.share.end(),
+                     [](const std::vector<double>& g) { return g.empty() || lowest(g) == 1.0; });
+}
+
+/// Coverage of a subject for which the study has a figure.
+bool isShown(const Study& study, const CoverageRow& row) {
+  return std::any_of(study.rows.begin(), study.rows.end(),
+                     [&](const StudyRow& r) { return coverageOf(study, r) == &row; });
+}
+
+}  // namespace
+
+void CoverageCollector::add(const CheckpointValue& value, std::size_t group, const std::string& participant,
+                            const std::string& attempt) {
+  if (!value.coverage) return;
+  auto at = std::find_if(subjects_.begin(), subjects_.end(), [&](const Subject& s) { return s.name == value.subject; });
+  if (at == subjects_.end()) at = subjects_.insert(at, Subject{value.subject, {}, {}});
+  at->share[group][participant].try_emplace(attempt, *value.coverage);
+  at->below[group][participant] |= value.availability == Availability::tooLittleCoverage;
+}
+
+std::vector<CoverageRow> CoverageCollector::rows() const {
+  std::vector<CoverageRow> rows;
+  for (const Subject& subject : subjects_) {
+    CoverageRow& row = rows.emplace_back();
+    row.subject = subject.name;
+    for (std::size_t g = 0; g < 2; ++g) {
+      for (const auto& [person, attempts] : subject.share[g]) {
+        double sum = 0.0;
+        for (const auto& item : attempts) sum += item.second;
+        row.share[g].push_back(sum / static_cast<double>(attempts.size()));
+      }
+      row.below[g] = static_cast<std::uint64_t>(std::count_if(subject.below[g].begin(), subject.below[g].end(),
+                                                              [](const auto& item) { return item.second; }));
+    }
+    row.test = mannWhitney(row.share[0], row.share[1]);
+  }
+  return rows;
+}
+
+const CoverageRow* coverageOf(const Study& study, const StudyRow& row) {
+  if (!row.sampled) return nullptr;
+  const auto at = std::find_if(study.coverage.begin(), study.coverage.end(),
+                               [&](const CoverageRow& c) { return c.subject == row.subject; });
+  return at == study.coverage.end() ? nullptr : &*at;
+}
+
+bool coverageDiffers(const CoverageRow& row, double level) { return row.test && row.test->p <= level; }
+
+ReportTable coverageTable(const Study& study) {
+  ReportTable table = tableOf("Coverage", {"=samples of", "=group", "n", "median %", "lowest %", "too little", "p"});
+  for (const CoverageRow& row : study.coverage) {
+    if (isWhole(row) || !isShown(study, row)) continue;
+    for (std::size_t g = 0; g < 2; ++g) {
+      const std::vector<double>& shares = row.share[g];
+      table.rows.push_back({g == 0 ? subjectName(row.subject) : "", study.groups[g], fmt::format("{}", shares.size()),
+                            shares.empty() ? "-" : percent(*median(shares)),
+                            shares.empty() ? "-" : percent(lowest(shares)),
+                            row.below[g] == 0 ? "" : fmt::format("{}", row.below[g]),
+                            g > 0      ? ""
+                            : row.test ? pText(row.test->p)
+                                       : "-"});
+    }
+  }
+  return table;
+}
+
+std::string coverageNote(const Study& study) {
+  if (study.coverage.empty()) return {};
+  if (coverageTable(study).rows.empty()) return "Coverage: samples cover the whole of every attempt.";
+  return "Coverage: share of the time with an instrument that the tracker's samples cover, one value per participant. "
+         "too little: participants with a figure that was refused for it. p: Mann-Whitney, two-sided, not adjusted.";
+}
+
+std::vector<std::string> coverageWarnings(const Study& study) {
+  std::vector<std::string> notes;
+  for (const CoverageRow& row : study.coverage) {
+    if (!coverageDiffers(row) || !isShown(study, row)) continue;
+    notes.push_back(fmt::format(
+        "Warning: coverage differs ({}): a median of {} % in {}, {} % in {} (p {}). A difference between the "
+        "groups in its figures may be one of measurement, not of skill.",
+        subjectName(row.subject), percent(*median(row.share[0])), study.groups[0], percent(*median(row.share[1])),
+        study.groups[1], pText(row.test->p)));
+  }
+  return notes;
 }
 
 }  // namespace calot::analytics

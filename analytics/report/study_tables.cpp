@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-#include "analytics/report/study_tables.h"
 #include "analytics/report/rating_tables.h"
+#include "analytics/report/study_output.h"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -11,36 +11,47 @@
 #include <vector>
 
 #include "analytics/report/plots.h"
-#include "analytics/report/study_coverage.h"
+#include "analytics/report/study_rows.h"
 
 namespace calot::analytics {
 namespace {
 
-using Align = TextTable::Align;
-
-std::string brackets(double lower, double upper) {
-  return fmt::format("[{}, {}]", significant(lower), significant(upper));
-}
-std::string share(double a) { return fmt::format("{:.3f}", a); }
-
 using ShownRows = std::vector<const StudyRow*>;
 
-bool hasCorrelation(const StudyRow& row) { return static_cast<bool>(row.withDuration); }
+// Texts of cells of a row's tree.
+std::string figureText(const ValueTree& row) {
+  return figureName(row["checkpoint"], row["subject"]) + (row.contains("source_sha256") ? " (external)" : "");
+}
+std::string withUnit(const ValueTree& row) {
+  const std::string unit = row["unit"];
+  return unit.empty() || unit == "1" ? figureText(row) : fmt::format("{} ({})", figureText(row), unit);
+}
+std::string betterText(const ValueTree& direction) { return direction == "none" ? "" : plain(direction); }
+/// "~" for a p by approximation.
+std::string testText(const ValueTree& test) {
+  return pValue(test.value("p", ValueTree())) + (test.value("method", "") == "asymptotic" ? "~" : "");
+}
+/// No word about the expected direction beside a p that prints as 1.
+std::string expectedText(const ValueTree& row) {
+  double p = 1.0;
+  for (const char* key : {"p", "p_benjamini_hochberg", "p_holm"}) {
+    const ValueTree value = row["mann_whitney"].value(key, ValueTree());
+    if (value.is_number()) p = value;
+  }
+  if (row["hypothesis"].is_null() || !row["area"].contains("a") || p > 0.99995) return {};
+  const ValueTree& expected = row["hypothesis"]["as_expected"];
+  return expected.is_null() ? "neither" : expected.get<bool>() ? "yes" : "no";
+}
+std::string sumText(const ValueTree& n) { return fmt::format("{} + {}", n[0].dump(), n[1].dump()); }
+std::string sizesText(const ValueTree& groups) {
+  return fmt::format("{} + {}", groups[0]["n"].dump(), groups[1]["n"].dump());
+}
+std::string wholeOrDash(const ValueTree& n) { return n.is_null() ? "-" : n.dump(); }
+std::string share(double a) { return fmt::format("{:.3f}", a); }
 
 ReportTable valuesTable(const Study& study, const std::string& title, const ShownRows& rows) {
-  ReportTable table{title,
-                    {{"checkpoint", Align::left},
-                     {"unit", Align::left},
-                     {"group", Align::left},
-                     {"n", Align::right},
-                     {"none", Align::right},
-                     {"median", Align::right},
-                     {"quartile 1", Align::right},
-                     {"quartile 3", Align::right},
-                     {"mean", Align::right},
-                     {"sd", Align::right},
-                     {"paper", Align::right}},
-                    {}};
+  ReportTable table = tableOf(title, {"=checkpoint", "=unit", "=group", "n", "none", "median", "quartile 1",
+                                      "quartile 3", "mean", "sd", "paper"});
   for (const StudyRow* shown : rows) {
     const StudyRow& row = *shown;
     for (std::size_t g = 0; g < 2; ++g) {
@@ -57,81 +68,39 @@ ReportTable valuesTable(const Study& study, const std::string& title, const Show
   return table;
 }
 
-/// No word about the expected direction beside a p that prints as 1.
-std::string expectedText(const StudyRow& row) {
-  const double p = row.holm.value_or(row.benjaminiHochberg.value_or(row.test ? row.test->p : 1.0));
-  if (!row.hypothesis || !row.area || p > 0.99995) return {};
-  return !row.asHypothesised ? "neither" : *row.asHypothesised ? "yes" : "no";
+ReportTable comparisonTable(const Study& study, const std::string& title, const ShownRows& shown) {
+  ValueTree rows = ValueTree::array();
+  for (const StudyRow* row : shown) rows.push_back(rowTree(study, *row));
+  std::vector<TreeColumn> columns{{"=checkpoint", "", figureText},
+                                  {"=better", "/direction", betterText},
+                                  {"shift", "/shift/hodges_lehmann", digits4},
+                                  {"95 %", "/shift_interval", range4},
+                                  {"A", "/area/a", share3},
+                                  {"95 %", "/area/interval", shares3},
+                                  {"p", "/mann_whitney", testText},
+                                  {"Holm", "/mann_whitney/p_holm", pValue}};
+  if (study.protocol) columns.push_back({"BH", "/mann_whitney/p_benjamini_hochberg", pValue});
+  columns.push_back({"=expected", "", expectedText});
+  return tableOf(title, rows, columns);
 }
 
-ReportTable comparisonTable(const Study& study, const std::string& title, const ShownRows& rows) {
-  ReportTable table{title,
-                    {{"checkpoint", Align::left},
-                     {"better", Align::left},
-                     {"shift", Align::right},
-                     {"95 %", Align::right},
-                     {"A", Align::right},
-                     {"95 %", Align::right},
-                     {"p", Align::right},
-                     {"Holm", Align::right},
-                     {"BH", Align::right},
-                     {"expected", Align::left}},
-                    {}};
-  if (!study.protocol) table.columns.erase(table.columns.end() - 2);
-  for (const StudyRow* shown : rows) {
-    const StudyRow& row = *shown;
-    table.rows.push_back({rowName(row), row.direction == Direction::none ? "" : nameOf(row.direction),
-                          row.shift ? significant(*row.shift) : "-",
-                          row.shiftInterval ? brackets(row.shiftInterval->lower, row.shiftInterval->upper) : "-",
-                          row.area ? share(row.area->value.a) : "-",
-                          row.area ? fmt::format("[{}, {}]", share(row.area->a.lower), share(row.area->a.upper)) : "-",
-                          row.test ? pText(row.test->p) + (row.test->exact ? "" : "~") : "-", pOrDash(row.holm)});
-    if (study.protocol) table.rows.back().push_back(pOrDash(row.benjaminiHochberg));
-    table.rows.back().push_back(expectedText(row));
+ReportTable furtherTable(const Study& study, const ValueTree& rows) {
+  const bool known = std::any_of(study.rows.begin(), study.rows.end(),
+                                 [](const StudyRow& row) { return static_cast<bool>(row.withDuration); });
+  std::vector<TreeColumn> columns{
+      {"=checkpoint", "", figureText}, {"g", "/hedges/g", digits3}, {"95 %", "/hedges/interval", range3}};
+  if (known) {
+    columns.push_back({"rho (duration)", "/spearman_with_duration/rho", signed3});
+    columns.push_back({"p", "/spearman_with_duration/p", pValue});
+    columns.push_back({"n", "/spearman_with_duration/n", wholeOrDash});
   }
-  return table;
-}
-
-ReportTable furtherTable(const Study& study) {
-  ReportTable table{"Further",
-                    {{"checkpoint", Align::left},
-                     {"g", Align::right},
-                     {"95 %", Align::right},
-                     {"rho (duration)", Align::right},
-                     {"p", Align::right},
-                     {"n", Align::right}},
-                    {}};
-  const bool known = std::any_of(study.rows.begin(), study.rows.end(), hasCorrelation);
-  for (const StudyRow& row : study.rows) {
-    if (hasNoValue(row) || !row.notOutcome.empty()) continue;
-    const bool interval = row.hedges && row.hedges->interval, rho = hasCorrelation(row);
-    table.rows.push_back({rowName(row), row.hedges ? significant(row.hedges->g, 3) : "-",
-                          interval ? fmt::format("[{}, {}]", significant(row.hedges->interval->lower, 3),
-                                                 significant(row.hedges->interval->upper, 3))
-                                   : "-",
-                          rho     ? fmt::format("{:+.3f}", row.withDuration->rho)
-                          : known ? "-"
-                                  : "",
-                          rho     ? pText(row.withDuration->p)
-                          : known ? "-"
-                                  : "",
-                          rho     ? fmt::format("{}", row.withDurationPairs)
-                          : known ? "-"
-                                  : ""});
-  }
-  return table;
+  return tableOf("Further", rows, columns);
 }
 
 /// Figures whose intervals are points are left out: nothing that is simulated changes them.
 ReportTable simulationTable(const Study& study) {
-  ReportTable table{"Uncertainty of the simulation",
-                    {{"checkpoint", Align::left},
-                     {"unit", Align::left},
-                     {"half-width", Align::right},
-                     {"A", Align::right},
-                     {"range of A", Align::right},
-                     {"", Align::left}},
-                    {}};
+  ReportTable table =
+      tableOf("Uncertainty of the simulation", {"=checkpoint", "=unit", "half-width", "A", "range of A", "="});
   for (const StudyRow& row : study.rows) {
     if (!row.simulation || !row.area) continue;
     const SimulationRange& s = *row.simulation;
@@ -150,31 +119,16 @@ ReportTable simulationTable(const Study& study) {
   return table;
 }
 
-ReportTable baselineTable(const Study& study) {
-  ReportTable table{"At one baseline",
-                    {{"outcome", Align::left},
-                     {"n", Align::right},
-                     {"difference", Align::right},
-                     {"95 %", Align::right},
-                     {"p", Align::right},
-                     {"Holm", Align::right},
-                     {"slope", Align::right},
-                     {"p, one slope", Align::right}},
-                    {}};
-  for (const StudyRow& row : study.rows) {
-    if (!row.adjusted || hasNoValue(row)) continue;
-    const auto& analysis = row.adjusted->analysis;
-    const std::string n = fmt::format("{} + {}", row.adjusted->n[0], row.adjusted->n[1]);
-    if (!analysis) {
-      table.rows.push_back({rowName(row), n, "-", "-", "-", "-", "-", "-"});
-      continue;
-    }
-    table.rows.push_back({rowName(row), n, significant(analysis->difference),
-                          brackets(analysis->interval.lower, analysis->interval.upper), pText(analysis->p),
-                          pOrDash(row.adjusted->holm), significant(analysis->slope),
-                          analysis->sameSlope ? pText(*analysis->sameSlope) : "-"});
-  }
-  return table;
+ReportTable baselineTable(const ValueTree& rows) {
+  return tableOf("At one baseline", rows,
+                 {{"=outcome", "", figureText},
+                  {"n", "/at_one_baseline/n", sumText},
+                  {"difference", "/at_one_baseline/difference", digits4},
+                  {"95 %", "/at_one_baseline/interval", range4},
+                  {"p", "/at_one_baseline/p", pValue},
+                  {"Holm", "/at_one_baseline/p_holm", pValue},
+                  {"slope", "/at_one_baseline/slope", digits4},
+                  {"p, one slope", "/at_one_baseline/one_slope/p", pValue}});
 }
 
 }  // namespace
@@ -185,12 +139,10 @@ std::string studyTitle(const Study& study) {
 
 std::string rowName(const StudyRow& row) { return figureOfRow(row) + (row.source.empty() ? "" : " (external)"); }
 
-std::string figureOfRow(const StudyRow& row) {
-  return row.subject.empty() ? row.checkpoint : fmt::format("{} {}", row.checkpoint, row.subject);
-}
+std::string figureOfRow(const StudyRow& row) { return figureName(row.checkpoint, row.subject); }
 
 ReportTable flowTable(const Study& study) {
-  ReportTable table{"Flow", {{study.counted, Align::right}, {"", Align::left}}, {}};
+  ReportTable table = tableOf("Flow", {study.counted, "="});
   table.rows.push_back({fmt::format("{}", study.recruited), "in the " + study.source});
   for (const FlowRow& row : study.flow)
     table.rows.push_back({fmt::format("{}", row.attempts), "left out: " + row.reason});
@@ -229,7 +181,14 @@ std::vector<ReportTable> appendixTables(const Study& study) {
   add(valuesTable(study, "Values: external metrics (scripts of the site)", external));
   add(comparisonTable(study, "Comparison: external metrics", external));
   add(valuesTable(study, "No outcomes: not tested", apart));
-  for (ReportTable table : {coverageTable(study), furtherTable(study), simulationTable(study), baselineTable(study)})
+  ValueTree outcomes = ValueTree::array(), adjusted = ValueTree::array();
+  for (const StudyRow& row : study.rows) {
+    if (hasNoValue(row)) continue;
+    if (row.notOutcome.empty()) outcomes.push_back(rowTree(study, row));
+    if (row.adjusted) adjusted.push_back(rowTree(study, row));
+  }
+  for (ReportTable table :
+       {coverageTable(study), furtherTable(study, outcomes), simulationTable(study), baselineTable(adjusted)})
     add(std::move(table));
   for (const FormReport& report : study.ratings) {
     for (ReportTable& table : ratingTables(report)) add(std::move(table));
@@ -238,12 +197,6 @@ std::vector<ReportTable> appendixTables(const Study& study) {
 }
 
 namespace {
-
-using Align = TextTable::Align;
-
-std::string withUnit(const StudyRow& row) {
-  return row.unit.empty() || row.unit == "1" ? rowName(row) : fmt::format("{} ({})", rowName(row), row.unit);
-}
 
 std::string supportText(const Study& study, const StudyRow& row) {
   if (!row.test) return "no test";
@@ -264,39 +217,32 @@ std::string resultTitle(const Study& study) {
   return table2 ? "Figures of the paper's Table 2" : "Outcomes";
 }
 
-/// One line of the table; `adjusted` by Holm for what leads, by Benjamini and Hochberg for secondary hypotheses.
-std::vector<std::string> resultLine(const Study& study, const StudyRow& row, const std::optional<double>& adjusted) {
-  std::vector<std::string> line{withUnit(row)};
-  if (isDirected(study)) line.push_back(row.hypothesis == Hypothesis::firstLarger ? study.groups[0] : study.groups[1]);
-  line.push_back(fmt::format("{} + {}", row.group[0].n, row.group[1].n));
-  if (!isDirected(study)) {
-    line.push_back(significantOrDash(row.group[0].median, 3));
-    line.push_back(significantOrDash(row.group[1].median, 3));
+/// @param adjusted where the adjusted p is: by Holm for what leads, by Benjamini and Hochberg for secondary hypotheses
+template <class IsShown>
+ReportTable resultTable(const Study& study, const std::string& title, const TreeColumn& adjusted, IsShown isShown) {
+  ValueTree rows = ValueTree::array();
+  for (const StudyRow& row : study.rows) {
+    if (!isShown(row)) continue;
+    rows.push_back(rowTree(study, row));
+    rows.back()["larger"] = study.groups[row.hypothesis == Hypothesis::firstLarger ? 0 : 1];
+    rows.back()["support"] = supportText(study, row);
   }
-  line.push_back(row.shift ? significant(*row.shift, 3) : "-");
-  line.push_back(row.shiftInterval ? fmt::format("[{}, {}]", significant(row.shiftInterval->lower, 3),
-                                                 significant(row.shiftInterval->upper, 3))
-                                   : "-");
-  line.push_back(row.area ? fmt::format("{:.2f}", row.area->value.a) : "-");
-  line.push_back(row.area ? fmt::format("[{:.2f}, {:.2f}]", row.area->a.lower, row.area->a.upper) : "-");
-  line.push_back(row.test ? pText(row.test->p) + (row.test->exact ? "" : "~") : "-");
-  line.push_back(pOrDash(adjusted));
-  line.push_back(pOrDash(row.attainableP));
-  if (isDirected(study)) line.push_back(supportText(study, row));
-  return line;
-}
-
-ReportTable resultTable(const Study& study, std::string title, const char* adjustment) {
-  ReportTable table{std::move(title), {{study.protocol ? "hypothesis" : "figure", Align::left}}, {}};
-  if (isDirected(study)) table.columns.emplace_back("larger", Align::left);
-  table.columns.emplace_back("n", Align::right);
+  std::vector<TreeColumn> columns{{study.protocol ? "=hypothesis" : "=figure", "", withUnit}};
+  if (isDirected(study)) columns.push_back({"=larger", "/larger", plain});
+  columns.push_back({"n", "/groups", sizesText});
   if (!isDirected(study)) {
-    for (const std::string& group : study.groups) table.columns.emplace_back(cutTo(group, 10), Align::right);
+    columns.push_back({cutTo(study.groups[0], 10), "/groups/0/median", digits3});
+    columns.push_back({cutTo(study.groups[1], 10), "/groups/1/median", digits3});
   }
-  for (const char* name : {"shift", "95 %", "A", "95 %", "p", adjustment, "smallest"})
-    table.columns.emplace_back(name, Align::right);
-  if (isDirected(study)) table.columns.emplace_back("supported", Align::left);
-  return table;
+  columns.insert(columns.end(), {{"shift", "/shift/hodges_lehmann", digits3},
+                                 {"95 %", "/shift_interval", range3},
+                                 {"A", "/area/a", share2},
+                                 {"95 %", "/area/interval", shares2},
+                                 {"p", "/mann_whitney", testText},
+                                 adjusted,
+                                 {"smallest", "/attainable_p", pValue}});
+  if (isDirected(study)) columns.push_back({"=supported", "/support", plain});
+  return tableOf(title, rows, columns);
 }
 
 std::string resultLegend(const Study& study) {
@@ -349,19 +295,13 @@ std::string simulationWarning(const Study& study) {
 }  // namespace
 
 ReportTable primaryTable(const Study& study) {
-  ReportTable table = resultTable(study, resultTitle(study), "Holm");
-  for (const StudyRow& row : study.rows) {
-    if (row.leading) table.rows.push_back(resultLine(study, row, row.holm));
-  }
-  return table;
+  return resultTable(study, resultTitle(study), {"Holm", "/mann_whitney/p_holm", pValue},
+                     [](const StudyRow& row) { return row.leading; });
 }
 
 ReportTable secondaryTable(const Study& study) {
-  ReportTable table = resultTable(study, "Secondary hypotheses", "BH");
-  for (const StudyRow& row : study.rows) {
-    if (row.role == Role::secondary) table.rows.push_back(resultLine(study, row, row.benjaminiHochberg));
-  }
-  return table;
+  return resultTable(study, "Secondary hypotheses", {"BH", "/mann_whitney/p_benjamini_hochberg", pValue},
+                     [](const StudyRow& row) { return row.role == Role::secondary; });
 }
 
 std::vector<std::string> primaryNotes(const Study& study) {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 #include <initializer_list>
+#include <iterator>
 #include <set>
 
 #include "analytics/report/study_population.h"
@@ -22,7 +23,7 @@ using recorder::shown;
 
 using Rows = std::map<std::string, std::vector<const Record*>>;  ///< by participant
 
-/// Of several rows of a participant the rule makes one value; without a rule they are refused.
+/// The rule reduces several rows of a participant to one value; without a rule they are refused.
 /// @param[out] several set where there were any @return how many rows went out because the first counts
 std::uint64_t applyRule(std::array<Rows, 2>& rows, const CsvTable& table, const TableStudyOptions& options,
                         bool& several) {
@@ -106,21 +107,14 @@ StudySample sampleOf(const std::array<Rows, 2>& rows, std::size_t outcome) {
   return sample;
 }
 
+[[noreturn]] void fail(const std::string& what, std::initializer_list<Remedy> remedies) {
+  throw Error(ErrorKind::invalid, "study: " + what, remedies);
+}
+
 void checkOptions(const TableStudyOptions& options) {
-  const auto fail = [](const std::string& what, std::initializer_list<Remedy> remedies) {
-    throw Error(ErrorKind::invalid, "study: " + what, remedies);
-  };
-  if (options.participantColumn.empty())
-    fail("which column of the table names the participant is not said", {Remedy::nameParticipantColumn});
-  if (options.groupColumn.empty())
-    fail("which column of the table names the group is not said", {Remedy::nameGroupColumn});
-  if (options.outcomes.empty()) {
-    fail(options.protocol ? "the table has no column for any hypothesis of the protocol"
-                          : "a table needs at least one outcome",
-         {Remedy::nameOutcome});
-  }
-  if (options.occasionColumns.empty() && !(options.occasion + options.baselineOccasion).empty())
-    fail("an occasion needs the column that names occasions", {Remedy::nameOccasionColumn});
+  if (options.outcomes.empty() && options.protocol)
+    fail("the table has no column for any hypothesis of the protocol", {Remedy::nameOutcome});
+  checkColumns(options, true);
   if (options.baselineOccasion.empty()) return;
   if (options.occasion.empty())
     fail("a baseline needs the occasion that it is the baseline of", {Remedy::nameOccasion});
@@ -155,17 +149,9 @@ Study makeTableStudy(const CsvTable& table, const TableStudyOptions& asked) {
   study.counted = "rows";
   study.where = std::filesystem::path(table.path).filename().string();
   study.recruited = records.size();
-  std::map<std::string, std::uint64_t> present;
-  std::uint64_t ungrouped = 0, otherGroup = 0, otherOccasion = 0, asBaseline = 0;
-  for (const Record& r : records) {
-    if (r.group.empty()) {
-      ++ungrouped;
-    } else {
-      ++present[r.group];
-    }
-  }
-  study.groups =
-      chooseGroups(present, options, table.path, ungrouped == 0 ? "" : fmt::format(" ({} rows have none)", ungrouped));
+  std::uint64_t otherGroup = 0, otherOccasion = 0, asBaseline = 0;
+  const RowsByGroup byGroup = rowsByGroup(records);
+  study.groups = chooseGroups(byGroup.present, options, table.path, byGroup.left);
   study.better = betterOf(study.groups, options);
   if (options.protocol) {
     study.synthetic = options.protocol->performers;
@@ -201,14 +187,11 @@ Study makeTableStudy(const CsvTable& table, const TableStudyOptions& asked) {
   study.attemptRule = !several                                    ? "one row each"
                       : options.attemptRule == AttemptRule::first ? "the first of a participant's rows in the table"
                                                                   : "the mean of a participant's rows";
-  for (const auto& [reason, count] : std::initializer_list<std::pair<const char*, std::uint64_t>>{
-           {"no group", ungrouped},
-           {"another group", otherGroup},
-           {"the baseline, for adjustment", asBaseline},
-           {"another occasion", otherOccasion},
-           {"later row of a participant (the first counts)", later}}) {
-    if (count > 0) study.flow.push_back({reason, count});
-  }
+  addReasons(study.flow, {{"no group", byGroup.ungrouped},
+                          {"another group", otherGroup},
+                          {"the baseline, for adjustment", asBaseline},
+                          {"another occasion", otherOccasion},
+                          {"later row of a participant (the first counts)", later}});
   for (std::size_t g = 0; g < 2; ++g) {
     study.participants[g] = rows[g].size();
     for (const auto& [person, list] : rows[g]) study.attempts[g] += list.size();
@@ -243,8 +226,6 @@ Study makeTableStudy(const CsvTable& table, const TableStudyOptions& asked) {
 
 namespace {
 
-using recorder::shown;
-
 /// Squares of what is larger, and their sums, might not be finite.
 constexpr double largest = 1e100;
 
@@ -258,11 +239,6 @@ std::string withPoint(const std::string& cell, char separator) {
   return number;
 }
 
-[[noreturn]] void failAt(const CsvTable& table, std::size_t line, const std::string& column, const std::string& what) {
-  throw Error(ErrorKind::damaged, Where{table.path, fmt::format("line {}", line)},
-              fmt::format("column \"{}\": {}", shown(column), what));
-}
-
 /// Names are printed: a line break or another control character could forge output.
 void askForPlainName(const CsvTable& table, std::size_t line, const std::string& column, const std::string& name) {
   const auto control = [](char c) { return (c >= 0 && c < ' ') || c == '\x7F'; };
@@ -270,13 +246,12 @@ void askForPlainName(const CsvTable& table, std::size_t line, const std::string&
     failAt(table, line, column, fmt::format("\"{}\" holds a line break or a control character", shown(name)));
 }
 
-std::set<std::string> occasionsOf(const std::vector<Record>& records) {
-  std::set<std::string> occasions;
-  for (const Record& r : records) occasions.insert(r.occasion);
-  return occasions;
-}
-
 }  // namespace
+
+void failAt(const CsvTable& table, std::size_t line, const std::string& column, const std::string& what) {
+  throw Error(ErrorKind::damaged, Where{table.path, fmt::format("line {}", line)},
+              fmt::format("column \"{}\": {}", shown(column), what));
+}
 
 std::vector<Outcome> outcomesOf(const CsvTable& table, const TableStudyOptions& options) {
   std::vector<Outcome> outcomes;
@@ -342,8 +317,31 @@ std::vector<Record> recordsOf(const CsvTable& table, const TableStudyOptions& op
   return records;
 }
 
+void checkColumns(const TableStudyOptions& options, bool needsGroup) {
+  if (options.participantColumn.empty())
+    fail("which column of the table names the participant is not said", {Remedy::nameParticipantColumn});
+  if (options.groupColumn.empty() && needsGroup)
+    fail("which column of the table names the group is not said", {Remedy::nameGroupColumn});
+  if (options.outcomes.empty()) fail("a table needs at least one outcome", {Remedy::nameOutcome});
+  if (options.occasionColumns.empty() && !(options.occasion + options.baselineOccasion).empty())
+    fail("an occasion needs the column that names occasions", {Remedy::nameOccasionColumn});
+}
+
+RowsByGroup rowsByGroup(const std::vector<Record>& records) {
+  RowsByGroup rows;
+  for (const Record& r : records) ++(r.group.empty() ? rows.ungrouped : rows.present[r.group]);
+  if (rows.ungrouped > 0) rows.left = fmt::format(" ({} rows have none)", rows.ungrouped);
+  return rows;
+}
+
+void addReasons(std::vector<FlowRow>& flow, const std::vector<FlowRow>& counted) {
+  std::copy_if(counted.begin(), counted.end(), std::back_inserter(flow),
+               [](const FlowRow& row) { return row.attempts > 0; });
+}
+
 void askForOccasion(const CsvTable& table, const std::vector<Record>& records, const std::string& occasion) {
-  const std::set<std::string> known = occasionsOf(records);
+  std::set<std::string> known;
+  for (const Record& r : records) known.insert(r.occasion);
   if (occasion.empty() || known.count(occasion) > 0) return;
   std::string list;
   for (const std::string& name : known) list += (list.empty() ? "" : ", ") + shown(name);

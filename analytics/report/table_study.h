@@ -33,6 +33,9 @@ struct TableStudyOptions : StudyChoices {
 /// rule: rows of one person are not independent.
 Study makeTableStudy(const CsvTable& table, const TableStudyOptions& options);
 
+/// @throws Error (damaged) naming line and column.
+[[noreturn]] void failAt(const CsvTable& table, std::size_t line, const std::string& column, const std::string& what);
+
 /// A column that is compared.
 struct Outcome {
   std::string name;
@@ -47,13 +50,27 @@ struct Record {
   std::vector<std::optional<double>> values;  ///< by outcome
 };
 
-/// @throws Error (invalid) for a column that is not there or is named twice, or a word behind the colon that is none.
+/// @throws Error (invalid) for a column that is missing or named twice, or an unknown word behind the colon.
 std::vector<Outcome> outcomesOf(const CsvTable& table, const TableStudyOptions& options);
 
 /// @throws Error (invalid) for a column that is not there; Error (damaged), naming line and column, for a row without
 /// participant or occasion, a name with control characters, a cell that is no finite number.
 std::vector<Record> recordsOf(const CsvTable& table, const TableStudyOptions& options,
                               const std::vector<Outcome>& outcomes);
+
+/// Columns that a study or a design of a table needs. @throws Error (invalid)
+void checkColumns(const TableStudyOptions& options, bool needsGroup);
+
+/// How many rows each group has, and how many have none.
+struct RowsByGroup {
+  std::map<std::string, std::uint64_t> present;
+  std::uint64_t ungrouped = 0;
+  std::string left;  ///< " (2 rows have none)", or empty
+};
+RowsByGroup rowsByGroup(const std::vector<Record>& records);
+
+/// Adds the reasons for which rows went out.
+void addReasons(std::vector<FlowRow>& flow, const std::vector<FlowRow>& counted);
 
 /// @throws Error (invalid) where an occasion is named that no row has.
 void askForOccasion(const CsvTable& table, const std::vector<Record>& records, const std::string& occasion);

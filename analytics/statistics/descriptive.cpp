@@ -18,8 +18,8 @@ constexpr const char* notFinite = "a value is not finite";
 }  // namespace
 
 Expected<double> mean(std::span<const double> values) {
-  if (values.empty()) return Expected<double>::none(noValues);
-  if (!allFinite(values)) return Expected<double>::none(notFinite);
+  if (values.empty()) return NoResult{noValues};
+  if (!allFinite(values)) return NoResult{notFinite};
   double sum = 0.0;
   for (const double v : values) sum += v;
   const double n = static_cast<double>(values.size());
@@ -31,7 +31,7 @@ Expected<double> mean(std::span<const double> values) {
 }
 
 Expected<double> standardDeviation(std::span<const double> values) {
-  if (values.size() < 2) return Expected<double>::none(values.empty() ? noValues : "one value has no spread");
+  if (values.size() < 2) return NoResult{values.empty() ? noValues : "one value has no spread"};
   const Expected<double> centre = mean(values);
   if (!centre) return centre;
   double sum = 0.0;
@@ -48,8 +48,8 @@ double quantileOfSorted(std::span<const double> sorted, double p) {
 }
 
 Expected<double> quantile(std::span<const double> values, double p) {
-  if (values.empty()) return Expected<double>::none(noValues);
-  if (!allFinite(values)) return Expected<double>::none(notFinite);
+  if (values.empty()) return NoResult{noValues};
+  if (!allFinite(values)) return NoResult{notFinite};
   std::vector<double> sorted(values.begin(), values.end());
   std::sort(sorted.begin(), sorted.end());
   return quantileOfSorted(sorted, p);
@@ -90,14 +90,13 @@ double tieTerm(std::span<const double> values) {
 }
 
 Expected<std::vector<ParticipantValue>> onePerParticipant(std::span<const RepeatedValue> values, AttemptRule rule) {
-  using Result = Expected<std::vector<ParticipantValue>>;
-  if (values.empty()) return Result::none("no values");
+  if (values.empty()) return NoResult{"no values"};
   std::map<std::size_t, std::vector<RepeatedValue>> attempts;
   std::set<std::pair<std::size_t, double>> orders;
   for (const RepeatedValue& v : values) {
-    if (!std::isfinite(v.value) || !std::isfinite(v.order)) return Result::none("a value is not finite");
+    if (!std::isfinite(v.value) || !std::isfinite(v.order)) return NoResult{"a value is not finite"};
     if (rule == AttemptRule::first && !orders.insert({v.participant, v.order}).second)
-      return Result::none("two attempts of a participant have one order");
+      return NoResult{"two attempts of a participant have one order"};
     attempts[v.participant].push_back(v);
   }
   std::vector<ParticipantValue> result;

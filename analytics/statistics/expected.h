@@ -9,17 +9,18 @@
 
 namespace calot::analytics {
 
+/// Reason why there is no result, one line.
+struct NoResult {
+  std::string reason;
+};
+
 /// A result, or the reason why there is none. Degenerate input (an empty group, all values tied, n = 1) gives a
 /// printable reason, not an error and never a NaN.
 template <class T>
 class Expected {
  public:
-  Expected(T value) : value_(std::move(value)) {}  // NOLINT: implicit on purpose, a result converts
-  static Expected none(const std::string& reason) {
-    Expected result;
-    result.reason_ = reason;
-    return result;
-  }
+  Expected(T value) : value_(std::move(value)) {}               // NOLINT: implicit on purpose, a result converts
+  Expected(NoResult none) : reason_(std::move(none.reason)) {}  // NOLINT: so does a reason
 
   explicit operator bool() const { return value_.has_value(); }
   /// @pre there is a result.
@@ -35,7 +36,6 @@ class Expected {
   [[nodiscard]] const std::string& reason() const { return reason_; }
 
  private:
-  Expected() = default;
   std::optional<T> value_;
   std::string reason_;
 };

@@ -64,7 +64,7 @@ std::vector<double> shrunk(const std::vector<double>& column, const std::vector<
 
 /// The model after the transformation for one ratio of the variances.
 struct RatioProfile {
-  Expected<LeastSquares> fit = Expected<LeastSquares>::none("");
+  Expected<LeastSquares> fit = NoResult{""};
   double deviance = HUGE_VAL;  ///< -2 restricted log-likelihood without constants
   double slope = 0.0;          ///< of the deviance over the ratio
 };
@@ -106,13 +106,11 @@ RatioProfile profileAt(const ClusteredRows& rows, double ratio) {
 
 Expected<InterceptModel> fitInterceptModel(const std::vector<std::vector<double>>& columns,
                                            std::span<const std::size_t> participants, std::span<const double> y) {
-  using Result = Expected<InterceptModel>;
   ClusteredRows rows;
-  if (const std::string reason = collectRows(columns, participants, y, rows); !reason.empty())
-    return Result::none(reason);
+  if (const std::string reason = collectRows(columns, participants, y, rows); !reason.empty()) return NoResult{reason};
   // Ratio 0 and a grid over its logarithm, then the root of the slope around the best.
   const RatioProfile unrelated = profileAt(rows, 0.0);
-  if (!unrelated.fit) return Result::none(unrelated.fit.reason());
+  if (!unrelated.fit) return NoResult{unrelated.fit.reason()};
   constexpr double low = -12.0, high = 24.0, step = 0.5;
   double bestLog = low, least = unrelated.deviance;
   for (double logRatio = low; logRatio <= high; logRatio += step) {
@@ -122,17 +120,17 @@ Expected<InterceptModel> fitInterceptModel(const std::vector<std::vector<double>
       bestLog = logRatio;
     }
   }
-  if (bestLog + step > high) return Result::none("attempts of each participant scatter too little: take the mean");
+  if (bestLog + step > high) return NoResult{"attempts of each participant scatter too little: take the mean"};
   double ratio = 0.0;  // or so small that the result is the same
   if (bestLog > low) {
     // Root of the slope rather than minimum of the deviance, which is known to half of the digits only.
     const auto slope = [&](double logRatio) { return profileAt(rows, std::exp(logRatio)).slope; };
     if (!(slope(bestLog - step) < 0.0) || !(slope(bestLog + step) > 0.0))
-      return Result::none("the likelihood has no clear maximum");
+      return NoResult{"the likelihood has no clear maximum"};
     ratio = std::exp(rootBetween(slope, bestLog - step, bestLog + step));
   }
   const RatioProfile best = profileAt(rows, ratio);
-  if (!best.fit) return Result::none(best.fit.reason());
+  if (!best.fit) return NoResult{best.fit.reason()};
   InterceptModel result;
   const LeastSquares& fit = *best.fit;
   result.coefficients = fit.coefficients;
@@ -147,6 +145,10 @@ Expected<InterceptModel> fitInterceptModel(const std::vector<std::vector<double>
 }
 
 namespace {
+
+ModelTerm termOf(const InterceptModel& model, std::size_t column, double df, double level) {
+  return modelTerm(model.coefficients[column], model.errors[column], df, level, "Student's t, REML");
+}
 
 struct Standing {
   bool inX = false;
@@ -170,9 +172,8 @@ std::string gather(std::span<const ModelAttempt> attempts, std::map<std::size_t,
 }  // namespace
 
 Expected<RandomIntercept> randomIntercept(std::span<const ModelAttempt> attempts, double level) {
-  using Result = Expected<RandomIntercept>;
   std::map<std::size_t, Standing> participants;
-  if (const std::string reason = gather(attempts, participants); !reason.empty()) return Result::none(reason);
+  if (const std::string reason = gather(attempts, participants); !reason.empty()) return NoResult{reason};
   std::set<std::size_t> sites;
   for (const auto& item : participants) sites.insert(item.second.site);
   std::vector<std::vector<double>> columns(1 + sites.size());
@@ -187,24 +188,15 @@ Expected<RandomIntercept> randomIntercept(std::span<const ModelAttempt> attempts
   }
   const bool few = participants.size() < sites.size() + 2;
   const Expected<InterceptModel> model = fitInterceptModel(columns, whose, y);
-  if (!model && model.reason().find(": take ") != std::string::npos) return Result::none(model.reason());
-  if (few) return Result::none("too few participants for the model");
+  if (!model && model.reason().find(": take ") != std::string::npos) return NoResult{model.reason()};
+  if (few) return NoResult{"too few participants for the model"};
   if (!model) {
-    return Result::none(model.reason() == "the columns depend on each other" ? "group and site can't be told apart"
-                                                                             : model.reason());
+    return NoResult{model.reason() == "the columns depend on each other" ? "group and site cannot be distinguished"
+                                                                         : model.reason()};
   }
-  RandomIntercept result;
-  result.difference = model->coefficients[0];
-  result.error = model->errors[0];
-  result.df = static_cast<double>(participants.size() - sites.size()) - 1.0;
-  result.t = result.difference / result.error;
-  result.p = studentTwoSided(result.t, result.df);
-  const double half = studentQuantile(0.5 + level / 2.0, result.df) * result.error;
-  result.interval = {result.difference - half, result.difference + half, level, "Student's t, REML"};
-  result.withinVariance = model->withinVariance;
-  result.betweenVariance = model->betweenVariance;
-  result.restrictedLogLikelihood = model->restrictedLogLikelihood;
-  return result;
+  const double df = static_cast<double>(participants.size() - sites.size()) - 1.0;
+  return RandomIntercept{termOf(*model, 0, df, level), model->betweenVariance, model->withinVariance,
+                         model->restrictedLogLikelihood};
 }
 
 namespace {
@@ -230,28 +222,14 @@ std::string repeatedObjection(std::span<const OccasionValue> values, const std::
   return {};
 }
 
-ModelTerm termOf(const InterceptModel& model, std::size_t column, double df, double level) {
-  ModelTerm term;
-  term.estimate = model.coefficients[column];
-  term.error = model.errors[column];
-  term.df = df;
-  term.t = term.estimate / term.error;
-  term.p = studentTwoSided(term.t, df);
-  const double half = studentQuantile(0.5 + level / 2.0, df) * term.error;
-  term.interval = {term.estimate - half, term.estimate + half, level, "Student's t, REML"};
-  return term;
-}
-
 }  // namespace
 
 Expected<RepeatedGroups> repeatedGroups(std::span<const OccasionValue> values, OccasionKind kind,
                                         std::span<const std::size_t> sites, double level) {
-  using Result = Expected<RepeatedGroups>;
   std::set<double> occasions;
   for (const OccasionValue& v : values) occasions.insert(v.occasion);
-  if (const std::string reason = repeatedObjection(values, occasions, kind); !reason.empty())
-    return Result::none(reason);
-  if (!sites.empty() && sites.size() != values.size()) return Result::none("the columns have different lengths");
+  if (const std::string reason = repeatedObjection(values, occasions, kind); !reason.empty()) return NoResult{reason};
+  if (!sites.empty() && sites.size() != values.size()) return NoResult{"the columns have different lengths"};
   const std::set<std::size_t> siteSet(sites.begin(), sites.end());
   const std::size_t steps = kind == OccasionKind::number ? 1 : occasions.size() - 1;
   const std::size_t strata = siteSet.empty() ? 0 : siteSet.size() - 1;
@@ -279,11 +257,11 @@ Expected<RepeatedGroups> repeatedGroups(std::span<const OccasionValue> values, O
       columns[column++].push_back(sites[i] == *site ? 1.0 : 0.0);
   }
   const Expected<InterceptModel> model = fitInterceptModel(columns, whose, y);
-  if (!model) return Result::none(model.reason());
+  if (!model) return NoResult{model.reason()};
   const double people = static_cast<double>(model->participants);
   const double outer = people - 2.0 - static_cast<double>(strata);
   const double inner = static_cast<double>(model->attempts) - people - 2.0 * static_cast<double>(steps);
-  if (outer < 1.0 || inner < 1.0) return Result::none("too few attempts for the model");
+  if (outer < 1.0 || inner < 1.0) return NoResult{"too few attempts for the model"};
   RepeatedGroups result;
   result.group = termOf(*model, 1, outer, level);
   for (std::size_t s = 0; s < steps; ++s) {

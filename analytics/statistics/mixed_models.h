@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "analytics/statistics/expected.h"
+#include "analytics/statistics/regression.h"
 
 namespace calot::analytics {
 
@@ -36,20 +36,17 @@ struct ModelAttempt {
   double value = 0.0;
 };
 
-struct RandomIntercept {
-  double difference = 0.0;  ///< mean of x less mean of y, within sites
-  double error = 0.0;
-  double t = 0.0, df = 0.0, p = 1.0;  ///< Student, df = participants less sites less 1 (containment); two-sided
-  Interval interval;
-  double betweenVariance =
-      0.0;  ///< of participants; 0: at its bound, attempts of a person are no more alike than others
-  double withinVariance = 0.0;           ///< of attempts of one participant
-  double restrictedLogLikelihood = 0.0;  ///< without the term ln |X'X| / 2 that depends on the coding (as R's nlme)
+/// Mean of x less mean of y, within sites; df = participants less sites less 1 (containment).
+struct RandomIntercept : ModelTerm {
+  double betweenVariance = 0.0;  ///< of participants; 0: at its bound, attempts of a person are as alike as others
+  double withinVariance = 0.0;   ///< of attempts of one participant
+  double restrictedLogLikelihood = 0.0;  ///< as InterceptModel's
 };
 
-/// Value = constant + b [x] + site + u_participant + e by restricted maximum likelihood (intercept_model.h). Intervals
-/// and p take the variances as known but for the degrees of freedom. Sites are fixed strata. No answer for an empty
-/// group, a participant in two groups or sites, fewer participants than the model needs, or as fitInterceptModel().
+/// Value = constant + b [x] + site + u_participant + e by restricted maximum likelihood (fitInterceptModel()).
+/// Intervals and p take the variances as known but for the degrees of freedom. Sites are fixed strata. No answer for an
+/// empty group, a participant in two groups or sites, fewer participants than the model needs, or as
+/// fitInterceptModel().
 Expected<RandomIntercept> randomIntercept(std::span<const ModelAttempt> attempts, double level = 0.95);
 
 struct OccasionValue {
@@ -64,12 +61,7 @@ enum class OccasionKind {
   named    ///< each occasion against the first
 };
 
-/// One coefficient with its test. Effects of the group are of x less y.
-struct ModelTerm {
-  double estimate = 0.0, error = 0.0, t = 0.0, df = 0.0, p = 1.0;
-  Interval interval;
-};
-
+/// Effects of the group are of x less y.
 struct RepeatedGroups {
   ModelTerm group;                     ///< difference of the groups at the first occasion
   std::vector<ModelTerm> occasion;     ///< of y: change for each step, or at each later occasion against the first
@@ -79,7 +71,7 @@ struct RepeatedGroups {
 };
 
 /// value = a + b [x] + c occasion + d [x] occasion + u_participant + e by restricted maximum likelihood
-/// (intercept_model.h). Student's t with the degrees of freedom of inner and outer terms (Pinheiro and Bates
+/// (fitInterceptModel()). Student's t with the degrees of freedom of inner and outer terms (Pinheiro and Bates
 /// 2000, 2.4): the group's has participants - 2, terms of the occasion attempts - participants - their number. Each
 /// site is a constant of its own where `sites` names more than one, which takes their number less one from the group's.
 /// No answer for an empty group, a participant in two groups, fewer than two occasions, a named occasion without both

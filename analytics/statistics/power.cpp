@@ -9,7 +9,7 @@
 
 #include "analytics/statistics/descriptive.h"
 #include "analytics/statistics/distributions.h"
-#include "analytics/statistics/multiplicity.h"
+#include "analytics/statistics/rank_tests.h"
 #include "analytics/statistics/resampling.h"
 #include "analytics/statistics/two_groups.h"
 
@@ -59,7 +59,7 @@ class RankTests {
       return known->second;
     }
     const Expected<MannWhitney> test = mannWhitney(x, y);
-    return test ? Expected<double>(test->p) : Expected<double>::none(test.reason());
+    return test ? Expected<double>(test->p) : NoResult{test.reason()};
   }
 
  private:
@@ -119,7 +119,7 @@ std::vector<PlannedCheckpoint> shifts(const std::vector<double>& effects) {
 }
 
 Expected<Power> simulatePower(const PowerPlan& plan) {
-  if (const std::string reason = objection(plan); !reason.empty()) return Expected<Power>::none(reason);
+  if (const std::string reason = objection(plan); !reason.empty()) return NoResult{reason};
   RandomStream random(plan.seed);
   RankTests test;
   const std::size_t checkpoints = plan.population ? plan.population->people[0][0].size() : plan.checkpoints.size();

@@ -25,7 +25,7 @@ struct PlannedCheckpoint {
   [[nodiscard]] bool effect() const { return x.mean != y.mean; }
 };
 
-/// Checkpoints of deviation 1 in which x is shifted by so many deviations; 0: no effect.
+/// Checkpoints of deviation 1 in which x is shifted by these numbers of deviations; 0: no effect.
 std::vector<PlannedCheckpoint> shifts(const std::vector<double>& effects);
 
 /// A pool of people to draw from with replacement, each with a value or none for every checkpoint, which preserves

@@ -26,7 +26,7 @@ enum class CoveredInterval : std::uint8_t {
 };
 
 /// One row: per cent of simulated intervals at 95 % that hold the truth, with 5, 10, 20 and 40 people in each group (of
-/// agreement so many rated attempts, of consistency so many people).
+/// agreement this many rated attempts, of consistency this many people).
 struct PublishedCoverage {
   CoveredInterval interval;
   const char* name;        ///< as the page has it: "g, non-central t"

@@ -9,7 +9,6 @@
 
 #include "analytics/statistics/descriptive.h"
 #include "analytics/statistics/distributions.h"
-#include "analytics/statistics/multiplicity.h"
 #include "analytics/statistics/two_groups.h"
 
 namespace calot::analytics {
@@ -21,18 +20,17 @@ struct MeanRanks {
 };
 
 Expected<MeanRanks> meanRanks(std::span<const std::vector<double>> groups) {
-  using Result = Expected<MeanRanks>;
-  if (groups.size() < 2) return Result::none("fewer than two groups");
+  if (groups.size() < 2) return NoResult{"fewer than two groups"};
   std::vector<double> all;
   for (const std::vector<double>& group : groups) {
-    if (group.empty()) return Result::none("a group is empty");
-    if (!allFinite(group)) return Result::none("a value is not finite");
+    if (group.empty()) return NoResult{"a group is empty"};
+    if (!allFinite(group)) return NoResult{"a value is not finite"};
     all.insert(all.end(), group.begin(), group.end());
   }
   MeanRanks m;
   m.n = static_cast<double>(all.size());
   m.tieTerm = tieTerm(all);
-  if (m.tieTerm == m.n * m.n * m.n - m.n) return Result::none("all values are equal");
+  if (m.tieTerm == m.n * m.n * m.n - m.n) return NoResult{"all values are equal"};
   const std::vector<double> ranks = midRanks(all);
   std::size_t next = 0;
   for (const std::vector<double>& group : groups) {
@@ -48,7 +46,7 @@ Expected<MeanRanks> meanRanks(std::span<const std::vector<double>> groups) {
 
 Expected<KruskalWallis> kruskalWallis(std::span<const std::vector<double>> groups) {
   const Expected<MeanRanks> m = meanRanks(groups);
-  if (!m) return Expected<KruskalWallis>::none(m.reason());
+  if (!m) return NoResult{m.reason()};
   const double n = m->n;
   KruskalWallis result;
   for (std::size_t g = 0; g < groups.size(); ++g) {
@@ -63,9 +61,8 @@ Expected<KruskalWallis> kruskalWallis(std::span<const std::vector<double>> group
 }
 
 Expected<std::vector<DunnPair>> dunn(std::span<const std::vector<double>> groups) {
-  using Result = Expected<std::vector<DunnPair>>;
   const Expected<MeanRanks> m = meanRanks(groups);
-  if (!m) return Result::none(m.reason());
+  if (!m) return NoResult{m.reason()};
   const double n = m->n, variance = n * (n + 1.0) / 12.0 - m->tieTerm / (12.0 * (n - 1.0));
   std::vector<DunnPair> pairs;
   std::vector<double> p;
@@ -127,13 +124,12 @@ double logTieFactorials(std::vector<long> values) {
 }  // namespace
 
 Expected<Spearman> spearman(std::span<const double> x, std::span<const double> y) {
-  using Result = Expected<Spearman>;
-  if (x.size() != y.size()) return Result::none("the two variables have different lengths");
-  if (x.size() < 3) return Result::none("fewer than three pairs");
-  if (!allFinite(x) || !allFinite(y)) return Result::none("a value is not finite");
+  if (x.size() != y.size()) return NoResult{"the two variables have different lengths"};
+  if (x.size() < 3) return NoResult{"fewer than three pairs"};
+  if (!allFinite(x) || !allFinite(y)) return NoResult{"a value is not finite"};
   const std::vector<long> a = centredRanks(x), b = centredRanks(y);
   const long aa = product(a, a), bb = product(b, b), ab = product(a, b);
-  if (aa == 0 || bb == 0) return Result::none("a variable has all values equal");
+  if (aa == 0 || bb == 0) return NoResult{"a variable has all values equal"};
   Spearman result;
   result.ties = tieTerm(x) > 0.0 || tieTerm(y) > 0.0;
   const double n = static_cast<double>(x.size());
@@ -151,12 +147,55 @@ Expected<Spearman> spearman(std::span<const double> x, std::span<const double> y
 }
 
 Expected<Interval> spearmanInterval(double rho, std::size_t n, double level) {
-  if (n < 4) return Expected<Interval>::none("fewer than four pairs");
+  if (n < 4) return NoResult{"fewer than four pairs"};
   constexpr double rounding = 1e-12;
-  if (!(std::abs(rho) < 1.0 - rounding)) return Expected<Interval>::none("the ranks agree perfectly");
+  if (!(std::abs(rho) < 1.0 - rounding)) return NoResult{"the ranks agree perfectly"};
   const double half =
       normalQuantile(0.5 + level / 2.0) * std::sqrt((1.0 + 0.5 * rho * rho) / (static_cast<double>(n) - 3.0));
   return Interval{std::tanh(std::atanh(rho) - half), std::tanh(std::atanh(rho) + half), level, "Bonett and Wright"};
+}
+
+namespace {
+
+std::string objection(std::span<const double> p) {
+  if (p.empty()) return "no p values";
+  if (!std::all_of(p.begin(), p.end(), [](double v) { return v >= 0.0 && v <= 1.0; }))
+    return "a p value is outside of [0, 1]";
+  return {};
+}
+
+std::vector<std::size_t> ascending(std::span<const double> p) {
+  std::vector<std::size_t> order(p.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t a, std::size_t b) { return p[a] < p[b] || (p[a] == p[b] && a < b); });
+  return order;
+}
+
+}  // namespace
+
+Expected<std::vector<double>> holm(std::span<const double> p) {
+  if (const std::string reason = objection(p); !reason.empty()) return NoResult{reason};
+  const std::vector<std::size_t> order = ascending(p);
+  std::vector<double> adjusted(p.size());
+  double largest = 0.0;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    largest = std::max(largest, std::min(1.0, static_cast<double>(p.size() - i) * p[order[i]]));
+    adjusted[order[i]] = largest;
+  }
+  return adjusted;
+}
+
+Expected<std::vector<double>> benjaminiHochberg(std::span<const double> p) {
+  if (const std::string reason = objection(p); !reason.empty()) return NoResult{reason};
+  const std::vector<std::size_t> order = ascending(p);
+  std::vector<double> adjusted(p.size());
+  double smallest = 1.0;
+  for (std::size_t i = p.size(); i-- > 0;) {
+    smallest = std::min(smallest, static_cast<double>(p.size()) * p[order[i]] / static_cast<double>(i + 1));
+    adjusted[order[i]] = smallest;
+  }
+  return adjusted;
 }
 
 }  // namespace calot::analytics

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Several groups by ranks (Kruskal and Wallis, Dunn), and Spearman's rank correlation.
+// Several groups by ranks (Kruskal and Wallis, Dunn), Spearman's rank correlation, and many tests at once: adjusted p
+// values, to be compared with the level, in the order of the input.
 #pragma once
 
 #include <cstddef>
@@ -56,5 +57,14 @@ Expected<Spearman> spearman(std::span<const double> x, std::span<const double> y
 /// tanh(atanh rho -+ z sqrt((1 + rho^2 / 2) / (n - 3))) (Bonett and Wright 2000, Psychometrika 65:23). No answer for
 /// fewer than four pairs or |rho| = 1, where it would be a point. @pre 0 < level < 1.
 Expected<Interval> spearmanInterval(double rho, std::size_t n, double level = 0.95);
+
+/// Holm (1979, Scand. J. Stat. 6:65): with p_(1) <= ... <= p_(m), max over j <= i of min(1, (m - j + 1) p_(j)).
+/// Controls the familywise error rate under any dependence: for primary questions. No answer for no p values or one
+/// outside of [0, 1].
+Expected<std::vector<double>> holm(std::span<const double> p);
+
+/// Benjamini and Hochberg (1995, J. R. Stat. Soc. B 57:289): min over j >= i of min(1, m p_(j) / j). Controls the false
+/// discovery rate for independent or positively dependent tests: for exploration. Same preconditions as holm().
+Expected<std::vector<double>> benjaminiHochberg(std::span<const double> p);
 
 }  // namespace calot::analytics

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <Eigen/Dense>
+#include <set>
 #include <vector>
 
 #include "analytics/statistics/descriptive.h"
@@ -20,27 +21,26 @@ std::vector<double> LeastSquares::standardErrors() const {
 }
 
 Expected<LeastSquares> leastSquares(const std::vector<std::vector<double>>& columns, std::span<const double> y) {
-  using Result = Expected<LeastSquares>;
   using Eigen::Index;
-  if (columns.empty()) return Result::none("no columns");
+  if (columns.empty()) return NoResult{"no columns"};
   for (const std::vector<double>& column : columns) {
-    if (column.size() != y.size()) return Result::none("the variables have different lengths");
-    if (!allFinite(column)) return Result::none("a value is not finite");
+    if (column.size() != y.size()) return NoResult{"the variables have different lengths"};
+    if (!allFinite(column)) return NoResult{"a value is not finite"};
   }
-  if (!allFinite(y)) return Result::none("a value is not finite");
-  if (y.size() <= columns.size()) return Result::none("no more values than coefficients");
+  if (!allFinite(y)) return NoResult{"a value is not finite"};
+  if (y.size() <= columns.size()) return NoResult{"no more values than coefficients"};
   const auto n = static_cast<Index>(y.size()), p = static_cast<Index>(columns.size());
   Eigen::MatrixXd x(n, p);
   Eigen::VectorXd scale(p);
   for (Index j = 0; j < p; ++j) {
     x.col(j) = Eigen::Map<const Eigen::VectorXd>(columns[static_cast<std::size_t>(j)].data(), n);
     scale[j] = x.col(j).norm();
-    if (!(scale[j] > 0.0)) return Result::none("the columns depend on each other");
+    if (!(scale[j] > 0.0)) return NoResult{"the columns depend on each other"};
     x.col(j) /= scale[j];
   }
   Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(x);
   qr.setThreshold(1e-10);
-  if (qr.rank() < p) return Result::none("the columns depend on each other");
+  if (qr.rank() < p) return NoResult{"the columns depend on each other"};
   const Eigen::VectorXd right = Eigen::Map<const Eigen::VectorXd>(y.data(), n);
   Eigen::VectorXd b = qr.solve(right);
   // One step of refinement.
@@ -65,12 +65,17 @@ Expected<LeastSquares> leastSquares(const std::vector<std::vector<double>>& colu
   return fit;
 }
 
+ModelTerm modelTerm(double estimate, double error, double df, double level, const char* method) {
+  const double t = estimate / error, half = studentQuantile(0.5 + level / 2.0, df) * error;
+  return {estimate, error, t, df, studentTwoSided(t, df), {estimate - half, estimate + half, level, method}};
+}
+
 Expected<std::vector<double>> hc3Errors(const LeastSquares& fit, const std::vector<std::vector<double>>& columns) {
   const std::size_t p = columns.size();
   std::vector<double> sum(p, 0.0);
   for (std::size_t i = 0; i < fit.residuals.size(); ++i) {
     const double slack = 1.0 - fit.leverages[i];
-    if (slack < 1e-10) return Expected<std::vector<double>>::none("one value alone determines a coefficient");
+    if (slack < 1e-10) return NoResult{"one value alone determines a coefficient"};
     const double weighted = fit.residuals[i] / slack;
     for (std::size_t j = 0; j < p; ++j) {
       double influence = 0.0;
@@ -100,48 +105,73 @@ Expected<double> slopesAgree(const Columns& columns, std::span<const double> out
   more.push_back(columns[2]);
   for (std::size_t i = 0; i < outcome.size(); ++i) more.back()[i] *= columns[1][i];
   const Expected<LeastSquares> fit = leastSquares(more, outcome);
-  if (!fit) return Expected<double>::none(fit.reason());
+  if (!fit) return NoResult{fit.reason()};
   const Expected<std::vector<double>> errors = hc3Errors(*fit, more);
-  if (!errors) return Expected<double>::none(errors.reason());
-  if (withoutScatter(*fit, outcome) || !((*errors)[3] > 0.0)) return Expected<double>::none(noScatter);
+  if (!errors) return NoResult{errors.reason()};
+  if (withoutScatter(*fit, outcome) || !((*errors)[3] > 0.0)) return NoResult{noScatter};
   return studentTwoSided(fit->coefficients[3] / (*errors)[3], fit->df);
 }
 
 }  // namespace
 
 Expected<CovarianceAnalysis> covarianceAnalysis(const BaselineGroup& x, const BaselineGroup& y, double level) {
-  using Result = Expected<CovarianceAnalysis>;
   if (x.baseline.size() != x.outcome.size() || y.baseline.size() != y.outcome.size())
-    return Result::none("baseline and outcome are not of the same people");
-  if (const std::string reason = twoGroupObjection(x.outcome, y.outcome); !reason.empty()) return Result::none(reason);
+    return NoResult{"baseline and outcome are not of the same people"};
+  if (const std::string reason = twoGroupObjection(x.outcome, y.outcome); !reason.empty()) return NoResult{reason};
   const std::vector<double> outcome = pooled(x.outcome, y.outcome);
   Columns columns(3, std::vector<double>(outcome.size(), 1.0));
   for (std::size_t i = x.outcome.size(); i < outcome.size(); ++i) columns[1][i] = 0.0;
   columns[2] = pooled(x.baseline, y.baseline);
-  if (!allFinite(columns[2])) return Result::none("a value is not finite");
+  if (!allFinite(columns[2])) return NoResult{"a value is not finite"};
   // Centring the baseline changes nothing but improves the conditioning.
   const double centre = *mean(columns[2]);
   for (double& v : columns[2]) v -= centre;
   const Expected<LeastSquares> fit = leastSquares(columns, outcome);
   if (!fit) {
-    return Result::none(fit.reason() == "the columns depend on each other"
-                            ? "the baseline is constant, or the group determines it"
-                            : fit.reason());
+    return NoResult{fit.reason() == "the columns depend on each other"
+                        ? "the baseline is constant, or the group determines it"
+                        : fit.reason()};
   }
   const Expected<std::vector<double>> errors = hc3Errors(*fit, columns);
-  if (!errors) return Result::none(errors.reason());
-  CovarianceAnalysis result;
-  result.difference = fit->coefficients[1];
-  result.error = (*errors)[1];
-  if (withoutScatter(*fit, outcome) || !(result.error > 0.0)) return Result::none(noScatter);
-  result.df = fit->df;
-  result.t = result.difference / result.error;
-  result.p = studentTwoSided(result.t, result.df);
-  const double half = studentQuantile(0.5 + level / 2.0, result.df) * result.error;
-  result.interval = {result.difference - half, result.difference + half, level, "Student's t, HC3"};
-  result.slope = fit->coefficients[2];
-  result.sameSlope = slopesAgree(columns, outcome);
-  return result;
+  if (!errors) return NoResult{errors.reason()};
+  if (withoutScatter(*fit, outcome) || !((*errors)[1] > 0.0)) return NoResult{noScatter};
+  const ModelTerm group = modelTerm(fit->coefficients[1], (*errors)[1], fit->df, level, "Student's t, HC3");
+  return CovarianceAnalysis{group, fit->coefficients[2], slopesAgree(columns, outcome)};
+}
+
+Expected<LearningCurve> fitLearningCurve(std::span<const double> x, std::span<const double> y) {
+  if (x.size() != y.size()) return NoResult{"attempts and values have different lengths"};
+  if (!allFinite(x) || !allFinite(y)) return NoResult{"a value is not finite"};
+  if (!std::all_of(x.begin(), x.end(), [](double v) { return v > 0.0; }))
+    return NoResult{"an attempt's number is not positive"};
+  constexpr std::size_t parameters = 2;
+  if (std::set<double>(x.begin(), x.end()).size() < parameters || y.size() <= parameters)
+    return NoResult{"too few attempts for the curve"};
+  if (std::all_of(y.begin(), y.end(), [&](double v) { return v == y.front(); }))
+    return NoResult{"all values are equal"};
+  std::vector<std::vector<double>> columns(2, std::vector<double>(x.size(), 1.0));
+  for (std::size_t i = 0; i < x.size(); ++i) columns[1][i] = -1.0 / x[i];
+  const Expected<LeastSquares> fit = leastSquares(columns, y);
+  if (!fit) return NoResult{fit.reason()};
+  const std::vector<double> errors = fit->standardErrors();
+  LearningCurve curve;
+  curve.plateau = fit->coefficients[0];
+  curve.gap = fit->coefficients[1];
+  curve.plateauError = errors[0];
+  curve.gapError = errors[1];
+  curve.residualSumOfSquares = fit->residualSumOfSquares;
+  curve.sigma = fit->sigma;
+  curve.covariance = fit->sigma * fit->sigma * fit->unscaled[1];
+  curve.freedom = y.size() - parameters;
+  return curve;
+}
+
+Interval bandOf(const LearningCurve& curve, double x, double level) {
+  const double variance =
+      curve.plateauError * curve.plateauError - 2.0 * curve.covariance / x + curve.gapError * curve.gapError / (x * x);
+  const double half =
+      studentQuantile(0.5 + 0.5 * level, static_cast<double>(curve.freedom)) * std::sqrt(std::max(0.0, variance));
+  return Interval{curve.at(x) - half, curve.at(x) + half, level, "Student's t of a linear fit, pointwise"};
 }
 
 }  // namespace calot::analytics

@@ -28,10 +28,9 @@ double tail(const std::vector<double>& sorted, double p, bool& extreme) {
 }
 
 Expected<Bootstrap> bootstrapOf(const Groups& groups, const OfGroups& statistic, const BootstrapOptions& options) {
-  using Result = Expected<Bootstrap>;
   assert(options.resamples >= 99 && options.level > 0.0 && options.level < 1.0);
   const Expected<double> estimate = statistic(groups);
-  if (!estimate) return Result::none(estimate.reason());
+  if (!estimate) return NoResult{estimate.reason()};
   Bootstrap result;
   result.estimate = *estimate;
   result.seed = options.seed;
@@ -53,11 +52,11 @@ Expected<Bootstrap> bootstrapOf(const Groups& groups, const OfGroups& statistic,
     }
   }
   if (static_cast<double>(result.without) > mostResamplesWithout * static_cast<double>(options.resamples)) {
-    return Result::none(std::to_string(result.without) + " of " + std::to_string(options.resamples) +
-                        " resamples have no answer (" + lastReason + ")");
+    return NoResult{std::to_string(result.without) + " of " + std::to_string(options.resamples) +
+                    " resamples have no answer (" + lastReason + ")"};
   }
   std::sort(values.begin(), values.end());
-  if (values.front() == values.back()) return Result::none("all resamples agree");
+  if (values.front() == values.back()) return NoResult{"all resamples agree"};
   const double half = (1.0 - options.level) / 2.0;
   result.interval.lower = tail(values, half, result.extreme);
   result.interval.upper = tail(values, 1.0 - half, result.extreme);
@@ -69,15 +68,15 @@ Expected<Bootstrap> bootstrapOf(const Groups& groups, const OfGroups& statistic,
 }  // namespace
 
 Expected<Bootstrap> bootstrap(std::span<const double> x, const Statistic& statistic, const BootstrapOptions& options) {
-  if (x.empty()) return Expected<Bootstrap>::none("no values");
-  if (!allFinite(x)) return Expected<Bootstrap>::none("a value is not finite");
+  if (x.empty()) return NoResult{"no values"};
+  if (!allFinite(x)) return NoResult{"a value is not finite"};
   return bootstrapOf(
       {{x.begin(), x.end()}}, [&](const Groups& g) { return statistic(g[0]); }, options);
 }
 
 Expected<Bootstrap> bootstrap(std::span<const double> x, std::span<const double> y, const TwoGroupStatistic& statistic,
                               const BootstrapOptions& options) {
-  if (const std::string reason = twoGroupObjection(x, y); !reason.empty()) return Expected<Bootstrap>::none(reason);
+  if (const std::string reason = twoGroupObjection(x, y); !reason.empty()) return NoResult{reason};
   return bootstrapOf(
       {{x.begin(), x.end()}, {y.begin(), y.end()}}, [&](const Groups& g) { return statistic(g[0], g[1]); }, options);
 }

@@ -57,15 +57,6 @@ class RandomStream {
   /// Standard normal, by the quantile of one uniform().
   double normal();
 
-  /// Every order equally likely (Fisher and Yates).
-  template <class T>
-  void shuffle(std::span<T> items) {
-    for (std::size_t i = items.size(); i > 1; --i) {
-      const auto j = static_cast<std::size_t>(below(i));
-      std::swap(items[i - 1], items[j]);
-    }
-  }
-
  private:
   std::mt19937_64 engine_;
 };

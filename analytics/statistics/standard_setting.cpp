@@ -9,7 +9,6 @@
 #include "analytics/statistics/descriptive.h"
 #include "analytics/statistics/distributions.h"
 #include "analytics/statistics/regression.h"
-#include "analytics/statistics/resampling.h"
 
 namespace calot::analytics {
 namespace {
@@ -17,50 +16,48 @@ namespace {
 NormalCurve curveOf(std::span<const double> values) { return {*mean(values), *standardDeviation(values)}; }
 
 Expected<double> cutOf(std::span<const double> experts, std::span<const double> novices, Better better) {
-  if (experts.size() < 2 || novices.size() < 2) return Expected<double>::none("a group of one value has no spread");
+  if (experts.size() < 2 || novices.size() < 2) return NoResult{"a group of one value has no spread"};
   const NormalCurve e = curveOf(experts), n = curveOf(novices);
-  if (!(e.deviation > 0.0) || !(n.deviation > 0.0)) return Expected<double>::none("a group has no spread");
+  if (!(e.deviation > 0.0) || !(n.deviation > 0.0)) return NoResult{"a group has no spread"};
   if (better == Better::higher ? !(e.mean > n.mean) : !(e.mean < n.mean))
-    return Expected<double>::none("the experts' mean is not the better one");
+    return NoResult{"the experts' mean is not the better one"};
   return crossing(e, n);
 }
 
 }  // namespace
 
 Expected<double> crossing(const NormalCurve& first, const NormalCurve& second) {
-  using Result = Expected<double>;
-  if (!(first.deviation > 0.0) || !(second.deviation > 0.0)) return Result::none("a curve has no width");
-  if (!std::isfinite(first.mean) || !std::isfinite(second.mean)) return Result::none("a mean is not finite");
+  if (!(first.deviation > 0.0) || !(second.deviation > 0.0)) return NoResult{"a curve has no width"};
+  if (!std::isfinite(first.mean) || !std::isfinite(second.mean)) return NoResult{"a mean is not finite"};
   const NormalCurve& low = first.mean < second.mean ? first : second;
   const NormalCurve& high = first.mean < second.mean ? second : first;
-  if (!(low.mean < high.mean)) return Result::none("the means are equal");
+  if (!(low.mean < high.mean)) return NoResult{"the means are equal"};
   // Logarithm of the ratio of the lower curve to the higher one: falls from one mean to the other.
   const auto ratio = [&](double x) {
     const double a = (x - low.mean) / low.deviation, b = (x - high.mean) / high.deviation;
     return std::log(high.deviation / low.deviation) + 0.5 * (b * b - a * a);
   };
   if (!(ratio(low.mean) > 0.0) || !(ratio(high.mean) < 0.0))
-    return Result::none("the curves do not cross between the means");
+    return NoResult{"the curves do not cross between the means"};
   return rootBetween(ratio, low.mean, high.mean);
 }
 
 Expected<ContrastingGroups> contrastingGroups(std::span<const double> experts, std::span<const double> novices,
                                               Better better, const ContrastingGroupsOptions& options) {
-  using Result = Expected<ContrastingGroups>;
-  if (experts.empty()) return Result::none("there are no experts");
-  if (novices.empty()) return Result::none("there are no novices");
-  if (!allFinite(experts) || !allFinite(novices)) return Result::none("a value is not finite");
+  if (experts.empty()) return NoResult{"there are no experts"};
+  if (novices.empty()) return NoResult{"there are no novices"};
+  if (!allFinite(experts) || !allFinite(novices)) return NoResult{"a value is not finite"};
   std::vector<double> e(experts.begin(), experts.end()), n(novices.begin(), novices.end());
   if (options.logScale) {
     for (auto* group : {&e, &n}) {
       for (double& v : *group) {
-        if (!(v > 0.0)) return Result::none("a value is not positive and has no logarithm");
+        if (!(v > 0.0)) return NoResult{"a value is not positive and has no logarithm"};
         v = std::log(v);
       }
     }
   }
   const Expected<double> cut = cutOf(e, n, better);
-  if (!cut) return Result::none(cut.reason());
+  if (!cut) return NoResult{cut.reason()};
   const auto back = [&](double v) { return options.logScale ? std::exp(v) : v; };
   ContrastingGroups result;
   result.cut = back(*cut);
@@ -77,42 +74,37 @@ Expected<ContrastingGroups> contrastingGroups(std::span<const double> experts, s
   };
   result.falsePositives = judged(n, true);
   result.falseNegatives = judged(e, false);
-  BootstrapOptions resampling;
-  resampling.resamples = options.resamples;
-  resampling.seed = options.seed;
-  resampling.level = options.level;
   const auto b = bootstrap(
-      e, n, [&](std::span<const double> x, std::span<const double> y) { return cutOf(x, y, better); }, resampling);
+      e, n, [&](std::span<const double> x, std::span<const double> y) { return cutOf(x, y, better); }, options);
   result.seed = options.seed;
   if (b) {
     result.interval = Interval{back(b->interval.lower), back(b->interval.upper), options.level, b->interval.method};
     result.resamplesWithoutCut = b->without;
   } else {
-    result.interval = Expected<Interval>::none(b.reason());
+    result.interval = NoResult{b.reason()};
   }
   return result;
 }
 
 Expected<BorderlineRegression> borderlineRegression(std::span<const double> ratings, std::span<const double> scores,
                                                     double mark, Better better, double level) {
-  using Result = Expected<BorderlineRegression>;
-  if (ratings.size() != scores.size()) return Result::none("the two variables have different lengths");
-  if (ratings.size() < 4) return Result::none("fewer than four rated attempts");
+  if (ratings.size() != scores.size()) return NoResult{"the two variables have different lengths"};
+  if (ratings.size() < 4) return NoResult{"fewer than four rated attempts"};
   const std::vector<double> x(ratings.begin(), ratings.end());
   const std::vector<double> constant(x.size(), 1.0);
   const Expected<double> centre = mean(x);
-  if (!centre) return Result::none(centre.reason());
+  if (!centre) return NoResult{centre.reason()};
   const auto [least, most] = std::minmax_element(x.begin(), x.end());
-  if (*least == *most) return Result::none("all ratings are equal");
-  if (mark < *least || mark > *most) return Result::none("all ratings are on one side of the borderline mark");
+  if (*least == *most) return NoResult{"all ratings are equal"};
+  if (mark < *least || mark > *most) return NoResult{"all ratings are on one side of the borderline mark"};
   const Expected<LeastSquares> fit = leastSquares({constant, x}, scores);
-  if (!fit) return Result::none(fit.reason());
+  if (!fit) return NoResult{fit.reason()};
   BorderlineRegression result;
   result.rated = x.size();
   result.intercept = fit->coefficients[0];
   result.slope = fit->coefficients[1];
   if (!(better == Better::higher ? result.slope > 0.0 : result.slope < 0.0))
-    return Result::none("attempts with better ratings do not have better values");
+    return NoResult{"attempts with better ratings do not have better values"};
   result.cut = result.intercept + result.slope * mark;
   double squares = 0.0, total = 0.0;
   const double middle = *mean(scores);
@@ -130,11 +122,10 @@ Expected<BorderlineRegression> borderlineRegression(std::span<const double> rati
 }
 
 Expected<AngoffCut> angoffCut(const RatingTable& judged, double level) {
-  using Result = Expected<AngoffCut>;
-  if (judged.subjects < 2) return Result::none("fewer than two judges");
-  if (judged.raters < 1) return Result::none("no item");
+  if (judged.subjects < 2) return NoResult{"fewer than two judges"};
+  if (judged.raters < 1) return NoResult{"no item"};
   if (!std::all_of(judged.values.begin(), judged.values.end(), [](double p) { return p >= 0.0 && p <= 1.0; }))
-    return Result::none("a probability is outside of 0 to 1");
+    return NoResult{"a probability is outside of 0 to 1"};
   std::vector<double> marks;
   for (std::size_t judge = 0; judge < judged.subjects; ++judge) {
     double sum = 0.0;
@@ -146,8 +137,7 @@ Expected<AngoffCut> angoffCut(const RatingTable& judged, double level) {
   result.cut = *mean(marks);
   result.error = *standardDeviation(marks) / std::sqrt(n);
   // Sums of rounded probabilities differ in the last bits where the judges agree.
-  if (!(result.error > 1e-12 * static_cast<double>(judged.raters)))
-    return Result::none("all judges have the same mark");
+  if (!(result.error > 1e-12 * static_cast<double>(judged.raters))) return NoResult{"all judges have the same mark"};
   const double half = studentQuantile(0.5 + level / 2.0, n - 1.0) * result.error;
   result.interval = {result.cut - half, result.cut + half, level, "Student's t over the judges"};
   return result;

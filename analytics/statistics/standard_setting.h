@@ -8,6 +8,7 @@
 
 #include "analytics/statistics/expected.h"
 #include "analytics/statistics/reliability.h"
+#include "analytics/statistics/resampling.h"
 
 namespace calot::analytics {
 
@@ -18,17 +19,14 @@ struct NormalCurve {
   double mean = 0.0, deviation = 1.0;
 };
 
-/// Where the two densities cross between their means: the root there of
+/// Intersection of the two densities between their means: the root there of
 ///   ln(s2 / s1) + (x - m2)^2 / (2 s2^2) - (x - m1)^2 / (2 s1^2) = 0.
 /// Between the means the left side is monotone, so there is one root or none: no answer where one curve lies above the
 /// other all the way, for equal means, or for a deviation that is not positive.
 Expected<double> crossing(const NormalCurve& first, const NormalCurve& second);
 
-struct ContrastingGroupsOptions {
+struct ContrastingGroupsOptions : BootstrapOptions {
   bool logScale = false;  ///< curves of the logarithms (times); the cut is transformed back
-  double level = 0.95;
-  std::size_t resamples = 9999;
-  std::uint64_t seed = 1;
 };
 
 struct Misjudged {
@@ -42,7 +40,7 @@ struct ContrastingGroups {
   Misjudged falsePositives;  ///< novices who pass
   Misjudged falseNegatives;  ///< experts who fail
   /// Percentile bootstrap with groups resampled separately; wide for ten values per group.
-  Expected<Interval> interval = Expected<Interval>::none("not computed");
+  Expected<Interval> interval = NoResult{"not computed"};
   std::size_t resamplesWithoutCut = 0;  ///< when there is an interval
   std::uint64_t seed = 0;
 };

@@ -34,8 +34,7 @@ std::vector<double> ranked(std::span<const CensoredTime> group, double behind) {
 }  // namespace
 
 Expected<LogRank> logRank(std::span<const CensoredTime> x, std::span<const CensoredTime> y) {
-  using Result = Expected<LogRank>;
-  if (const std::string reason = objection(x, y); !reason.empty()) return Result::none(reason);
+  if (const std::string reason = objection(x, y); !reason.empty()) return NoResult{reason};
   struct Entry {
     double time;
     bool finished, inX;
@@ -69,8 +68,8 @@ Expected<LogRank> logRank(std::span<const CensoredTime> x, std::span<const Censo
     followedX -= leftX;
     first = next;
   }
-  if (!anyFinished) return Result::none("nobody finished");
-  if (!(result.variance > 0.0)) return Result::none("the groups are never followed together when someone finishes");
+  if (!anyFinished) return NoResult{"nobody finished"};
+  if (!(result.variance > 0.0)) return NoResult{"the groups are never followed together when someone finishes"};
   result.z = (result.observed - result.expected) / std::sqrt(result.variance);
   result.p = normalTwoSided(result.z);
   return result;
@@ -78,17 +77,16 @@ Expected<LogRank> logRank(std::span<const CensoredTime> x, std::span<const Censo
 
 Expected<WorstRank> worstRank(std::span<const CensoredTime> x, std::span<const CensoredTime> y, Hypothesis hypothesis,
                               double level) {
-  using Result = Expected<WorstRank>;
-  if (const std::string reason = objection(x, y); !reason.empty()) return Result::none(reason);
+  if (const std::string reason = objection(x, y); !reason.empty()) return NoResult{reason};
   double longest = 0.0;
   for (const auto group : {x, y}) {
     for (const CensoredTime& t : group) longest = std::max(longest, t.time);
   }
   const std::vector<double> a = ranked(x, 2.0 * longest), b = ranked(y, 2.0 * longest);
   const Expected<MannWhitney> test = mannWhitney(a, b);
-  if (!test) return Result::none(test.reason());
+  if (!test) return NoResult{test.reason()};
   const Expected<SuperiorityEstimate> effect = estimateSuperiority(a, b, hypothesis, level);
-  if (!effect) return Result::none(effect.reason());
+  if (!effect) return NoResult{effect.reason()};
   return WorstRank{*test, *effect};
 }
 
@@ -113,10 +111,9 @@ std::optional<double> crossingOfHalf(const std::vector<SurvivalStep>& steps,
 }  // namespace
 
 Expected<KaplanMeier> kaplanMeier(std::span<const CensoredTime> times, double level) {
-  using Result = Expected<KaplanMeier>;
-  if (times.empty()) return Result::none("the group is empty");
+  if (times.empty()) return NoResult{"the group is empty"};
   for (const CensoredTime& t : times) {
-    if (!(t.time > 0.0) || !std::isfinite(t.time)) return Result::none("a time is not positive");
+    if (!(t.time > 0.0) || !std::isfinite(t.time)) return NoResult{"a time is not positive"};
   }
   std::vector<CensoredTime> sorted(times.begin(), times.end());
   std::sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) { return a.time < b.time; });
@@ -139,7 +136,7 @@ Expected<KaplanMeier> kaplanMeier(std::span<const CensoredTime> times, double le
     }
     first = next;
   }
-  if (result.finished == 0) return Result::none("nobody finished");
+  if (result.finished == 0) return NoResult{"nobody finished"};
   const double z = normalQuantile(0.5 + level / 2.0);
   const auto limit = [&](std::size_t i, double sign) {
     const double s = result.steps[i].unfinished;

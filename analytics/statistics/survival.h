@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "analytics/statistics/effect_sizes.h"
 #include "analytics/statistics/expected.h"
 #include "analytics/statistics/standard_setting.h"
+#include "analytics/statistics/two_groups.h"
 
 namespace calot::analytics {
 

@@ -85,13 +85,69 @@ class Differences {
   std::vector<double> x_, y_;
 };
 
+/// Permutation distribution of the sum of the mid-ranks of one group of `n`, when every choice of n of the N pooled
+/// values is equally likely: exact with ties. Counted by dynamic programming over the pooled values (one value after
+/// the other is in the group or not): O(N n S) with S the largest sum in half ranks. Counts are exact integers while
+/// C(N, n) < 2^53 and carry a relative error below N * 2^-53 beyond, since all terms are positive.
+class RankSumDistribution {
+ public:
+  /// @param ranks of the pooled values (multiples of 1/2); @pre 0 < n < ranks.size().
+  RankSumDistribution(std::span<const double> ranks, std::size_t n)
+      : centre_(static_cast<long>(n * (ranks.size() + 1))) {
+    assert(n > 0 && n < ranks.size());
+    std::vector<std::size_t> half(ranks.size());
+    std::transform(ranks.begin(), ranks.end(), half.begin(),
+                   [](double r) { return static_cast<std::size_t>(std::lround(2.0 * r)); });
+    std::vector<std::size_t> largest = half;
+    std::sort(largest.rbegin(), largest.rend());
+    const std::size_t top =
+        std::accumulate(largest.begin(), largest.begin() + static_cast<std::ptrdiff_t>(n), std::size_t{0});
+
+    // ways[k][s]: choices of k of the values seen so far whose half ranks sum to s.
+    std::vector<std::vector<double>> ways(n + 1, std::vector<double>(top + 1, 0.0));
+    ways[0][0] = 1.0;
+    std::size_t seen = 0, reach = 0;
+    for (const std::size_t r : half) {
+      reach = std::min(reach + r, top);
+      ++seen;
+      for (std::size_t k = std::min(seen, n); k >= 1; --k) {
+        for (std::size_t s = reach; s >= r; --s) ways[k][s] += ways[k - 1][s - r];
+      }
+    }
+    count_ = std::move(ways[n]);
+    for (const double c : count_) total_ += c;
+  }
+
+  /// P(|S - E S| >= |sum - E S|): both tails as far out as the observed sum. The expected half-rank sum n (N + 1) is an
+  /// integer, so no rounding decides what is as far out.
+  [[nodiscard]] double asFarAs(double sum) const {
+    const long distance = std::labs(std::lround(2.0 * sum) - centre_);
+    if (distance == 0) return 1.0;
+    return std::min(1.0,
+                    between(0, centre_ - distance) + between(centre_ + distance, static_cast<long>(count_.size())));
+  }
+
+ private:
+  /// Probability of half-rank sums in [lower, upper].
+  [[nodiscard]] double between(long lower, long upper) const {
+    double sum = 0.0;
+    const long last = std::min(upper, static_cast<long>(count_.size()) - 1);
+    for (long s = std::max(lower, 0L); s <= last; ++s) sum += count_[static_cast<std::size_t>(s)];
+    return sum / total_;
+  }
+
+  long centre_;
+  std::vector<double> count_;  ///< by half-rank sum
+  double total_ = 0.0;
+};
+
 }  // namespace
 
 Expected<MannWhitney> mannWhitney(std::span<const double> x, std::span<const double> y, RankTest method) {
-  if (const std::string reason = twoGroupObjection(x, y); !reason.empty()) return Expected<MannWhitney>::none(reason);
+  if (const std::string reason = twoGroupObjection(x, y); !reason.empty()) return NoResult{reason};
   const Ranked r = ranked(x, y);
   const double nx = static_cast<double>(x.size()), ny = static_cast<double>(y.size()), n = nx + ny;
-  if (r.tieTerm == n * n * n - n) return Expected<MannWhitney>::none("all values are equal");
+  if (r.tieTerm == n * n * n - n) return NoResult{"all values are equal"};
   MannWhitney result;
   result.u = r.u;
   result.ties = r.tieTerm > 0.0;
@@ -140,14 +196,14 @@ std::size_t leastGroups(double p) {
 }
 
 Expected<Superiority> superiority(std::span<const double> x, std::span<const double> y) {
-  if (const std::string reason = twoGroupObjection(x, y); !reason.empty()) return Expected<Superiority>::none(reason);
+  if (const std::string reason = twoGroupObjection(x, y); !reason.empty()) return NoResult{reason};
   const double pairs = static_cast<double>(x.size()) * static_cast<double>(y.size());
   const double u = ranked(x, y).u;
   return Superiority{u / pairs, (2.0 * u - pairs) / pairs};
 }
 
 Expected<double> hodgesLehmann(std::span<const double> x, std::span<const double> y) {
-  if (const std::string reason = twoGroupObjection(x, y); !reason.empty()) return Expected<double>::none(reason);
+  if (const std::string reason = twoGroupObjection(x, y); !reason.empty()) return NoResult{reason};
   const Differences differences(x, y);
   const double upper = differences.at(differences.size() / 2);
   if (differences.size() % 2 == 1) return upper;
@@ -156,23 +212,15 @@ Expected<double> hodgesLehmann(std::span<const double> x, std::span<const double
 }
 
 const char* nameOf(ShiftMethod method) {
-  switch (method) {
-    case ShiftMethod::exact:
-      return "exact";
-    case ShiftMethod::conservative:
-      return "conservative";
-    case ShiftMethod::asymptotic:
-      return "asymptotic";
-  }
-  return "";
+  static constexpr const char* names[]{"exact", "conservative", "asymptotic"};
+  return names[static_cast<std::size_t>(method)];
 }
 
 Expected<ShiftInterval> hodgesLehmannInterval(std::span<const double> x, std::span<const double> y, double level) {
-  using Result = Expected<ShiftInterval>;
   assert(level > 0.0 && level < 1.0);
-  if (const std::string reason = twoGroupObjection(x, y); !reason.empty()) return Result::none(reason);
+  if (const std::string reason = twoGroupObjection(x, y); !reason.empty()) return NoResult{reason};
   const double n = static_cast<double>(x.size() + y.size()), ties = tieTerm(pooled(x, y));
-  if (ties == n * n * n - n) return Result::none("all values are equal");
+  if (ties == n * n * n - n) return NoResult{"all values are equal"};
   // Rank u of the difference that ends the interval, from below and from above.
   std::size_t u = 0;
   ShiftInterval result;
@@ -180,13 +228,13 @@ Expected<ShiftInterval> hodgesLehmannInterval(std::span<const double> x, std::sp
     // The distribution without ties, whether there are any or not: that makes the closed interval conservative.
     const RankSumQuantile quantile = rankSumQuantile(x.size(), y.size(), (1.0 - level) / 2.0);
     u = quantile.u;
-    if (u == 0) return Result::none("the groups are too small for an interval of this level");
+    if (u == 0) return NoResult{"the groups are too small for an interval of this level"};
     result.attained = 1.0 - 2.0 * quantile.below;
     result.method = ties > 0.0 ? ShiftMethod::conservative : ShiftMethod::exact;
   } else {
     const double nx = static_cast<double>(x.size()), ny = static_cast<double>(y.size());
     const double rank = nx * ny / 2.0 - normalQuantile(0.5 + level / 2.0) * std::sqrt(nx * ny * (n + 1.0) / 12.0);
-    if (rank < 1.0) return Result::none("the groups are too small for an interval of this level");
+    if (rank < 1.0) return NoResult{"the groups are too small for an interval of this level"};
     u = static_cast<std::size_t>(rank);
     result.attained = level;
     result.method = ShiftMethod::asymptotic;
@@ -211,53 +259,6 @@ std::vector<double> midRanks(std::span<const double> values) {
     first = last + 1;
   }
   return ranks;
-}
-
-RankSumDistribution::RankSumDistribution(std::span<const double> ranks, std::size_t n) {
-  assert(n > 0 && n < ranks.size());
-  std::vector<std::size_t> half(ranks.size());
-  std::transform(ranks.begin(), ranks.end(), half.begin(),
-                 [](double r) { return static_cast<std::size_t>(std::lround(2.0 * r)); });
-  std::vector<std::size_t> largest = half;
-  std::sort(largest.rbegin(), largest.rend());
-  const std::size_t top =
-      std::accumulate(largest.begin(), largest.begin() + static_cast<std::ptrdiff_t>(n), std::size_t{0});
-
-  // ways[k][s]: choices of k of the values seen so far whose half ranks sum to s.
-  std::vector<std::vector<double>> ways(n + 1, std::vector<double>(top + 1, 0.0));
-  ways[0][0] = 1.0;
-  std::size_t seen = 0, reach = 0;
-  for (const std::size_t r : half) {
-    reach = std::min(reach + r, top);
-    ++seen;
-    for (std::size_t k = std::min(seen, n); k >= 1; --k) {
-      for (std::size_t s = reach; s >= r; --s) ways[k][s] += ways[k - 1][s - r];
-    }
-  }
-  count_ = std::move(ways[n]);
-  for (const double c : count_) total_ += c;
-  expected_ = static_cast<double>(n) * static_cast<double>(ranks.size() + 1) / 2.0;
-}
-
-double RankSumDistribution::between(long lower, long upper) const {
-  double sum = 0.0;
-  const long last = std::min(upper, static_cast<long>(count_.size()) - 1);
-  for (long s = std::max(lower, 0L); s <= last; ++s) sum += count_[static_cast<std::size_t>(s)];
-  return sum / total_;
-}
-
-double RankSumDistribution::atMost(double sum) const { return between(0, std::lround(2.0 * sum)); }
-
-double RankSumDistribution::atLeast(double sum) const {
-  return between(std::lround(2.0 * sum), static_cast<long>(count_.size()));
-}
-
-double RankSumDistribution::asFarAs(double sum) const {
-  // The expected half-rank sum n (N + 1) is an integer, so no rounding decides what is as far out.
-  const long centre = std::lround(2.0 * expected_);
-  const long distance = std::labs(std::lround(2.0 * sum) - centre);
-  if (distance == 0) return 1.0;
-  return std::min(1.0, between(0, centre - distance) + between(centre + distance, static_cast<long>(count_.size())));
 }
 
 namespace {
@@ -303,11 +304,10 @@ RankSumQuantile rankSumQuantile(std::size_t nx, std::size_t ny, double p) {
 }
 
 Expected<StratifiedRankSum> stratifiedRankSum(std::span<const Stratum> strata) {
-  using Result = Expected<StratifiedRankSum>;
   StratifiedRankSum result;
   double sum = 0.0, variance = 0.0, wins = 0.0, weights = 0.0;
   for (const Stratum& s : strata) {
-    if (!allFinite(s.x) || !allFinite(s.y)) return Result::none("a value is not finite");
+    if (!allFinite(s.x) || !allFinite(s.y)) return NoResult{"a value is not finite"};
     const double nx = static_cast<double>(s.x.size()), ny = static_cast<double>(s.y.size()), n = nx + ny;
     const double ties = tieTerm(pooled(s.x, s.y));
     if (s.x.empty() || s.y.empty() || ties == n * n * n - n) {
@@ -321,10 +321,67 @@ Expected<StratifiedRankSum> stratifiedRankSum(std::span<const Stratum> strata) {
     wins += weight * nx * ny * area;
     weights += weight * nx * ny;
   }
-  if (result.strata == 0) return Result::none("no stratum holds both groups and values that differ");
+  if (result.strata == 0) return NoResult{"no stratum holds both groups and values that differ"};
   result.z = sum / std::sqrt(variance);
   result.p = normalTwoSided(result.z);
   result.a = wins / weights;
+  return result;
+}
+
+Expected<HedgesG> hedgesG(std::span<const double> x, std::span<const double> y, double level) {
+  if (const std::string reason = twoGroupObjection(x, y); !reason.empty()) return NoResult{reason};
+  if (x.size() < 2 || y.size() < 2) return NoResult{"a group of one value has no spread"};
+  const double nx = static_cast<double>(x.size()), ny = static_cast<double>(y.size()), m = nx + ny - 2.0;
+  const double sx = *standardDeviation(x), sy = *standardDeviation(y);
+  const double spread = std::sqrt(((nx - 1.0) * sx * sx + (ny - 1.0) * sy * sy) / m);
+  if (!(spread > 0.0)) return NoResult{"no spread within the groups"};
+  HedgesG result;
+  result.d = (*mean(x) - *mean(y)) / spread;
+  // Logarithms: Gamma itself overflows beyond 340 values.
+  result.j = std::exp(std::lgamma(m / 2.0) - std::lgamma((m - 1.0) / 2.0)) / std::sqrt(m / 2.0);
+  result.g = result.j * result.d;
+  const double scale = std::sqrt(nx * ny / (nx + ny)), t = result.d * scale, tail = (1.0 - level) / 2.0;
+  const double lower = noncentralStudentParameter(t, m, 1.0 - tail), upper = noncentralStudentParameter(t, m, tail);
+  if (std::isfinite(lower) && std::isfinite(upper)) {
+    result.interval = Interval{result.j * lower / scale, result.j * upper / scale, level, "J times non-central t"};
+  } else {
+    result.interval = NoResult{"the effect is too large for the non-central t distribution"};
+  }
+  return result;
+}
+
+namespace {
+
+/// [lower, upper] of Newcombe's method 5.
+Interval scoreInterval(double a, double nx, double ny, double z, double level) {
+  const double extra = (nx + ny) / 2.0 - 1.0;
+  const auto excess = [&](double t) {
+    const double spread = t * (1.0 - t) * (1.0 + extra * ((1.0 - t) / (2.0 - t) + t / (1.0 + t))) / (nx * ny);
+    return (a - t) * (a - t) - z * z * spread;
+  };
+  // Positive outside of the interval, negative inside; zero at A itself where A is 0 or 1, hence the step inwards.
+  constexpr double step = 1e-9;
+  Interval result{0.0, 1.0, level, "score"};
+  if (a > 0.0) result.lower = rootBetween(excess, 0.0, std::min(a, 1.0 - step));
+  if (a < 1.0) result.upper = rootBetween(excess, std::max(a, step), 1.0);
+  return result;
+}
+
+}  // namespace
+
+Expected<SuperiorityEstimate> estimateSuperiority(std::span<const double> x, std::span<const double> y,
+                                                  Hypothesis hypothesis, double level) {
+  assert(level > 0.0 && level < 1.0);
+  if (hypothesis == Hypothesis::firstSmaller) std::swap(x, y);
+  const Expected<Superiority> value = superiority(x, y);
+  if (!value) return NoResult{hypothesis == Hypothesis::firstSmaller ? twoGroupObjection(y, x) : value.reason()};
+  const double n = static_cast<double>(x.size() + y.size());
+  if (tieTerm(pooled(x, y)) == n * n * n - n) return NoResult{"all values are equal"};
+  SuperiorityEstimate result;
+  result.value = *value;
+  const double a = value->a, z = normalQuantile(0.5 + level / 2.0);
+  result.a = scoreInterval(a, static_cast<double>(x.size()), static_cast<double>(y.size()), z, level);
+  result.delta = {2.0 * result.a.lower - 1.0, 2.0 * result.a.upper - 1.0, level, result.a.method};
   return result;
 }
 

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Two independent groups x and y: rank test, effect size, shift. All from one statistic, U = #{x > y} + #{x = y} / 2
-// (R's W). One value per participant: the caller's duty.
+// (R's W); and Hedges' g. One value per participant: the caller's duty.
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -75,28 +76,6 @@ struct ShiftInterval {
 Expected<ShiftInterval> hodgesLehmannInterval(std::span<const double> x, std::span<const double> y,
                                               double level = 0.95);
 
-/// Permutation distribution of the sum of the mid-ranks of one group of `n`, when every choice of n of the N pooled
-/// values is equally likely: exact with ties. Counted by dynamic programming over the pooled values (one value after
-/// the other is in the group or not): O(N n S) with S the largest sum in half ranks. Counts are exact integers while
-/// C(N, n) < 2^53 and carry a relative error below N * 2^-53 beyond, since all terms are positive.
-class RankSumDistribution {
- public:
-  /// @param midRanks of the pooled values (multiples of 1/2); @pre 0 < n < midRanks.size().
-  RankSumDistribution(std::span<const double> midRanks, std::size_t n);
-
-  [[nodiscard]] double atMost(double sum) const;   ///< P(S <= sum)
-  [[nodiscard]] double atLeast(double sum) const;  ///< P(S >= sum)
-  [[nodiscard]] double expected() const { return expected_; }
-  /// P(|S - E S| >= |sum - E S|): both tails as far out as the observed sum.
-  [[nodiscard]] double asFarAs(double sum) const;
-
- private:
-  [[nodiscard]] double between(long lower, long upper) const;  ///< probability of half-rank sums in [lower, upper]
-  std::vector<double> count_;                                  ///< by half-rank sum
-  double total_ = 0.0;
-  double expected_ = 0.0;
-};
-
 /// Mid-ranks (1-based; tied values share the mean of their ranks), in the order of the values. @pre all finite.
 std::vector<double> midRanks(std::span<const double> values);
 
@@ -129,5 +108,34 @@ struct StratifiedRankSum {
 /// mid-ranks with the variance corrected for ties; no continuity correction. No answer when no stratum compares, or
 /// for values not finite.
 Expected<StratifiedRankSum> stratifiedRankSum(std::span<const Stratum> strata);
+
+struct HedgesG {
+  double g = 0.0;  ///< J d
+  double d = 0.0;  ///< Cohen's: (mx - my) / s, s^2 the pooled variance with nx + ny - 2
+  double j = 1.0;  ///< small-sample correction
+  /// "J times non-central t": the non-centralities at which t = d sqrt(nx ny / (nx + ny)) is the upper and the lower
+  /// quantile, converted back to d, times J. Assumes normal groups of one variance.
+  Expected<Interval> interval = NoResult{"not computed"};
+};
+
+/// Hedges' g (Hedges 1981, J. Educ. Stat. 6:107): J = Gamma(m / 2) / (sqrt(m / 2) Gamma((m - 1) / 2)), m = nx + ny - 2.
+/// No answer for fewer than two values in a group or when there is no spread within both. @pre 0 < level < 1.
+Expected<HedgesG> hedgesG(std::span<const double> x, std::span<const double> y, double level = 0.95);
+
+/// Hypothesis stated before the data were seen. An area below one half speaks against the hypothesis and stays below.
+enum class Hypothesis : std::uint8_t { firstLarger, firstSmaller };
+
+struct SuperiorityEstimate {
+  Superiority value;  ///< in the direction of the hypothesis
+  Interval a;
+  Interval delta;  ///< the same, times 2 less 1
+};
+
+/// A of the hypothesis: P(X > Y) + P(X = Y) / 2 for firstLarger, P(X < Y) + P(X = Y) / 2 for firstSmaller. Its score
+/// interval: solutions A' of |A - A'| = z s(A'), s^2 = A' (1 - A') (1 + n* ((1 - A') / (2 - A') + A' / (1 + A'))) /
+/// (nx ny), n* = (nx + ny) / 2 - 1 (Newcombe 2006, Stat. Med. 25:559, method 5), which exist at A = 0 and A = 1, too.
+/// No answer for an empty group or when all values are equal. @pre 0 < level < 1.
+Expected<SuperiorityEstimate> estimateSuperiority(std::span<const double> x, std::span<const double> y,
+                                                  Hypothesis hypothesis, double level = 0.95);
 
 }  // namespace calot::analytics

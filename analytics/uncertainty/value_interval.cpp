@@ -8,7 +8,7 @@
 #include <cmath>
 #include <utility>
 
-#include "analytics/uncertainty/scene_variants.h"
+#include "analytics/uncertainty/uncertainty.h"
 
 namespace calot::analytics {
 namespace {

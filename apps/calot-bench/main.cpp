@@ -26,7 +26,7 @@ void checkFilter(std::string filter) {
     const std::regex expression(filter, std::regex::extended);
   } catch (const std::regex_error&) {
     throw calot::Error(calot::ErrorKind::invalid,
-                       fmt::format("--benchmark_filter: '{}' is no regular expression", filter));
+                       fmt::format("--benchmark_filter: '{}' is not a regular expression", filter));
   }
 }
 
@@ -68,7 +68,7 @@ int run(int argc, char** argv) {
                        fmt::format("{}: no option of Google Benchmark's, or no value of it; try --help", theirs[1]));
   }
   calot::bench::registerAll();
-  // Where no name fits the filter, the library has said so.
+  // The library has reported that no name fits the filter.
   if (benchmark::RunSpecifiedBenchmarks() == 0) return static_cast<int>(calot::apps::ExitCode::usage);
   if (!output.empty()) calot::recorder::writeText(output, calot::bench::figures().json(), force);
   return 0;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "apps/calot-dashboard/assess_program.h"
 
-#include "apps/common/exit_code.h"
+#include "apps/common/program.h"
 
 namespace calot::apps {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "gui/dashboard/assess_program.h"
+#include "gui/dashboard/import_queue.h"
 
 namespace calot::apps {
 

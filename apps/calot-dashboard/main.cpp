@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // calot-dashboard: options, then the window.
 #include <algorithm>
+#include <array>
 #include <CLI/CLI.hpp>
 #include <filesystem>
+#include <fstream>
 #include <memory>
-#include <optional>
 #include <QApplication>
 #include <QSize>
+#include <QStandardPaths>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "apps/calot-dashboard/assess_program.h"
-#include "apps/calot-dashboard/opened_recording.h"
 #include "apps/common/help_json.h"
 #include "apps/common/program.h"
 #include "apps/window/window_start.h"
@@ -23,10 +25,35 @@
 #include "recorder/compliance_cache.h"
 #include "recorder/kept/engine_folders.h"
 #include "recorder/prepared_scene.h"
+#include "recorder/recording/probe.h"
+#include "recorder/recording/reader.h"
 
 namespace {
 
 constexpr const char* programName = "calot-dashboard";
+
+namespace fs = std::filesystem;
+
+/// False where the file does not begin as a recording does: then it may be a cohort.
+bool isRecording(const fs::path& file) {
+  constexpr std::array<char, 8> signature{'\x89', 'H', 'D', 'F', '\r', '\n', '\x1a', '\n'};
+  std::array<char, 8> head{};
+  std::ifstream in(file, std::ios::binary);
+  return in.read(head.data(), head.size()) && head == signature;
+}
+
+/// The cohort of recordings that are opened by themselves, as a file manager hands them over: `calot/opened.db` in the
+/// user's data folder, which is made where it is missing. @throws Error (failure) where there can be none
+fs::path openedCohort() {
+  const fs::path folder =
+      fs::path(QStandardPaths::writableLocation(QStandardPaths::GenericDataLocation).toStdString()) / "calot";
+  std::error_code fault;
+  fs::create_directories(folder, fault);
+  if (fault)
+    throw calot::Error(calot::ErrorKind::failure, calot::Where{folder.string()},
+                       "the folder cannot be made: " + fault.message());
+  return folder / "opened.db";
+}
 
 int run(int argc, char** argv) {
   CLI::App options{"Shows the attempts and checkpoints of a cohort database, or a recording.", programName};
@@ -50,10 +77,14 @@ int run(int argc, char** argv) {
   }
 
   calot::recorder::useComplianceCache(calot::recorder::userCacheFolder());
-  // A file that cannot be opened is told before there is a window, and needs none.
+  // A file that cannot be opened is reported before there is a window, and needs none.
   std::shared_ptr<const calot::gui::CohortDocument> document;
-  std::optional<calot::apps::OpenedRecording> recording;
-  if (given->count() > 0) recording = calot::apps::openedRecording(file);
+  const bool recording = given->count() > 0 && isRecording(file);
+  std::string attempt;  // uuid of the recording's
+  if (recording) {
+    calot::recorder::probe(file);
+    attempt = calot::recorder::Recording(file).header().attempt;
+  }
   bool older = false;  // of an older schema, which the window brings up to date
   if (given->count() > 0 && !recording) {
     try {
@@ -77,15 +108,15 @@ int run(int argc, char** argv) {
                                                 : calot::gui::theme::choiceOf(QString::fromStdString(look.colours)),
                            look.type == 0 ? calot::gui::settings::type() : look.type);
   const calot::recorder::ProgramFiles files = calot::recorder::ProgramFiles::ofThisProgram();
-  const std::vector<std::filesystem::path> assets = files.assetRoots();
+  const std::vector<fs::path> assets = files.assetRoots();
   calot::recorder::useEngines(calot::recorder::userEnginePlaces(files.programs(), assets));
   calot::gui::DashboardWindow window(calot::apps::assessProgram(), assets);
   if (document) window.setDocument(document);
   if (!asked.isNull()) window.resize(asked);
   window.show();
   if (older) window.openDatabase(QString::fromStdString(file));
-  if (recording && window.createDatabase(QString::fromStdString(calot::apps::openedCohort().string())))
-    window.showRecording(QString::fromStdString(recording->file.string()), QString::fromStdString(recording->attempt));
+  if (recording && window.createDatabase(QString::fromStdString(openedCohort().string())))
+    window.showRecording(QString::fromStdString(fs::absolute(file).string()), QString::fromStdString(attempt));
   if (!pictures.empty()) {
     window.savePictures(QString::fromLocal8Bit(pictures.c_str()));
     return 0;

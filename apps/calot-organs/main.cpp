@@ -9,9 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/calot-organs/fat_shape.h"
 #include "apps/calot-organs/organ_shapes.h"
-#include "apps/calot-organs/vessel_paths.h"
 #include "apps/common/help_json.h"
 #include "apps/common/program.h"
 #include "recorder/base/errors.h"

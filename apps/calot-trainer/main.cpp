@@ -6,24 +6,26 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <QApplication>
+#include <QDeadlineTimer>
 #include <QTimer>
 #include <string>
 #include <utility>
 
 #include "analytics/cohort/cohort_database.h"
-#include "apps/calot-trainer/options_input.h"
-#include "apps/calot-trainer/pictures.h"
 #include "apps/calot/environment.h"
 #include "apps/calot/source_options.h"
 #include "apps/common/help_json.h"
 #include "apps/common/program.h"
 #include "apps/window/window_start.h"
 #include "gui/attempt/theme.h"
-#include "gui/trainer/attempt_input.h"
+#include "gui/trainer/end_page.h"
+#include "gui/trainer/operation_view.h"
 #include "gui/trainer/trainer_window.h"
+#include "gui/trainer/training_session.h"
 #include "gui/trainer/voice.h"
 #include "recorder/base/dates.h"
 #include "recorder/base/errors.h"
@@ -94,6 +96,23 @@ void add(CLI::App& app, Options& o) {
   app.add_option("--pictures", o.pictures, "Write a PNG of each page into this folder, and end");
 }
 
+/// A device of the command line, or a performer to be watched, as the trainer's source. Each attempt opens it again.
+class OptionsInput final : public gui::AttemptInput {
+ public:
+  /// @param seed of a performer
+  OptionsInput(SourceOptions options, std::uint64_t seed) : options_(std::move(options)), seed_(seed) {}
+
+  /// @throws Error as makeSource
+  std::unique_ptr<recorder::SampleSource> open(const SceneDescription& scene) override {
+    return makeSource(options_, scene, seed_);
+  }
+  void drive(recorder::SampleSource& source, recorder::RunSettings& run) override { driveDevice(source, run); }
+
+ private:
+  SourceOptions options_;
+  std::uint64_t seed_;
+};
+
 /// Options for mouse and keyboard.
 recorder::DeviceSourceSettings mouseSettings(const Options& o, recorder::Mode mode) {
   const std::string& file = o.source.device.calibration;
@@ -111,7 +130,7 @@ recorder::DeviceSourceSettings mouseSettings(const Options& o, recorder::Mode mo
   return settings;
 }
 
-/// A cohort that cannot be opened is told before there is a window; one that is not there is made when it is needed.
+/// A cohort that cannot be opened is reported before there is a window; a missing one is made when it is needed.
 std::filesystem::path cohortOf(const std::string& cohort) {
   if (cohort.empty()) return {};
   std::error_code ignored;
@@ -122,14 +141,7 @@ std::filesystem::path cohortOf(const std::string& cohort) {
   return cohort;
 }
 
-/// A skilled performer, to be watched.
-std::shared_ptr<gui::AttemptInput> demonstrationOf(const Options& o) {
-  SourceOptions performer;
-  performer.performer = "skilled";
-  return std::make_shared<OptionsInput>(performer, o.seed);
-}
-
-/// Everything that can be wrong is told here, before there is a window.
+/// Every fault of the command line is reported here, before there is a window.
 gui::TrainerSetup setUp(const Options& o, const std::optional<recorder::LoadedScene>& scene) {
   requireFolder(o.folder, "recordings");
   if (!o.pictures.empty()) requireFolder(o.pictures, "pictures");
@@ -144,7 +156,9 @@ gui::TrainerSetup setUp(const Options& o, const std::optional<recorder::LoadedSc
   attempt.seed = o.seed;
   setup.settings.folder = o.folder;
   setup.cohort = cohortOf(o.cohort);
-  setup.demonstration = demonstrationOf(o);
+  SourceOptions performer;
+  performer.performer = "skilled";
+  setup.demonstration = std::make_shared<OptionsInput>(std::move(performer), o.seed);
   setup.settings.threads = o.threads;
   setup.settings.makeBroadPhase = broadPhaseOf(o.broadPhase);
   SourceOptions who = o.source;
@@ -165,8 +179,8 @@ gui::TrainerSetup setUp(const Options& o, const std::optional<recorder::LoadedSc
     setup.input = std::make_shared<gui::MouseAttemptInput>(setup.mouse, mouseSettings(o, attempt.mode), addScope);
   } else {
     auto input = std::make_shared<OptionsInput>(who, o.seed);
-    // A performer needs a scene; a device is there or not whatever the scene.
-    if (scene || who.performer.empty()) input->check(scene ? scene->description : SceneDescription{});
+    // Its faults are reported now. A performer needs a scene; a device is there or not whatever the scene.
+    if (scene || who.performer.empty()) static_cast<void>(input->open(scene ? scene->description : SceneDescription{}));
     setup.input = std::move(input);
   }
   return setup;
@@ -176,14 +190,61 @@ std::optional<recorder::LoadedScene> sceneOf(const std::string& name) {
   if (name.empty()) return std::nullopt;
   recorder::LoadedScene scene = recorder::loadScene(recorder::findScene(name, assetFolders()));
   for (const std::string& warning : scene.warnings) fmt::print(stderr, "calot-trainer: warning: {}\n", warning);
-  static_cast<void>(recorder::prepareScene(scene.assets, Where{"scene " + name}));  // a fault is told before a window
+  static_cast<void>(recorder::prepareScene(scene.assets, Where{"scene " + name}));  // faults before a window
   return scene;
+}
+
+/// Runs the window until `there`, or until `seconds` are over. @returns there()
+bool waitFor(const std::function<bool()>& there, int seconds) {
+  const QDeadlineTimer limit(1000LL * seconds);
+  while (!there() && !limit.hasExpired()) QApplication::processEvents(QEventLoop::WaitForMoreEvents, 20);
+  return there();
+}
+
+/// Writes a picture of each page into a folder: greeting.png and, with a scene, controls.png, running.png, paused.png
+/// (after the first mistake, or a minute) and end.png. Lives in real time; what it records lies in the setup's folder.
+/// @throws Error (failure) where nothing comes on the screen, or a picture cannot be written
+void takePictures(gui::TrainerWindow& window, std::optional<recorder::LoadedScene> scene, const std::string& folder) {
+  const auto save = [&](const char* name) {
+    window.refresh();
+    window.savePicture(QString::fromStdString(folder + "/" + name + ".png"));
+  };
+  const auto wanted = [](bool there, const char* what) {
+    if (!there) throw Error(ErrorKind::failure, std::string("--pictures: ") + what);
+  };
+  window.chooseScene();
+  waitFor([] { return false; }, 1);  // the history is being read
+  save("greeting");
+  if (!scene) return;
+  const auto status = [&] { return window.session()->status(); };
+  const auto runs = [&] {
+    const quint64 shown = window.view()->shown();
+    return waitFor([&] { return status().figures.time > 4.0 && window.view()->shown() > shown + 10; }, 240);
+  };
+  window.begin(*scene, gui::TrainerWindow::Purpose::controls);
+  wanted(runs(), "nothing is running");
+  save("controls");
+  window.begin(std::move(*scene));
+  wanted(runs(), "nothing is running");
+  save("running");
+  waitFor([&] { return !status().figures.mistakes->empty(); }, 60);
+  waitFor([] { return false; }, 1);  // what comes of it
+  if (window.session()->pause()) {
+    waitFor([] { return false; }, 1);  // the last pictures are still being drawn
+    save("paused");
+    window.session()->resume();
+  }
+  window.session()->finish();
+  wanted(waitFor([&] { return status().stage == gui::Stage::ended; }, 30), "the attempt does not end");
+  window.refresh();
+  waitFor([&] { return window.endPage()->replay().isOpen() && window.endPage()->settled(); }, 240);
+  save("end");
 }
 
 gui::TrainerWindow* shown = nullptr;
 QtMessageHandler usualMessages = nullptr;
 
-/// Where the display goes away, Qt says so and calls exit() in the middle of its work, beside threads that draw, record
+/// If the display goes away, Qt says so and calls exit() in the middle of its work, beside threads that draw, record
 /// and simulate. What runs ends first, so that its recording is whole; what is left is not worth being taken apart.
 void onMessage(QtMsgType type, const QMessageLogContext& context, const QString& message) {
   if (shown == nullptr || !message.contains("connection broke")) return usualMessages(type, context, message);

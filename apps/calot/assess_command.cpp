@@ -1,27 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
-#include <iostream>
-#include <memory>
-#include <nlohmann/json.hpp>
-#include <optional>
 
 #include "analytics/assess.h"
 #include "analytics/checkpoints/motion.h"
 #include "analytics/cohort_files.h"
 #include "analytics/regrade.h"
-#include "analytics/share.h"
 #include "analytics/uncertainty/uncertainty.h"
-#include "apps/calot/commands.h"
-#include "apps/calot/environment.h"
-#include "apps/calot/key_fault.h"
-#include "apps/calot/motion_import.h"
+#include "apps/calot/command.h"
+#include "apps/calot/import_command.h"
 #include "apps/calot/replay_report.h"
-#include "apps/calot/results.h"
-#include "apps/calot/value_report.h"
-#include "recorder/base/errors.h"
 #include "recorder/recording/probe.h"
 #include "recorder/replay.h"
 
@@ -163,7 +151,7 @@ void removeVerified(std::vector<std::string>& files, const analytics::CohortData
     fmt::print(stderr, "calot: {} of {} recordings were verified by an earlier run\n", count - files.size(), count);
 }
 
-int assess(const AssessOptions& o) {
+ExitCode assess(const AssessOptions& o) {
   checkStored(o.cohort, o.cutoff);
   std::vector<std::string> files = filesOf(o);
   const bool everyValue = files.size() == 1 || o.cohort.empty();
@@ -193,15 +181,14 @@ int assess(const AssessOptions& o) {
     output.add(judged.report, stored);
     progress.show(output.count(), files.size());
   });
-  return static_cast<int>(output.end(database ? &*database : nullptr));
+  return output.end(database ? &*database : nullptr);
 }
 
 }  // namespace
 
 void addAssess(CLI::App& app, Run& run) {
-  auto o = std::make_shared<AssessOptions>();
-  CLI::App* command =
-      app.add_subcommand("assess", "Re-simulates recordings, computes their checkpoints and stores them in a cohort.");
+  const auto [command, o] = addCommand(
+      app, run, "assess", "Re-simulates recordings, computes their checkpoints and stores them in a cohort.", assess);
   command->add_option("recordings", o->files, "recordings, or folders that hold them")->required();
   addStoring(*command, o->cohort, o->cutoff);
   addMetrics(*command, o->metrics);
@@ -210,9 +197,7 @@ void addAssess(CLI::App& app, Run& run) {
                    "assess one share alone: 3/8 is the third of eight; recordings that the cohort holds verified are "
                    "left out, so that a run that was cut short goes on")
       ->needs("--cohort");
-  command->add_option("--jobs", o->jobs, "recordings at a time; 0: one a processor")
-      ->check(CLI::Range(0U, 64U))
-      ->capture_default_str();
+  addThreads(*command, o->jobs, "recordings at a time; 0: one a processor", "--jobs");
   command
       ->add_flag("--uncertainty", o->uncertainty,
                  "stores an interval with each value: runs the attempt again in smaller steps, with a finer mesh and "
@@ -226,7 +211,6 @@ void addAssess(CLI::App& app, Run& run) {
   command->add_flag("--apart", o->apart,
                     "re-simulate in confined programs, as recordings of other simulation versions are");
   command->add_flag("--json", o->json, "print the result as JSON");
-  command->callback([o, &run] { run = [o] { return assess(*o); }; });
 }
 
 }  // namespace calot::apps

@@ -1,24 +1,88 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// calot attempt: what a person decides about an attempt.
-#include <fmt/format.h>
-#include <fmt/ranges.h>
+// calot attempt: the attempts of a cohort, and decisions of people about them.
 
-#include <iostream>
-#include <memory>
-#include <nlohmann/json.hpp>
-#include <string>
-#include <vector>
+#include <algorithm>
 
 #include "analytics/cohort/cohort_database.h"
-#include "apps/calot/cohort_lists.h"
-#include "apps/calot/commands.h"
-#include "apps/calot/results.h"
-#include "apps/calot/wrong_word.h"
-#include "apps/common/exit_code.h"
-#include "recorder/base/errors.h"
+#include "apps/calot/command.h"
 
 namespace calot::apps {
 namespace {
+
+using Access = analytics::CohortDatabase::Access;
+using analytics::AttemptRow;
+
+struct AttemptFilter {
+  std::string cohort, participant, group, scene, tag;
+  bool all = false, json = false;
+};
+
+/// Filter of the rows.
+bool isAsked(const AttemptRow& a, const AttemptFilter& o) {
+  return (o.participant.empty() || a.participant == o.participant) && (o.group.empty() || a.group == o.group) &&
+         (o.scene.empty() || a.scene == o.scene) &&
+         (o.tag.empty() || std::find(a.tags.begin(), a.tags.end(), o.tag) != a.tags.end()) && (o.all || !a.excluded);
+}
+
+std::string whoOf(const AttemptRow& a) { return a.participant.empty() ? a.profile : a.participant; }
+
+Json jsonOf(const analytics::Fields& fields) {
+  Json object;
+  for (const auto& [name, value] : fields) {
+    Json& member = object[name];
+    std::visit(
+        [&](const auto& v) {
+          if constexpr (!std::is_same_v<std::remove_cvref_t<decltype(v)>, std::monostate>) member = v;
+        },
+        value);
+  }
+  return object;
+}
+
+/// Beginnings of the uuids, as long as it takes to distinguish all of the database: what other commands accept.
+std::size_t distinctLength(const std::vector<AttemptRow>& rows) {
+  std::vector<std::string> uuids;
+  for (const AttemptRow& a : rows) uuids.push_back(a.uuid);
+  std::sort(uuids.begin(), uuids.end());
+  std::size_t length = 8;
+  for (std::size_t i = 1; i < uuids.size(); ++i) {
+    const std::string &x = uuids[i - 1], &y = uuids[i];
+    const auto differs = std::mismatch(x.begin(), x.end(), y.begin(), y.end());
+    length = std::max(length, static_cast<std::size_t>(differs.first - x.begin()) + 1);
+  }
+  return length;
+}
+
+void listAttempts(const AttemptFilter& o) {
+  const std::vector<AttemptRow> rows = analytics::CohortDatabase(o.cohort, Access::read).listAttempts();
+  const std::size_t length = distinctLength(rows);
+  analytics::ReportTable table = analytics::tableOf(
+      "", {"=attempt", "=who", "=group", "=scene", "=day (UTC)", "seconds", "=outcome", "=verdict", "=tags"});
+  std::string notes;
+  std::size_t synthetic = 0;
+  Json list = Json::array();
+  for (const AttemptRow& a : rows) {
+    if (!isAsked(a, o)) continue;
+    list.push_back(jsonOf(fieldsOf(a)));
+    const std::string beginning = a.uuid.substr(0, length);
+    table.rows.push_back({beginning, whoOf(a), a.group, a.scene, a.startUtc.substr(0, 10),
+                          fmt::format("{:.1f}", static_cast<double>(a.steps) * a.stepSeconds), wordFor(a.outcome),
+                          nameOf(a.verification.verdict), fmt::format("{}", fmt::join(a.tags, ", "))});
+    if (a.excluded) notes += fmt::format("{} is excluded: {}\n", beginning, a.exclusionReason);
+    synthetic += a.synthetic ? 1 : 0;
+  }
+  if (o.json) {
+    printResult("attempt-list", {{"attempts", list}});
+    return;
+  }
+  if (!list.empty()) table.print(std::cout, terminalColumns());
+  std::cout << notes;
+  if (synthetic > 0) std::cout << fmt::format("{} of them by performers (synthetic)\n", synthetic);
+  const std::size_t left = rows.size() - list.size();
+  std::cout << fmt::format(
+      "{}: {} attempts{}\n", o.cohort, list.size(),
+      left > 0 ? fmt::format(", {} not listed{}", left, o.all ? "" : " (--all: excluded, too)") : "");
+}
 
 struct AttemptOptions {
   std::string attempt, cohort, reason, by, tag;
@@ -26,31 +90,20 @@ struct AttemptOptions {
   bool json = false;
 };
 
-void addDecision(CLI::App& parent, Run& run, bool exclude) {
-  const auto o = std::make_shared<AttemptOptions>();
-  CLI::App* command = exclude ? parent.add_subcommand("exclude", "Keep an attempt out of studies and norms")
-                              : parent.add_subcommand("include", "Take an exclusion back");
-  command->add_option("attempt", o->attempt, "Its uuid, or what it begins with")->required();
-  command->add_option("--cohort", o->cohort, "Cohort database")->required();
-  command->add_option("--reason", o->reason, "Why")->required();
-  command->add_option("--by", o->by, "Who decides")->required();
-  command->callback([o, exclude, &run] {
-    run = [o, exclude] {
-      analytics::CohortDatabase database(o->cohort, analytics::CohortDatabase::Access::write);
-      const std::string uuid = database.attemptNamed(o->attempt);
-      if (exclude) {
-        database.excludeAttempts({uuid}, o->reason, o->by);
-      } else {
-        database.includeAttempts({uuid}, o->reason, o->by);
-      }
-      std::cout << fmt::format("{}: attempt {} {}\n", o->cohort, uuid, exclude ? "excluded" : "included again");
-      return static_cast<int>(ExitCode::yes);
-    };
-  });
+template <bool exclude>
+void decide(const AttemptOptions& o) {
+  analytics::CohortDatabase database(o.cohort, Access::write);
+  const std::string uuid = database.attemptNamed(o.attempt);
+  if (exclude) {
+    database.excludeAttempts({uuid}, o.reason, o.by);
+  } else {
+    database.includeAttempts({uuid}, o.reason, o.by);
+  }
+  std::cout << fmt::format("{}: attempt {} {}\n", o.cohort, uuid, exclude ? "excluded" : "included again");
 }
 
-int tag(const AttemptOptions& o) {
-  analytics::CohortDatabase database(o.cohort, analytics::CohortDatabase::Access::write);
+void tag(const AttemptOptions& o) {
+  analytics::CohortDatabase database(o.cohort, Access::write);
   const std::string uuid = database.attemptNamed(o.attempt);
   const bool add = o.change == "add";
   const std::size_t changed =
@@ -64,31 +117,42 @@ int tag(const AttemptOptions& o) {
     std::cout << fmt::format("{}: attempt {}: {}\n", o.cohort, uuid,
                              tags.empty() ? "no tags" : fmt::format("tags {}", fmt::join(tags, ", ")));
   }
-  return static_cast<int>(ExitCode::yes);
-}
-
-void addTag(CLI::App& parent, Run& run) {
-  const auto o = std::make_shared<AttemptOptions>();
-  CLI::App* command = parent.add_subcommand("tag", "Put a word on an attempt to find it by, or take it off");
-  command->add_option("attempt", o->attempt, "Its uuid, or what it begins with")->required();
-  command->add_option("change", o->change, "add, or remove")->required()->check(oneOf({"add", "remove"}));
-  command->add_option("tag", o->tag, "The word: 1 to 40 characters, no blanks or commas")->required();
-  command->add_option("--cohort", o->cohort, "Cohort database")->required();
-  command->add_option("--by", o->by, "Who decides")->required();
-  command->add_flag("--json", o->json, "Print JSON");
-  command->callback([o, &run] { run = [o] { return tag(*o); }; });
 }
 
 }  // namespace
 
 void addAttempt(CLI::App& app, Run& run) {
-  CLI::App* command =
-      app.add_subcommand("attempt", "List and tag attempts, keep them out of studies, or take them in again");
-  command->require_subcommand(1);
-  addAttemptList(*command, run);
-  addDecision(*command, run, true);
-  addDecision(*command, run, false);
-  addTag(*command, run);
+  CLI::App& attempt =
+      *app.add_subcommand("attempt", "List and tag attempts, keep them out of studies, or take them in again");
+  attempt.require_subcommand(1);
+
+  const auto [list, l] =
+      addCommand(attempt, run, "list", "List the attempts of a cohort, by their start", listAttempts);
+  addCohortOption(*list, l->cohort)->required();
+  list->add_option("--participant", l->participant, "Only this participant's");
+  list->add_option("--group", l->group, "Only this group's");
+  list->add_option("--scene", l->scene, "Only of this scene");
+  list->add_option("--tag", l->tag, "Only those that have this tag");
+  list->add_flag("--all", l->all, "Those that are excluded, too");
+  list->add_flag("--json", l->json, "Print JSON");
+
+  const auto o = std::make_shared<AttemptOptions>();
+  CLI::App* exclude =
+      addCommand(attempt, run, "exclude", "Keep an attempt out of studies and norms", decide<true>, o).first;
+  CLI::App* include = addCommand(attempt, run, "include", "Take an exclusion back", decide<false>, o).first;
+  CLI::App* tagged =
+      addCommand(attempt, run, "tag", "Put a word on an attempt to find it by, or take it off", tag, o).first;
+  for (CLI::App* command : {exclude, include, tagged}) {
+    command->add_option("attempt", o->attempt, "Its uuid, or the beginning of it")->required();
+    if (command == tagged) {
+      command->add_option("change", o->change, "add, or remove")->required()->check(oneOf({"add", "remove"}));
+      command->add_option("tag", o->tag, "The word: 1 to 40 characters, no blanks or commas")->required();
+    }
+    command->add_option("--cohort", o->cohort, "Cohort database")->required();
+    if (command != tagged) command->add_option("--reason", o->reason, "Reason of the decision")->required();
+    command->add_option("--by", o->by, "Person who decides")->required();
+  }
+  tagged->add_flag("--json", o->json, "Print JSON");
 }
 
 }  // namespace calot::apps

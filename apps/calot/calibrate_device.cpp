@@ -1,44 +1,190 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// calot devices calibrate: guided steps on a terminal, and what they measure of a device.
 
-#include "apps/calot/calibrate_device.h"
-
-#include <fmt/format.h>
 #include <unistd.h>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
-#include <filesystem>
-#include <iostream>
-#include <memory>
-#include <optional>
 #include <set>
-#include <string>
 #include <thread>
-#include <vector>
 
-#include "apps/calot/environment.h"
+#include "apps/calot/command.h"
 #include "apps/calot/source_options.h"
-#include "gui/film/lettering.h"
-#include "gui/render/png_file.h"
+#include "gui/film/overlay.h"
+#include "gui/render/image.h"
 #include "recorder/base/errors.h"
 #include "recorder/base/text_output.h"
-#include "recorder/sources/devices/calibration_fit.h"
+#include "recorder/sources/devices/calibration.h"
 #include "recorder/sources/devices/camera/camera_calibration.h"
 #include "recorder/sources/devices/camera/camera_device.h"
 #include "recorder/sources/devices/camera/marker_sheets.h"
-#include "recorder/sources/devices/camera/open_camera.h"
-#include "recorder/sources/devices/device_pump.h"
+#include "recorder/sources/devices/device_source.h"
 #include "recorder/sources/devices/mouse_device.h"
 
 namespace calot::apps {
 namespace {
 
+constexpr double arrowScale = 50.0;
+constexpr int cellColumns = 8, cellRows = 6;  // as coverage counts them
+constexpr gui::Colour seenCell{205, 228, 208}, unseenCell{244, 218, 214}, arrowColour{30, 60, 160},
+    wordColour{255, 255, 255};
+
+void paintPoint(gui::Image& image, int x, int y, const gui::Colour& colour) {
+  if (x < 0 || y < 0 || x >= image.width || y >= image.height) return;
+  std::uint8_t* const pixel =
+      image.rgba.data() +
+      4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(x));
+  std::copy(colour.begin(), colour.end(), pixel);
+  pixel[3] = 255;
+}
+
+void paintStroke(gui::Image& image, const Eigen::Vector2d& from, const Eigen::Vector2d& to) {
+  const int steps = 1 + static_cast<int>((to - from).cwiseAbs().maxCoeff());
+  for (int i = 0; i <= steps; ++i) {
+    const Eigen::Vector2d at = from + (to - from) * (static_cast<double>(i) / steps);
+    paintPoint(image, static_cast<int>(std::floor(at.x())), static_cast<int>(std::floor(at.y())), arrowColour);
+  }
+}
+
+gui::Image pictureOf(const recorder::LensFit& fit, std::size_t number) {
+  const recorder::CameraLens& lens = fit.lens;
+  gui::Image image{
+      lens.width, lens.height,
+      std::vector<std::uint8_t>(4 * static_cast<std::size_t>(lens.width) * static_cast<std::size_t>(lens.height))};
+  std::set<int> seen;
+  const auto cellOf = [&](double x, double y) {
+    return static_cast<int>(y * cellRows / lens.height) * cellColumns + static_cast<int>(x * cellColumns / lens.width);
+  };
+  for (const recorder::CornerResidual& c : fit.residuals) seen.insert(cellOf(c.pixel.x(), c.pixel.y()));
+  for (int y = 0; y < lens.height; ++y) {
+    for (int x = 0; x < lens.width; ++x) paintPoint(image, x, y, seen.contains(cellOf(x, y)) ? seenCell : unseenCell);
+  }
+  for (const recorder::CornerResidual& c : fit.residuals) {
+    paintStroke(image, c.pixel, c.pixel + arrowScale * c.error);
+    for (int dy = -1; dy <= 1; ++dy) {
+      for (int dx = -1; dx <= 1; ++dx)
+        paintPoint(image, static_cast<int>(c.pixel.x()) + dx, static_cast<int>(c.pixel.y()) + dy, arrowColour);
+    }
+  }
+  const gui::Lettering words(std::max(14, lens.height / 32));
+  words.write(image,
+              fmt::format("camera {}: {} views, {:.0f} % of the picture, residual {:.2f} pixels (arrows x {:.0f})",
+                          number, lens.views, 100.0 * lens.coverage, lens.residual, arrowScale),
+              10, 6, gui::Anchor::left, wordColour);
+  return image;
+}
+
+/// Writes DIR/camera-N.png of each camera: where the board was seen, and as arrows, enlarged fifty times, how far each
+/// corner was from where the lens has it. @throws Error (failure)
+void writeCalibrationPictures(const recorder::RigFit& fit, const std::filesystem::path& folder) {
+  for (std::size_t i = 0; i < fit.lens.size(); ++i)
+    gui::writePng(pictureOf(fit.lens[i], i + 1), folder / fmt::format("camera-{}.png", i + 1));
+}
+
+/// Waits until the person is ready for a step. @throws Error (failure) where the person breaks off
+void promptStep(const std::string& text) {
+  fmt::print("{}\npress Enter to begin: ", text);
+  std::fflush(stdout);
+  std::string line;
+  if (!std::getline(std::cin, line) || stopRequested()) throw Error(ErrorKind::failure, "calibrate: broken off");
+}
+
+struct Step {
+  std::vector<const char*> phases;
+  const char* text;
+  double seconds;
+};
+
+/// Records the device through the steps that a person is guided through.
+class GuidedRecording {
+ public:
+  explicit GuidedRecording(recorder::Device& device) : device_(device), pump_(device) {
+    stream_.name = device.info().identity;
+    stream_.file = device.info().name;
+    stream_.rate = device.info().capabilities.rate;
+  }
+
+  void run(const Step& step) {
+    promptStep(step.text);
+    recorder::DeviceInput skipped;
+    pump_.drain(skipped);
+    const std::int64_t begin = recorder::monotonicNanoseconds();
+    const auto length = static_cast<std::int64_t>(1e9 * step.seconds);
+    const std::size_t before = stream_.samples.size();
+    Progress progress("measuring, seconds");
+    while (recorder::monotonicNanoseconds() < begin + length) {
+      if (stopRequested()) throw Error(ErrorKind::failure, "calibrate: broken off");
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+      take(begin);
+      progress.show(static_cast<std::uint64_t>((recorder::monotonicNanoseconds() - begin) / 1'000'000'000),
+                    static_cast<std::uint64_t>(step.seconds));
+    }
+    take(begin);
+    // The steps follow each other without the time in which nobody measured.
+    for (const char* phase : step.phases) stream_.phases.push_back({phase, time_, time_ + length});
+    time_ += length;
+    if (stream_.samples.size() == before)
+      throw Error(ErrorKind::failure, fmt::format("{}: no sample came", device_.info().detail));
+  }
+
+  [[nodiscard]] const recorder::DeviceScript& stream() const { return stream_; }
+
+ private:
+  void take(std::int64_t begin) {
+    recorder::DeviceInput input;
+    pump_.drain(input);
+    for (recorder::DeviceSample sample : input.samples) {
+      sample.hostTime += time_ - begin;
+      if (sample.hostTime >= time_) stream_.samples.push_back(sample);
+    }
+  }
+
+  recorder::Device& device_;
+  recorder::DevicePump pump_;
+  recorder::DeviceScript stream_;
+  std::int64_t time_ = 0;
+};
+
+/// @throws Error (invalid) where nobody could be guided
+void requireTerminal() {
+  if (isatty(STDIN_FILENO) == 0 || isatty(STDOUT_FILENO) == 0)
+    throw Error(ErrorKind::invalid, "calibrate: the guided steps need a terminal; --from FILE takes a recorded stream");
+}
+
+/// Measurements of the device while the person did the steps of its kind. @throws Error (failure) where no sample came
+recorder::DeviceScript guidedSteps(recorder::Device& device, double strokeMillimetres) {
+  requireTerminal();
+  stopOnSignals();
+  GuidedRecording recording(device);
+  recording.run({{"rest"}, "1. Put the tools down and touch nothing (5 s).", 5.0});
+  if (device.info().capabilities.absolute && device.info().capabilities.sensedRotations == 3) {
+    recording.run(
+        {{"pivot"},
+         "2. Hold each tool's tip in a dimple and tilt the tool by 30 degrees and more in all directions (20 s).",
+         20.0});
+  }
+  const auto stroke = [&](const char* phase, int number, const char* way) {
+    const std::string text =
+        fmt::format("{}. Wait a second, move each tip by {:g} mm {}, and hold it there until the 6 seconds are over.",
+                    number, strokeMillimetres, way);
+    recording.run({{phase}, text.c_str(), 6.0});
+  };
+  stroke("stroke right", 3, "to the right");
+  stroke("stroke down", 4, "down");
+  stroke("stroke away", 5, "away from you");
+  if (device.info().name == recorder::cameraKind.name) {
+    recording.run({{"trocar"},
+                   "6. Put the sticks through the trocars and sweep them by 20 degrees in all directions (15 s).",
+                   15.0});
+  }
+  return recording.stream();
+}
+
 struct CalibrateOptions {
   DeviceOptions device;
   std::string from, stream, output;
   double strokeMillimetres = 100.0;
-  // Of cameras alone.
+  // Options of cameras.
   std::vector<std::string> board;
   std::string phases, pictures;
   double rulerMillimetres = recorder::rulerLength, readoutMilliseconds = 0.0;
@@ -101,8 +247,8 @@ void printCalibration(const recorder::Calibration& c, const std::vector<std::str
   fmt::print("{}\n", faults.empty() ? fmt::format("passed; valid for {} days", c.validDays) : "failed");
 }
 
-int finishCalibration(const CalibrateOptions& o, const recorder::DeviceScript& stream,
-                      recorder::Calibration calibration) {
+void finishCalibration(const CalibrateOptions& o, const recorder::DeviceScript& stream,
+                       recorder::Calibration calibration) {
   calibration.validDays = o.validDays;
   const std::vector<std::string> faults = recorder::shortcomings(calibration);
   if (!o.stream.empty()) recorder::writeText(o.stream, recorder::deviceScriptText(stream), o.force);
@@ -111,12 +257,12 @@ int finishCalibration(const CalibrateOptions& o, const recorder::DeviceScript& s
     fmt::print("{}", recorder::calibrationText(calibration, false));
   else
     printCalibration(calibration, faults);
-  if (faults.empty()) return 0;
+  if (faults.empty()) return;
   throw Error(ErrorKind::refused, fmt::format("{}: the calibration failed: {}", o.output, faults.front()));
 }
 
 /// Lenses first; then the handles are a device like others.
-int calibrateCamera(const CalibrateOptions& o) {
+void calibrateCamera(const CalibrateOptions& o) {
   const std::size_t colon = o.device.name.find(':');
   const recorder::CameraRequest request = recorder::parseCameraRequest(
       {o.device.name, colon == std::string::npos ? "" : o.device.name.substr(colon + 1), {}, nullptr});
@@ -154,8 +300,8 @@ int calibrateCamera(const CalibrateOptions& o) {
   return finishCalibration(o, stream, std::move(calibration));
 }
 
-/// Of a mouse: the trainer's own, or one that is taken from the system.
-int declareCalibration(const CalibrateOptions& o) {
+/// Declares a mouse: the trainer's own, or one that is taken from the system.
+void declareCalibration(const CalibrateOptions& o) {
   if (!o.from.empty() || !o.stream.empty())
     throw Error(ErrorKind::invalid, "calibrate: --from and --keep-stream measure; --pixel declares");
   const double pixel = 1e-3 * *o.pixelMillimetres;
@@ -165,7 +311,7 @@ int declareCalibration(const CalibrateOptions& o) {
   return finishCalibration(o, {}, recorder::declaredCalibration(device, pixel));
 }
 
-int calibrate(const CalibrateOptions& o) {
+void calibrate(const CalibrateOptions& o) {
   recorder::refuseOutput(o.output, o.force);
   if (!o.stream.empty()) recorder::refuseOutput(o.stream, o.force);
   if (recorder::findDeviceKind(o.device.name) == &recorder::cameraKind) return calibrateCamera(o);
@@ -185,196 +331,29 @@ int calibrate(const CalibrateOptions& o) {
 
 }  // namespace
 
-CLI::App* addCalibrateDevice(CLI::App& devices, Run& run) {
-  auto c = std::make_shared<CalibrateOptions>();
-  CLI::App* measure = devices.add_subcommand("calibrate", "Measures a device in guided steps and stores the result.");
+void addCalibrateDevice(CLI::App& devices, Run& run) {
+  const auto [measure, c] =
+      addCommand(devices, run, "calibrate", "Measures a device in guided steps and stores the result.", calibrate);
   measure->add_option("device", c->device.name, "as for record --device")->required();
   addTools(*measure, c->device);
   measure->add_option("--from", c->from, "measure this stream instead, recorded by --keep-stream");
   measure->add_option("--keep-stream", c->stream, "write what was measured from, for --from");
-  measure->add_option("--stroke", c->strokeMillimetres, "length of each stroke, mm")
-      ->check(CLI::Range(10.0, 1000.0))
-      ->capture_default_str();
+  addNumber(*measure, "--stroke", c->strokeMillimetres, "length of each stroke, mm", 10.0, 1000.0);
   measure->add_option("--board", c->board, "of cameras in films: films of the board by each of them, FILM[,FILM]")
       ->delimiter(',');
   measure->add_option("--phases", c->phases,
                       "of cameras in films: when each step was done, in seconds: rest=0:5,pivot=5:25,...");
-  measure->add_option("--ruler", c->rulerMillimetres, "of cameras: how long the sheets' ruler of 100 mm is, mm")
-      ->check(CLI::Range(50.0, 200.0))
-      ->capture_default_str();
-  measure
-      ->add_option("--readout", c->readoutMilliseconds,
-                   "of cameras: from the first row's exposure to the last one's, ms")
-      ->check(CLI::Range(0.0, 100.0))
-      ->capture_default_str();
+  addNumber(*measure, "--ruler", c->rulerMillimetres, "of cameras: how long the sheets' ruler of 100 mm is, mm", 50.0,
+            200.0);
+  addNumber(*measure, "--readout", c->readoutMilliseconds,
+            "of cameras: from the first row's exposure to the last one's, ms", 0.0, 100.0);
   measure->add_option("--pixel", c->pixelMillimetres,
                       "of a mouse, which is declared, not measured: how far the hand moves for a pixel, mm");
   measure->add_option("--pictures", c->pictures, "of cameras: write a PNG of each lens into this folder");
-  measure->add_option("--valid-days", c->validDays, "from today on")->check(CLI::Range(1, 3650))->capture_default_str();
+  addNumber(*measure, "--valid-days", c->validDays, "from today on", 1, 3650);
   measure->add_option("-o,--output", c->output, "the calibration, a JSON file")->required();
   measure->add_flag("--force", c->force, "replace the outputs if they are there");
   measure->add_flag("--json", c->json, "print the result as JSON");
-  measure->callback([c, &run] { run = [c] { return calibrate(*c); }; });
-  return measure;
-}
-
-namespace {
-
-constexpr double arrowScale = 50.0;
-constexpr int cellColumns = 8, cellRows = 6;  // as coverage counts them
-constexpr gui::Colour seenCell{205, 228, 208}, unseenCell{244, 218, 214}, arrowColour{30, 60, 160},
-    wordColour{255, 255, 255};
-
-void paintPoint(gui::Image& image, int x, int y, const gui::Colour& colour) {
-  if (x < 0 || y < 0 || x >= image.width || y >= image.height) return;
-  std::uint8_t* const pixel =
-      image.rgba.data() +
-      4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(x));
-  std::copy(colour.begin(), colour.end(), pixel);
-  pixel[3] = 255;
-}
-
-void paintStroke(gui::Image& image, const Eigen::Vector2d& from, const Eigen::Vector2d& to) {
-  const int steps = 1 + static_cast<int>((to - from).cwiseAbs().maxCoeff());
-  for (int i = 0; i <= steps; ++i) {
-    const Eigen::Vector2d at = from + (to - from) * (static_cast<double>(i) / steps);
-    paintPoint(image, static_cast<int>(std::floor(at.x())), static_cast<int>(std::floor(at.y())), arrowColour);
-  }
-}
-
-gui::Image pictureOf(const recorder::LensFit& fit, std::size_t number) {
-  const recorder::CameraLens& lens = fit.lens;
-  gui::Image image{
-      lens.width, lens.height,
-      std::vector<std::uint8_t>(4 * static_cast<std::size_t>(lens.width) * static_cast<std::size_t>(lens.height))};
-  std::set<int> seen;
-  const auto cellOf = [&](double x, double y) {
-    return static_cast<int>(y * cellRows / lens.height) * cellColumns + static_cast<int>(x * cellColumns / lens.width);
-  };
-  for (const recorder::CornerResidual& c : fit.residuals) seen.insert(cellOf(c.pixel.x(), c.pixel.y()));
-  for (int y = 0; y < lens.height; ++y) {
-    for (int x = 0; x < lens.width; ++x) paintPoint(image, x, y, seen.contains(cellOf(x, y)) ? seenCell : unseenCell);
-  }
-  for (const recorder::CornerResidual& c : fit.residuals) {
-    paintStroke(image, c.pixel, c.pixel + arrowScale * c.error);
-    for (int dy = -1; dy <= 1; ++dy) {
-      for (int dx = -1; dx <= 1; ++dx)
-        paintPoint(image, static_cast<int>(c.pixel.x()) + dx, static_cast<int>(c.pixel.y()) + dy, arrowColour);
-    }
-  }
-  const gui::Lettering words(std::max(14, lens.height / 32));
-  words.write(image,
-              fmt::format("camera {}: {} views, {:.0f} % of the picture, residual {:.2f} pixels (arrows x {:.0f})",
-                          number, lens.views, 100.0 * lens.coverage, lens.residual, arrowScale),
-              10, 6, gui::Anchor::left, wordColour);
-  return image;
-}
-
-}  // namespace
-
-void writeCalibrationPictures(const recorder::RigFit& fit, const std::filesystem::path& folder) {
-  for (std::size_t i = 0; i < fit.lens.size(); ++i)
-    gui::writePng(pictureOf(fit.lens[i], i + 1), folder / fmt::format("camera-{}.png", i + 1));
-}
-
-namespace {
-
-struct Step {
-  std::vector<const char*> phases;
-  const char* text;
-  double seconds;
-};
-
-/// Records the device through the steps that a person is guided through.
-class GuidedRecording {
- public:
-  explicit GuidedRecording(recorder::Device& device) : device_(device), pump_(device) {
-    stream_.name = device.info().identity;
-    stream_.file = device.info().name;
-    stream_.rate = device.info().capabilities.rate;
-  }
-
-  void run(const Step& step) {
-    promptStep(step.text);
-    recorder::DeviceInput skipped;
-    pump_.drain(skipped);
-    const std::int64_t begin = recorder::monotonicNanoseconds();
-    const auto length = static_cast<std::int64_t>(1e9 * step.seconds);
-    const std::size_t before = stream_.samples.size();
-    Progress progress("measuring, seconds");
-    while (recorder::monotonicNanoseconds() < begin + length) {
-      if (stopRequested()) throw Error(ErrorKind::failure, "calibrate: broken off");
-      std::this_thread::sleep_for(std::chrono::milliseconds(10));
-      take(begin);
-      progress.show(static_cast<std::uint64_t>((recorder::monotonicNanoseconds() - begin) / 1'000'000'000),
-                    static_cast<std::uint64_t>(step.seconds));
-    }
-    take(begin);
-    // The steps follow each other without the time in which nobody measured.
-    for (const char* phase : step.phases) stream_.phases.push_back({phase, time_, time_ + length});
-    time_ += length;
-    if (stream_.samples.size() == before)
-      throw Error(ErrorKind::failure, fmt::format("{}: no sample came", device_.info().detail));
-  }
-
-  [[nodiscard]] const recorder::DeviceScript& stream() const { return stream_; }
-
- private:
-  void take(std::int64_t begin) {
-    recorder::DeviceInput input;
-    pump_.drain(input);
-    for (recorder::DeviceSample sample : input.samples) {
-      sample.hostTime += time_ - begin;
-      if (sample.hostTime >= time_) stream_.samples.push_back(sample);
-    }
-  }
-
-  recorder::Device& device_;
-  recorder::DevicePump pump_;
-  recorder::DeviceScript stream_;
-  std::int64_t time_ = 0;
-};
-
-}  // namespace
-
-void promptStep(const std::string& text) {
-  fmt::print("{}\npress Enter to begin: ", text);
-  std::fflush(stdout);
-  std::string line;
-  if (!std::getline(std::cin, line) || stopRequested()) throw Error(ErrorKind::failure, "calibrate: broken off");
-}
-
-void requireTerminal() {
-  if (isatty(STDIN_FILENO) == 0 || isatty(STDOUT_FILENO) == 0)
-    throw Error(ErrorKind::invalid, "calibrate: the guided steps need a terminal; --from FILE takes a recorded stream");
-}
-
-recorder::DeviceScript guidedSteps(recorder::Device& device, double strokeMillimetres) {
-  requireTerminal();
-  stopOnSignals();
-  GuidedRecording recording(device);
-  recording.run({{"rest"}, "1. Put the tools down and touch nothing (5 s).", 5.0});
-  if (device.info().capabilities.absolute && device.info().capabilities.sensedRotations == 3) {
-    recording.run(
-        {{"pivot"},
-         "2. Hold each tool's tip in a dimple and tilt the tool by 30 degrees and more in all directions (20 s).",
-         20.0});
-  }
-  const auto stroke = [&](const char* phase, int number, const char* way) {
-    const std::string text =
-        fmt::format("{}. Wait a second, move each tip by {:g} mm {}, and hold it there until the 6 seconds are over.",
-                    number, strokeMillimetres, way);
-    recording.run({{phase}, text.c_str(), 6.0});
-  };
-  stroke("stroke right", 3, "to the right");
-  stroke("stroke down", 4, "down");
-  stroke("stroke away", 5, "away from you");
-  if (device.info().name == recorder::cameraKind.name) {
-    recording.run({{"trocar"},
-                   "6. Put the sticks through the trocars and sweep them by 20 degrees in all directions (15 s).",
-                   15.0});
-  }
-  return recording.stream();
 }
 
 }  // namespace calot::apps

@@ -1,17 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // calot checkpoints: what this build computes, and how it is defined.
-#include <fmt/format.h>
 
-#include <iostream>
-#include <memory>
-#include <nlohmann/json.hpp>
-
-#include "analytics/checkpoints/registry.h"
-#include "apps/calot/commands.h"
-#include "apps/calot/results.h"
-#include "apps/calot/terminal_text.h"
-#include "apps/common/exit_code.h"
-#include "recorder/base/errors.h"
+#include "analytics/checkpoints/checkpoint.h"
+#include "apps/calot/command.h"
 
 namespace calot::apps {
 namespace {
@@ -24,7 +15,7 @@ std::vector<std::string> originNames(const CheckpointDefinition& d) {
   return names;
 }
 
-nlohmann::ordered_json jsonOf(const CheckpointDefinition& d) {
+Json jsonOf(const CheckpointDefinition& d) {
   return {{"name", d.name},
           {"title", d.title},
           {"unit", d.unit},
@@ -45,9 +36,7 @@ nlohmann::ordered_json jsonOf(const CheckpointDefinition& d) {
           {"not_outcome_because", d.notOutcome}};
 }
 
-void print(const CheckpointDefinition& d) {
-  std::string origins;
-  for (const std::string& name : originNames(d)) origins += (origins.empty() ? "" : ", ") + name;
+void printDefinition(const CheckpointDefinition& d) {
   const std::size_t columns = terminalColumns();
   std::cout << wrappedText(fmt::format("{} (version {}): {}", d.name, d.version, d.title), columns, 4) << '\n';
   const auto line = [columns](const char* word, const std::string& text) {
@@ -61,32 +50,30 @@ void print(const CheckpointDefinition& d) {
   line("window", d.window);
   line("filter", d.filter);
   line("coverage", coverageText(d));
-  line("origin", origins);
+  line("origin", fmt::format("{}", fmt::join(originNames(d), ", ")));
   line("known", d.finality == analytics::Finality::running ? "after every step" : "at the end");
   line("paper", d.paperReading);
   line("outcome", d.notOutcome.empty() ? "" : "no: " + d.notOutcome);
 }
 
+void listCheckpoints(const JsonOption& o) {
+  Json list = Json::array();
+  for (const analytics::CheckpointEntry& entry : analytics::checkpointRegistry()) {
+    if (o.json) {
+      list.push_back(jsonOf(entry.definition));
+    } else {
+      printDefinition(entry.definition);
+    }
+  }
+  if (o.json) printResult("checkpoints", {{"checkpoints", list}});
+}
+
 }  // namespace
 
 void addCheckpoints(CLI::App& app, Run& run) {
-  const auto json = std::make_shared<bool>(false);
-  CLI::App* command = app.add_subcommand("checkpoints", "List the checkpoints and their definitions");
-  command->add_flag("--json", *json, "Print JSON");
-  command->callback([json, &run] {
-    run = [json] {
-      nlohmann::ordered_json list = nlohmann::ordered_json::array();
-      for (const analytics::CheckpointEntry& entry : analytics::checkpointRegistry()) {
-        if (*json) {
-          list.push_back(jsonOf(entry.definition));
-        } else {
-          print(entry.definition);
-        }
-      }
-      if (*json) printResult("checkpoints", {{"checkpoints", list}});
-      return static_cast<int>(ExitCode::yes);
-    };
-  });
+  const auto [command, o] =
+      addCommand(app, run, "checkpoints", "List the checkpoints and their definitions", listCheckpoints);
+  command->add_flag("--json", o->json, "Print JSON");
 }
 
 }  // namespace calot::apps

@@ -1,20 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <fmt/format.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cstring>
-#include <iostream>
-#include <memory>
-#include <nlohmann/json.hpp>
 #include <set>
 
-#include "apps/calot/commands.h"
-#include "apps/calot/environment.h"
-#include "apps/calot/results.h"
-#include "apps/common/exit_code.h"
-#include "recorder/base/errors.h"
+#include "apps/calot/command.h"
 #include "recorder/base/program_files.h"
 #include "recorder/base/text_output.h"
 #include "recorder/kept/engine_folders.h"
@@ -47,28 +39,26 @@ std::vector<fs::path> keptBeside(std::uint32_t version, const std::string& endin
 
 const char* kindOf(const recorder::KeptEngine& engine) { return engine.isModule ? "module" : "program"; }
 
-int list(bool json) {
+void listEngines(const JsonOption& o) {
   const std::vector<recorder::KeptEngine> engines = recorder::listEngines();
-  if (json) {
-    nlohmann::json out = nlohmann::json::array();
-    for (const recorder::KeptEngine& e : engines) {
-      out.push_back(
-          {{"version", e.version}, {"kind", kindOf(e)}, {"file", e.file.string()}, {"runs", !e.command.empty()}});
-    }
-    printResult("engines", {{"own_version", simulationVersion}, {"engines", out}});
-    return 0;
-  }
-  fmt::print("this program decides simulation version {}\n", simulationVersion);
+  nlohmann::json out = nlohmann::json::array();
+  if (!o.json) fmt::print("this program decides simulation version {}\n", simulationVersion);
   for (const recorder::KeptEngine& e : engines) {
+    out.push_back(
+        {{"version", e.version}, {"kind", kindOf(e)}, {"file", e.file.string()}, {"runs", !e.command.empty()}});
+    if (o.json) continue;
     fmt::print("version {}: {} {}{}\n", e.version, kindOf(e), fs::weakly_canonical(e.file).string(),
                e.command.empty() ? " (node is needed to run it)" : "");
   }
-  if (engines.empty()) fmt::print("no other engine was found (CALOT_ENGINES names folders that hold some)\n");
-  return 0;
+  if (o.json) {
+    printResult("engines", {{"own_version", simulationVersion}, {"engines", out}});
+  } else if (engines.empty()) {
+    fmt::print("no other engine was found (CALOT_ENGINES names folders that hold some)\n");
+  }
 }
 
 /// @return false where the engine is not what it should be; prints a line of each thing that was looked at
-bool check(const recorder::KeptEngine& engine) {
+bool isSound(const recorder::KeptEngine& engine) {
   const auto say = [&](const std::string& what, const std::string& fault) {
     fmt::print("version {}, {}: {}: {}\n", engine.version, kindOf(engine), what, fault.empty() ? "ok" : fault);
     return fault.empty();
@@ -96,7 +86,7 @@ bool check(const recorder::KeptEngine& engine) {
   return good;
 }
 
-int checkAll(const std::vector<std::uint32_t>& versions) {
+ExitCode checkEngines(const std::vector<std::uint32_t>& versions) {
   std::vector<recorder::KeptEngine> engines = recorder::listEngines();
   std::erase_if(engines, [&](const recorder::KeptEngine& e) {
     return !versions.empty() && std::find(versions.begin(), versions.end(), e.version) == versions.end();
@@ -111,10 +101,10 @@ int checkAll(const std::vector<std::uint32_t>& versions) {
       fmt::print("version {}, module: not run, for there is no node here\n", e.version);
       continue;
     }
-    good = check(e) && good;
+    good = isSound(e) && good;
   }
   if (engines.empty()) fmt::print("no engine was found\n");
-  return static_cast<int>(good ? ExitCode::yes : ExitCode::no);
+  return good ? ExitCode::yes : ExitCode::no;
 }
 
 struct BuildOptions {
@@ -124,14 +114,14 @@ struct BuildOptions {
 };
 
 /// The script of a clone does it: no installed program holds the sources of old versions.
-int build(const BuildOptions& o) {
+void build(const BuildOptions& o) {
   if (o.source.empty())
     throw Error(ErrorKind::invalid, "no clone of the source belongs to this program: name one with --source");
   const fs::path script = fs::path(o.source) / "scripts/engine.py";
   std::error_code ignored;
   if (!fs::is_regular_file(script, ignored))
-    throw Error(ErrorKind::invalid, fmt::format("{} is no clone of the source: name one with --source", o.source));
-  refuseExisting(o.output, o.force);
+    throw Error(ErrorKind::invalid, fmt::format("{} is not a clone of the source: name one with --source", o.source));
+  recorder::refuseOutput(o.output, o.force);
   std::vector<std::string> command{"python3", script.string(), "build", std::to_string(o.version), "-o", o.output};
   if (o.module) command.emplace_back("--module");
   std::vector<char*> arguments;
@@ -147,8 +137,8 @@ struct TranscriptOptions {
   bool force = false;
 };
 
-int transcribe(const TranscriptOptions& o) {
-  refuseExisting(o.output, o.force);
+void transcribe(const TranscriptOptions& o) {
+  recorder::refuseOutput(o.output, o.force);
   recorder::probe(o.recording);
   recorder::Recording recording(o.recording);
   if (o.steps < 2 || o.steps > recording.stepCount())
@@ -156,7 +146,6 @@ int transcribe(const TranscriptOptions& o) {
   const std::vector<std::byte> bytes =
       bytesOf(recorder::makeTranscript(recorder::commandOf(o.engine), recording, o.steps));
   recorder::writeText(o.output, {reinterpret_cast<const char*>(bytes.data()), bytes.size()}, o.force);
-  return 0;
 }
 
 }  // namespace
@@ -165,36 +154,32 @@ void addEngine(CLI::App& app, Run& run) {
   CLI::App* command = app.add_subcommand("engine", "Kept engines: programs that decide recordings of other versions.");
   command->require_subcommand(1);
 
-  auto json = std::make_shared<bool>(false);
-  CLI::App* listing = command->add_subcommand("list", "Shows which engines are there.");
-  listing->add_flag("--json", *json, "print them as JSON");
-  listing->callback([json, &run] { run = [json] { return list(*json); }; });
+  const auto [listing, l] = addCommand(*command, run, "list", "Shows which engines are there.", listEngines);
+  listing->add_flag("--json", l->json, "print them as JSON");
 
-  auto versions = std::make_shared<std::vector<std::uint32_t>>();
-  CLI::App* checking = command->add_subcommand(
-      "check", "Starts engines, compares their answers with their transcripts, and has them replay their goldens.");
+  const auto [checking, versions] =
+      addCommand(*command, run, "check",
+                 "Starts engines, compares their answers with their transcripts, and has them replay their goldens.",
+                 checkEngines);
   checking->add_option("versions", *versions, "simulation versions; none: every engine that is there");
-  checking->callback([versions, &run] { run = [versions] { return checkAll(*versions); }; });
 
-  auto b = std::make_shared<BuildOptions>();
+  const auto [building, b] =
+      addCommand(*command, run, "build", "Builds the engine of a version from a clone of the source.", build);
   b->source = recorder::ProgramFiles::ofThisProgram().clone().string();
-  CLI::App* building = command->add_subcommand("build", "Builds the engine of a version from a clone of the source.");
   building->add_option("version", b->version, "simulation version")->required();
   building->add_option("-o,--output", b->output, "the engine's file")->required();
   building->add_option("--source", b->source,
                        "clone with the whole history; default: the one that this program was built in");
   building->add_flag("--module", b->module, "as a WebAssembly module");
   building->add_flag("--force", b->force, "overwrite the file");
-  building->callback([b, &run] { run = [b] { return build(*b); }; });
 
-  auto t = std::make_shared<TranscriptOptions>();
-  CLI::App* writing = command->add_subcommand("transcript", "Writes what an engine answers, for engine check.");
+  const auto [writing, t] =
+      addCommand(*command, run, "transcript", "Writes what an engine answers, for engine check.", transcribe);
   writing->add_option("recording", t->recording, "whose scene and first steps are asked")->required();
   writing->add_option("--engine", t->engine, "program or module")->required();
   writing->add_option("--steps", t->steps, "steps that it is to do")->capture_default_str();
   writing->add_option("-o,--output", t->output, "the transcript")->required();
   writing->add_flag("--force", t->force, "overwrite the file");
-  writing->callback([t, &run] { run = [t] { return transcribe(*t); }; });
 }
 
 }  // namespace calot::apps

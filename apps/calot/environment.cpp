@@ -15,7 +15,6 @@
 #include "recorder/base/errors.h"
 #include "recorder/base/nearest_word.h"
 #include "recorder/base/program_files.h"
-#include "recorder/base/text_output.h"
 #include "recorder/base/text_words.h"
 #include "recorder/formats/scene_file.h"
 
@@ -110,7 +109,7 @@ std::string wholeNumber(const std::string& text) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   return error == std::errc() && end == text.data() + text.size()
              ? ""
-             : fmt::format("'{}' is no whole number below 2^64", text);
+             : fmt::format("'{}' is not a whole number below 2^64", text);
 }
 
 double parseTime(const std::string& text) {
@@ -131,11 +130,9 @@ double parseTime(const std::string& text) {
   good = good && number(rest, seconds);
   if (!good)
     throw Error(ErrorKind::invalid,
-                fmt::format("'{}' is no time: write seconds (12.5) or minutes and seconds (1:02.5)", text));
+                fmt::format("'{}' is not a time: write seconds (12.5) or minutes and seconds (1:02.5)", text));
   return 60.0 * minutes + seconds;
 }
-
-void refuseExisting(const std::filesystem::path& file, bool force) { recorder::refuseOutput(file, force); }
 
 namespace {
 std::atomic<bool> requested{false};

@@ -21,7 +21,7 @@ namespace calot::apps {
 /// Folders that may hold scenes, organs and performers (recorder::ProgramFiles of this program).
 std::vector<std::filesystem::path> assetFolders();
 
-/// Where this program finds engines of simulation versions.
+/// Folders of engines of other simulation versions.
 recorder::EnginePlaces enginePlaces();
 
 /// A JSON file of the assets by its name ("goals"), or any file by its path ("mine/goals.json").
@@ -62,9 +62,6 @@ std::string wholeNumber(const std::string& text);
 /// "12.5", "12.5s" or "1:02.5" in seconds. @throws Error (invalid)
 double parseTime(const std::string& text);
 
-/// Refuses a target that is there, is a folder, or lies in none. @throws Error (invalid)
-void refuseExisting(const std::filesystem::path& file, bool force);
-
 /// From here on both signals ask to stop instead of ending the program.
 void stopOnSignals();
 
@@ -90,7 +87,7 @@ std::array<std::byte, N> fromHex(const std::string& text, const char* option) {
     good = error == std::errc() && end == begin + 2;
     bytes[i] = static_cast<std::byte>(value);
   }
-  if (!good) throw Error(ErrorKind::invalid, fmt::format("{}: {} hexadecimal digits are wanted", option, 2 * N));
+  if (!good) throw Error(ErrorKind::invalid, fmt::format("{}: {} hexadecimal digits are expected", option, 2 * N));
   return bytes;
 }
 

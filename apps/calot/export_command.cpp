@@ -1,25 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <fmt/format.h>
-
-#include <filesystem>
-#include <memory>
-#include <optional>
-#include <string>
-#include <vector>
 
 #include "analytics/checkpoints/collector.h"
-#include "analytics/checkpoints/motion_track.h"
 #include "analytics/cohort/withdraw.h"
 #include "analytics/interchange/motion_tables.h"
-#include "apps/calot/commands.h"
+#include "apps/calot/command.h"
 #include "apps/calot/environment.h"
-#include "apps/calot/motion_import.h"
-#include "apps/common/exit_code.h"
+#include "apps/calot/import_command.h"
 #include "recorder/base/errors.h"
-#include "recorder/recording/recorded_columns.h"
 #include "recorder/recording/layout.h"
 #include "recorder/recording/probe.h"
-#include "recorder/sources/column_map.h"
+#include "recorder/recording/recorded_columns.h"
+#include "recorder/sources/tracked_motion.h"
 
 namespace calot::apps {
 
@@ -34,18 +25,18 @@ void printFiles(const std::vector<std::filesystem::path>& files) {
   for (const auto& file : files) fmt::print("{}\n", file.string());
 }
 
-int exportMotionFile(const ExportOptions& o) {
+void exportMotionFile(const ExportOptions& o) {
   if (!o.folder.empty() || !o.cohort.empty())
-    throw Error(ErrorKind::invalid, Where{o.file}, "is no recording (.h5): of a motion file there is --motion alone");
+    throw Error(ErrorKind::invalid, Where{o.file},
+                "is not a recording (.h5): of a motion file there is --motion alone");
   std::optional<recorder::ColumnMap> map;
   if (!o.columns.empty()) map = recorder::readColumnMap(o.columns);
   const recorder::TrackedMotion tracked = readMotion(o.file, map ? &*map : nullptr);
   printFiles(analytics::writeMotionTables({analytics::motionOf(tracked, 0), analytics::motionOf(tracked, 1)}, o.motion,
                                           o.force));
-  return static_cast<int>(ExitCode::yes);
 }
 
-int exportRecording(const ExportOptions& o) {
+void exportRecording(const ExportOptions& o) {
   if (o.folder.empty() && o.motion.empty())
     throw Error(ErrorKind::invalid,
                 "export: --csv FOLDER writes all that is recorded, --motion FOLDER filtered motion");
@@ -65,33 +56,30 @@ int exportRecording(const ExportOptions& o) {
   }
   if (!o.motion.empty()) printFiles(analytics::writeMotionTables(analytics::motionOf(recording), o.motion, o.force));
   if (!recording.complete()) fmt::print("incomplete\n");
-  // What was asked for is there; that it was changed since it was recorded is the answer.
+  // The export is complete; the exit code reports that the recording was changed.
   if (!chain.intact) throw Error(ErrorKind::refused, fmt::format("{}: {}", o.file, chain.what));
-  return static_cast<int>(ExitCode::yes);
+}
+
+void exportFile(const ExportOptions& o) {
+  const bool recorded = o.motion.empty() || std::filesystem::path(o.file).extension() == ".h5";
+  return recorded ? exportRecording(o) : exportMotionFile(o);
 }
 
 }  // namespace
 
 void addExport(CLI::App& app, Run& run) {
-  const auto options = std::make_shared<ExportOptions>();
-  CLI::App* command =
-      app.add_subcommand("export", "Write a recording, or the motion in it, as tables for other programs");
-  command->add_option("file", options->file, "Recording (.h5); with --motion also a motion file, as calot import reads")
+  const auto [command, o] = addCommand(
+      app, run, "export", "Write a recording, or the motion in it, as tables for other programs", exportFile);
+  command->add_option("file", o->file, "Recording (.h5); with --motion also a motion file, as calot import reads")
       ->required();
-  command->add_option("--csv", options->folder, "Folder for all that is recorded");
+  command->add_option("--csv", o->folder, "Folder for all that is recorded");
   CLI::Option* motion = command->add_option(
-      "--motion", options->motion,
+      "--motion", o->motion,
       "Folder for both hands' filtered motion with its segments and movements, as checkpoints see it");
-  command->add_option("--columns", options->columns, "A JSON file that says what the columns of a CSV motion file are")
+  command->add_option("--columns", o->columns, "A JSON file that says what the columns of a CSV motion file are")
       ->needs(motion);
-  command->add_option("--cohort", options->cohort, "Cohort database that notes that this was handed out");
-  command->add_flag("--force", options->force, "Replace files that --csv finds there, or the folder of --motion");
-  command->callback([options, &run] {
-    run = [options] {
-      const bool recorded = options->motion.empty() || std::filesystem::path(options->file).extension() == ".h5";
-      return recorded ? exportRecording(*options) : exportMotionFile(*options);
-    };
-  });
+  command->add_option("--cohort", o->cohort, "Cohort database that notes that this was handed out");
+  command->add_flag("--force", o->force, "Replace files that --csv finds there, or the folder of --motion");
 }
 
 }  // namespace calot::apps

@@ -1,25 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // calot grade: one attempt against a norm, as a sheet.
-#include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
-#include <iostream>
-#include <memory>
-#include <string>
-#include <vector>
 
 #include "analytics/assessment/grade.h"
 #include "analytics/cohort/assessment_database.h"
 #include "analytics/cohort/check.h"
 #include "analytics/report/grade_sheet.h"
-#include "apps/calot/cohort_option.h"
-#include "apps/calot/commands.h"
-#include "apps/calot/environment.h"
-#include "apps/calot/report_files.h"
-#include "apps/calot/results.h"
-#include "apps/common/exit_code.h"
-#include "recorder/base/errors.h"
+#include "apps/calot/command.h"
+#include "apps/calot/study_command.h"
 #include "recorder/base/file_bytes.h"
 #include "recorder/base/text_output.h"
 #include "recorder/base/text_words.h"
@@ -108,7 +97,7 @@ std::vector<std::byte> carriedRecording(const analytics::AttemptRow& attempt, co
   return recorder::readFileBytes(file, file.string(), most);
 }
 
-int grade(const GradeOptions& o) {
+void grade(const GradeOptions& o) {
   if (o.withReplay && o.html.empty())
     throw Error(ErrorKind::invalid, "--with-replay is of a page: name one with --html");
 
@@ -130,18 +119,16 @@ int grade(const GradeOptions& o) {
   writeReport(analytics::gradeDocument(result, name, howToDraw), o.html, o.pdf, o.force,
               o.withReplay ? &inPage : nullptr);
   if (o.json) {
-    printResult("grade", nlohmann::ordered_json::parse(analytics::gradeJson(result)));
+    printResult("grade", analytics::gradeTree(result));
   } else {
     analytics::printGrade(result, std::cout);
   }
-  return static_cast<int>(ExitCode::yes);
 }
 
 }  // namespace
 
 void addGrade(CLI::App& app, Run& run) {
-  const auto o = std::make_shared<GradeOptions>();
-  CLI::App* command = app.add_subcommand("grade", "Hold an attempt against a norm");
+  const auto [command, o] = addCommand(app, run, "grade", "Hold an attempt against a norm", grade);
   addCohortOption(*command, o->database)->required();
   command->add_option("--attempt", o->attempt, "Its uuid, or how that begins")->required();
   command->add_option("--norm", o->norm, "The norm; not needed where there is one alone");
@@ -155,7 +142,6 @@ void addGrade(CLI::App& app, Run& run) {
   addPdfOption(*command, o->pdf, "Write the sheet on A4 pages");
   command->add_flag("--json", o->json, "Print JSON");
   command->add_flag("--force", o->force, "Replace files that are there");
-  command->callback([o, &run] { run = [o] { return grade(*o); }; });
 }
 
 }  // namespace calot::apps

@@ -1,16 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "apps/calot/help.h"
 
-#include <fmt/format.h>
+#include <algorithm>
 
-#include <filesystem>
-#include <memory>
-#include <string>
-#include <string_view>
-#include <system_error>
-
-#include "apps/calot/environment.h"
-#include "apps/calot/terminal_text.h"
+#include "apps/calot/command.h"
+#include "recorder/base/nearest_word.h"
+#include "recorder/base/text_words.h"
 
 namespace calot::apps {
 namespace {
@@ -140,8 +136,7 @@ class FittingFormatter final : public CLI::Formatter {
     return out.str();
   }
 
-  /// Where the manual is on this machine is told to whoever reads here, and not by --help-json, of which pages are made
-  /// that are read elsewhere.
+  /// The manual's place on this machine: for people here, not for --help-json, whose pages are read elsewhere.
   std::string make_footer(const CLI::App* command) const override {
     std::string footer = CLI::Formatter::make_footer(command);
     if (command->get_parent() != nullptr) return footer;
@@ -165,7 +160,7 @@ std::string examplesOf(const std::string& command) {
   return text.empty() ? text : (text.find('\n', 1) == std::string::npos ? "Example:" : "Examples:") + text;
 }
 
-void dress(CLI::App& command, const std::string& words, const std::shared_ptr<CLI::FormatterBase>& formatter) {
+void formatCommand(CLI::App& command, const std::string& words, const std::shared_ptr<CLI::FormatterBase>& formatter) {
   command.formatter(formatter);
   std::string footer = command.get_footer();
   if (const std::string those = examplesOf(words); !those.empty()) footer += (footer.empty() ? "" : "\n\n") + those;
@@ -174,16 +169,85 @@ void dress(CLI::App& command, const std::string& words, const std::shared_ptr<CL
     if (each->get_name().empty()) {
       each->formatter(formatter);  // a group of options
     } else {
-      dress(*each, words.empty() ? each->get_name() : words + " " + each->get_name(), formatter);
+      formatCommand(*each, words.empty() ? each->get_name() : words + " " + each->get_name(), formatter);
     }
   }
 }
 
 }  // namespace
 
-void dressHelp(CLI::App& app) {
-  dress(app, "", std::make_shared<FittingFormatter>(terminalColumns()));
+void formatHelp(CLI::App& app) {
+  formatCommand(app, "", std::make_shared<FittingFormatter>(terminalColumns()));
   app.footer("calot COMMAND --help has the options of each command, and an example.");
+}
+
+namespace {
+
+std::vector<const CLI::App*> subcommandsOf(const CLI::App& command) {
+  return command.get_subcommands([](const CLI::App* each) { return !each->get_name().empty(); });
+}
+
+/// Long options of a command with their dashes; the parser keeps groups of options as commands without names.
+void addLongOptions(const CLI::App& command, std::vector<std::string>& names) {
+  for (const CLI::Option* option : command.get_options()) {
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  }
+  for (const CLI::App* group : command.get_subcommands([](const CLI::App* each) { return each->get_name().empty(); }))
+    addLongOptions(*group, names);
+}
+
+bool takesWords(const CLI::App& command) {
+  const std::vector<const CLI::Option*> options = command.get_options();
+  return std::any_of(options.begin(), options.end(), [](const CLI::Option* each) { return each->get_positional(); });
+}
+
+std::vector<std::string> namesOf(const std::vector<const CLI::App*>& commands) {
+  std::vector<std::string> names;
+  for (const CLI::App* each : commands) names.push_back(each->get_name());
+  return names;
+}
+
+}  // namespace
+
+std::string wrongWord(const CLI::App& app, const std::vector<std::string>& words, const CLI::ParseError& fault) {
+  const CLI::App* at = &app;
+  std::string name = app.get_name();
+  std::string what;
+  for (const std::string& word : words) {
+    if (word == "--") break;
+    if (word.starts_with("--")) {
+      const std::string option = word.substr(0, word.find('='));
+      std::vector<std::string> known;
+      addLongOptions(*at, known);
+      if (std::find(known.begin(), known.end(), option) != known.end()) continue;
+      what = fmt::format("{} has no option '{}'{}", name, recorder::shown(option), recorder::didYouMean(option, known));
+      break;
+    }
+    const std::vector<const CLI::App*> commands = subcommandsOf(*at);
+    if (word.starts_with('-') || commands.empty()) continue;
+    const auto chosen =
+        std::find_if(commands.begin(), commands.end(), [&](const CLI::App* c) { return c->get_name() == word; });
+    if (chosen != commands.end()) {
+      at = *chosen;
+      name += " " + word;
+    } else if (!takesWords(*at)) {
+      const std::vector<std::string> known = namesOf(commands);
+      const bool top = at == &app;
+      what = fmt::format("there is no command '{}{}'{}{}", top ? "" : name.substr(app.get_name().size() + 1) + " ",
+                         recorder::shown(word), recorder::didYouMean(word, known),
+                         top ? "" : fmt::format("; there are {}", fmt::join(known, ", ")));
+      break;
+    }
+  }
+  if (what.empty()) {
+    what = fault.what();
+    if (const std::vector<const CLI::App*> commands = subcommandsOf(*at);
+        at != &app && !commands.empty() && fault.get_exit_code() == static_cast<int>(CLI::ExitCodes::RequiredError) &&
+        at->get_subcommands().empty() && at->get_require_subcommand_min() > 0) {
+      what = fmt::format("{} is followed by one of {}", name, fmt::join(namesOf(commands), ", "));
+    }
+  }
+  return fmt::format("{} (try: {} --help)", what, name);
 }
 
 }  // namespace calot::apps

@@ -1,27 +1,100 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // calot import: motion without a scene into a cohort.
-#include <fmt/format.h>
 
-#include <functional>
-#include <iostream>
-#include <memory>
-#include <nlohmann/json.hpp>
-#include <optional>
+#include "apps/calot/import_command.h"
+
+#include <algorithm>
+#include <map>
+#include <set>
 
 #include "analytics/assess.h"
 #include "analytics/checkpoints/collector.h"
 #include "analytics/import_motion.h"
-#include "apps/calot/commands.h"
+#include "analytics/intake/motion_manifest.h"
+#include "apps/calot/command.h"
 #include "apps/calot/environment.h"
-#include "apps/calot/motion_import.h"
-#include "apps/calot/results.h"
-#include "apps/calot/value_report.h"
-#include "apps/calot/wrong_word.h"
-#include "apps/common/exit_code.h"
+#include "apps/calot/replay_report.h"
 #include "recorder/base/errors.h"
-#include "recorder/sources/column_map.h"
+#include "recorder/sources/tracked_motion.h"
 
 namespace calot::apps {
+
+CLI::Option* addMetrics(CLI::App& command, MetricOptions& options) {
+  CLI::Option* metric =
+      command
+          .add_option("--metric", options.files,
+                      "a Python script whose compute(attempt) gives a metric of your own; it runs with your rights")
+          ->type_size(1)
+          ->allow_extra_args(false);
+  command.add_option("--metric-seconds", options.limits.seconds, "what a script may take for one attempt (s)")
+      ->check(CLI::Range(1U, 86400U))
+      ->needs(metric)
+      ->capture_default_str();
+  command.add_option("--metric-memory", options.limits.mebibytes, "memory of a script, beyond its input (MiB)")
+      ->check(CLI::Range(256U, 1048576U))
+      ->needs(metric)
+      ->capture_default_str();
+  return metric;
+}
+
+std::vector<analytics::MetricScript> readMetrics(const MetricOptions& options) {
+  return analytics::readMetricScripts(
+      options.files, options.limits,
+      [](const std::string& script, const std::string& line) { fmt::print(stderr, "{}: {}\n", script, line); });
+}
+
+void checkMetrics(const std::vector<analytics::MetricScript>& metrics, const analytics::CohortDatabase& database) {
+  for (const analytics::MetricScript& script : metrics) {
+    try {
+      database.checkMetric(*script.metric());
+    } catch (const Error& e) {
+      if (e.kind() != ErrorKind::refused) throw;
+      throw Error(e.kind(), Where{script.file()}, e.fault(), e.remedies());
+    }
+  }
+}
+
+void checkMetrics(const std::vector<analytics::MetricScript>& metrics, const std::string& cohort) {
+  if (metrics.empty() || !std::filesystem::exists(cohort)) return;
+  checkMetrics(metrics, analytics::CohortDatabase(cohort, analytics::CohortDatabase::Access::write));
+}
+
+ExitCode reportFailures(const analytics::MetricOutcomes& outcomes, const std::string& attempt) {
+  std::vector<ExitCode> codes{ExitCode::yes};
+  for (const Error& e : outcomes.failures) {
+    Progress::erase();
+    fmt::print(stderr, "calot: {} (of {}; no value of it is stored)\n", messageOf(e), attempt);
+    codes.push_back(codeOf(e.kind()));
+  }
+  return worstOf(codes);
+}
+
+Json failuresJson(const analytics::MetricOutcomes& outcomes) {
+  Json list = Json::array();
+  for (const Error& e : outcomes.failures) list.push_back(messageOf(e));
+  return list;
+}
+
+recorder::TrackedMotion readMotion(const std::filesystem::path& file, const recorder::ColumnMap* map) {
+  if (map != nullptr) return recorder::readCsvMotion(file, *map);
+  if (file.extension() == ".csv") {
+    throw Error(ErrorKind::invalid, Where{file.string()},
+                "a CSV file needs --columns MAP.json, which says what is in it");
+  }
+  return recorder::trackedMotion(recorder::readKinematics(file));
+}
+
+ExitCode refuseRows(const std::vector<Error>& faults) {
+  constexpr std::size_t most = 20;
+  std::vector<ExitCode> codes;
+  codes.reserve(faults.size());
+  for (const Error& fault : faults) codes.push_back(codeOf(fault.kind()));
+  for (std::size_t i = 0; i < std::min(faults.size(), most); ++i)
+    fmt::print(stderr, "calot: {}\n", messageOf(faults[i]));
+  if (faults.size() > most)
+    fmt::print(stderr, "calot: and {} more wrong rows; nothing was stored\n", faults.size() - most);
+  return worstOf(codes);
+}
 
 namespace {
 
@@ -33,6 +106,66 @@ struct ImportOptions {
   double cutoff = 0.0;
   bool json = false;
 };
+
+/// Result for one file.
+struct ImportedFile {
+  ExitCode code = ExitCode::yes;
+  std::string how = "not stored", error;
+  std::optional<recorder::TrackedMotion> motion;
+  std::vector<analytics::CheckpointValue> values;
+  analytics::MetricOutcomes external;
+
+  void addExternal() { values.insert(values.end(), external.values.begin(), external.values.end()); }
+};
+
+/// Runs `read`, then `store`. A damaged file, or a conflict when it is stored, is the file's own result; what ends
+/// every file (a wrong command line, a database that cannot be used) is thrown.
+ImportedFile importFile(const std::function<recorder::TrackedMotion()>& read,
+                        const std::function<void(ImportedFile&)>& store) {
+  ImportedFile result;
+  try {
+    result.motion = read();
+    store(result);
+  } catch (const Error& e) {
+    if (e.kind() == ErrorKind::invalid || e.kind() == ErrorKind::failure ||
+        (result.motion && e.kind() != ErrorKind::refused))
+      throw;
+    result.code = codeOf(e.kind());
+    result.error = messageOf(e);
+  }
+  return result;
+}
+
+/// Computes the users' own metrics of `file.motion`, makes or opens the cohort if it is not open yet, stores all values
+/// and their result in `file`.
+void storeImported(const std::string& cohort, std::optional<analytics::CohortDatabase>& database,
+                   const analytics::MotionDeclaration& declaration, const std::vector<analytics::MetricScript>& metrics,
+                   ImportedFile& file) {
+  file.external = analytics::externalOf(*file.motion, declaration, metrics);
+  if (!database) database.emplace(cohort, analytics::CohortDatabase::Access::create);
+  analytics::StoredMotion stored = analytics::storeMotion(*database, *file.motion, declaration);
+  file.how = importedName(stored.imported);
+  file.values = std::move(stored.values);
+  const std::string attempt = analytics::recordOf(*file.motion, declaration).uuid;
+  if (analytics::storeExternal(*database, attempt, file.external, metrics) &&
+      stored.imported == analytics::Imported::unchanged)
+    file.how = importedName(analytics::Imported::extended);
+  file.addExternal();
+}
+
+/// A row of the output with --json.
+Json fileJson(const std::string& file, const ImportedFile& result) {
+  Json row = {{"file", file}, {"stored", result.how}};
+  if (!result.error.empty()) row["error"] = result.error;
+  if (result.motion) {
+    row["sha256"] = result.motion->sha256;
+    row["rows"] = result.motion->time.size();
+    row["seconds"] = result.motion->time.back();
+  }
+  row["checkpoints"] = apps::jsonOf(result.values);
+  if (!result.external.failures.empty()) row["failed_metrics"] = failuresJson(result.external);
+  return row;
+}
 
 /// Reads first, so that a file that cannot be read makes no database.
 ImportedFile importOne(const std::string& file, const ImportOptions& o, const std::optional<recorder::ColumnMap>& map,
@@ -51,11 +184,7 @@ ImportedFile importOne(const std::string& file, const ImportOptions& o, const st
                     });
 }
 
-std::string summaryOf(const recorder::TrackedMotion& motion) {
-  return fmt::format("{:.2f} s, {} rows", motion.time.back(), motion.time.size());
-}
-
-int import(const ImportOptions& o) {
+ExitCode importFiles(const ImportOptions& o) {
   checkStored(o.cohort, o.cutoff);
   std::optional<recorder::ColumnMap> map;
   if (!o.columns.empty()) map = recorder::readColumnMap(o.columns);
@@ -63,7 +192,7 @@ int import(const ImportOptions& o) {
   checkMetrics(metrics, o.cohort);
   std::optional<analytics::CohortDatabase> database;
   std::vector<ExitCode> codes;
-  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  Json list = Json::array();
   Progress progress("importing, files", o.json);
   for (const std::string& file : o.files) {
     const ImportedFile result = importOne(file, o, map, metrics, database);
@@ -72,10 +201,10 @@ int import(const ImportOptions& o) {
     Progress::erase();
     if (!result.error.empty()) fmt::print(stderr, "calot: {}\n", result.error);
     if (o.json) {
-      list.push_back(jsonOf(file, result));
+      list.push_back(fileJson(file, result));
     } else if (result.error.empty()) {
-      std::cout << fmt::format("{}: {}, {}\n", file, o.cohort.empty() ? "shown" : result.how,
-                               summaryOf(*result.motion));
+      std::cout << fmt::format("{}: {}, {:.2f} s, {} rows\n", file, o.cohort.empty() ? "shown" : result.how,
+                               result.motion->time.back(), result.motion->time.size());
       if (o.files.size() == 1 || o.cohort.empty()) {
         analytics::printValues(result.values, {}, std::cout);
         std::cout << '\n';
@@ -87,7 +216,86 @@ int import(const ImportOptions& o) {
   } else if (database) {
     analytics::printAttempts(*database, std::cout);
   }
-  return static_cast<int>(worstOf(codes));
+  return worstOf(codes);
+}
+
+/// "expert 6, novice 6", or empty without groups.
+std::string groupsOf(const analytics::MotionManifest& manifest) {
+  std::map<std::string, std::size_t> groups;
+  for (const auto& entry : manifest.participants) ++groups[entry.second.group];
+  if (groups.size() == 1 && groups.begin()->first.empty()) return {};
+  std::string text;
+  for (const auto& [group, people] : groups)
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", group.empty() ? "without group" : group, people);
+  return " (" + text + ")";
+}
+
+void printSummary(const analytics::MotionManifest& manifest, const std::map<std::string, std::size_t>& counts,
+                  std::size_t practice) {
+  std::string how;
+  for (const auto& [word, files] : counts) how += fmt::format("{}{} {}", how.empty() ? "" : ", ", files, word);
+  std::cout << fmt::format("{}: {} files: {}; {} participants{}\n", manifest.path, manifest.rows.size(), how,
+                           manifest.participants.size(), groupsOf(manifest));
+  if (practice > 0) {
+    std::cout << fmt::format(
+        "{} in practice mode: studies leave these out (a column \"mode\", or --mode assessment, says otherwise)\n",
+        practice);
+  }
+}
+
+ExitCode importManifest(const ImportOptions& o) {
+  std::vector<Error> faults;
+  const analytics::MotionManifest manifest =
+      analytics::readMotionManifest(o.manifest, o.declaration, o.columns, faults);
+  std::optional<analytics::CohortDatabase> database;
+  std::optional<analytics::Enrolment> enrolment;
+  if (std::filesystem::exists(o.cohort)) {
+    enrolment.emplace(analytics::CohortDatabase(o.cohort, analytics::CohortDatabase::Access::write));
+    const std::vector<Error> conflicts = enrolment->conflicts(manifest);
+    faults.insert(faults.end(), conflicts.begin(), conflicts.end());
+  }
+  if (!faults.empty()) return refuseRows(faults);
+  const std::vector<analytics::MetricScript> metrics = readMetrics(o.metrics);
+  checkMetrics(metrics, o.cohort);
+
+  std::vector<ExitCode> codes;
+  std::vector<std::string> errors;
+  std::map<std::string, std::size_t> counts;
+  std::set<std::string> enrolled;
+  std::size_t practice = 0;
+  Json list = Json::array();
+  {
+    Progress progress("importing, files", o.json);
+    for (const analytics::MotionRow& row : manifest.rows) {
+      progress.show(codes.size(), manifest.rows.size());
+      const auto map = manifest.maps.find(row.columns);
+      const ImportedFile result =
+          importFile([&] { return readMotion(row.file, map == manifest.maps.end() ? nullptr : &map->second); },
+                     [&](ImportedFile& stored) {
+                       // Only now, so that files none of which can be read make no database.
+                       if (!database) database.emplace(o.cohort, analytics::CohortDatabase::Access::create);
+                       if (!enrolment) enrolment.emplace(*database);
+                       const std::string& who = row.declaration.participant;
+                       if (!who.empty() && enrolled.insert(who).second)
+                         enrolment->add(*database, manifest.participants.at(who));
+                       storeImported(o.cohort, database, row.declaration, metrics, stored);
+                     });
+      codes.push_back(worstOf({result.code, reportFailures(result.external, row.file.string())}));
+      ++counts[result.how];
+      if (result.error.empty() && row.declaration.mode == recorder::Mode::practice) ++practice;
+      if (!result.error.empty())
+        errors.push_back(fmt::format("{}: line {}: {}", manifest.path, row.line, result.error));
+      if (o.json) list.push_back(fileJson(row.file.string(), result));
+    }
+  }
+  if (o.json) {
+    printResult("import", {{"files", list}});
+  } else {
+    printSummary(manifest, counts, practice);
+  }
+  std::cout.flush();
+  for (const std::string& error : errors) fmt::print(stderr, "calot: {}\n", error);
+  return worstOf(codes);
 }
 
 /// For CLI::Option::check.
@@ -98,12 +306,23 @@ std::function<std::string(const std::string&)> wordOf(const char* field) {
   };
 }
 
+ExitCode importMotion(ImportOptions& o) {
+  analytics::declareMotion(o.declaration, "mode", o.mode);
+  analytics::declareMotion(o.declaration, "outcome", o.outcome);
+  if (o.files.empty() && o.manifest.empty())
+    throw Error(ErrorKind::invalid, "import: name motion files, or a table of them with --manifest");
+  if (o.manifest.empty()) return importFiles(o);
+  if (o.cohort.empty() || o.cutoff > 0.0)
+    throw Error(ErrorKind::invalid, "import: --manifest stores what it names: give --cohort, and no --cutoff");
+  return importManifest(o);
+}
+
 }  // namespace
 
 void addImport(CLI::App& app, Run& run) {
-  auto o = std::make_shared<ImportOptions>();
-  CLI::App* command = app.add_subcommand(
-      "import", "Computes the motion checkpoints of motion without a scene and stores them in a cohort.");
+  const auto [command, o] = addCommand(
+      app, run, "import", "Computes the motion checkpoints of motion without a scene and stores them in a cohort.",
+      importMotion);
   CLI::Option* manifest = command->add_option(
       "--manifest", o->manifest,
       "A CSV table instead of files: a row each with file, participant, group, task, start, outcome, experience and "
@@ -117,33 +336,13 @@ void addImport(CLI::App& app, Run& run) {
       ->check(wordOf("task"))
       ->capture_default_str();
   command->add_option("--participant", o->declaration.participant, "pseudonym")->check(wordOf("participant"));
-  command->add_option("--mode", o->mode, "practice or assessment")
-      ->check(oneOf({"practice", "assessment"}))
-      ->capture_default_str();
-  command->add_option("--purpose", o->declaration.purpose, "training, study, demo")
-      ->check(oneOf({"training", "study", "demo"}))
-      ->capture_default_str();
-  command->add_option("--handedness", o->declaration.handedness, "right, left, unknown")
-      ->check(oneOf({"right", "left", "unknown"}))
-      ->capture_default_str();
-  command->add_option("--outcome", o->outcome, "completed, abandoned, stopped")
-      ->check(oneOf({"completed", "abandoned", "stopped"}))
-      ->capture_default_str();
+  addChoice(*command, "--mode", o->mode, "practice or assessment", {"practice", "assessment"});
+  addChoice(*command, "--purpose", o->declaration.purpose, "training, study, demo", {"training", "study", "demo"});
+  addChoice(*command, "--handedness", o->declaration.handedness, "right, left, unknown", {"right", "left", "unknown"});
+  addChoice(*command, "--outcome", o->outcome, "completed, abandoned, stopped", {"completed", "abandoned", "stopped"});
   command->add_option("--start", o->declaration.startUtc, "when it began: 2026-01-31T12:00:00Z")
       ->check(wordOf("start"));
   command->add_flag("--json", o->json, "print the result as JSON");
-  command->callback([o, &run] {
-    run = [o] {
-      analytics::declareMotion(o->declaration, "mode", o->mode);
-      analytics::declareMotion(o->declaration, "outcome", o->outcome);
-      if (o->files.empty() && o->manifest.empty())
-        throw Error(ErrorKind::invalid, "import: name motion files, or a table of them with --manifest");
-      if (o->manifest.empty()) return import(*o);
-      if (o->cohort.empty() || o->cutoff > 0.0)
-        throw Error(ErrorKind::invalid, "import: --manifest stores what it names: give --cohort, and no --cutoff");
-      return importManifest({o->manifest, o->cohort, o->columns, o->declaration, o->metrics, o->json});
-    };
-  });
 }
 
 }  // namespace calot::apps

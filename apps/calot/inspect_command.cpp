@@ -1,34 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <fmt/format.h>
+// calot inspect and calot recover: a recording as it is, and one that was cut off.
 
 #include <algorithm>
-#include <memory>
-#include <nlohmann/json.hpp>
-#include <string>
 
-#include "apps/calot/commands.h"
-#include "apps/calot/environment.h"
-#include "apps/calot/inspect_text.h"
-#include "apps/calot/results.h"
-#include "apps/calot/terminal_text.h"
-#include "apps/common/exit_code.h"
-#include "recorder/base/errors.h"
+#include "apps/calot/command.h"
 #include "recorder/recording/layout.h"
 #include "recorder/recording/probe.h"
 #include "recorder/recording/reader.h"
 #include "recorder/recording/recording_facts.h"
+#include "recorder/recording/recover.h"
 #include "recorder/step_watch.h"
 #include "sim/scene/version.h"
 
 namespace calot::apps {
-
 namespace {
-
-using nlohmann::ordered_json;
 
 /// How a run at real time kept its deadlines, by the lateness of its ticks and steps' events; and how many of its steps
 /// missed a tolerance.
-void describeSteps(recorder::Recording& recording, ordered_json& out) {
+void describeSteps(recorder::Recording& recording, Json& out) {
   std::uint64_t missed = 0;
   float worst = 0.0F;
   double stretched = 0.0;
@@ -54,8 +43,8 @@ void describeSteps(recorder::Recording& recording, ordered_json& out) {
 }
 
 /// Measurements of the device, by hand.
-ordered_json describeDevice(recorder::Recording& recording) {
-  ordered_json out;
+Json describeDevice(recorder::Recording& recording) {
+  Json out;
   for (const Hand hand : {Hand::left, Hand::right}) {
     const recorder::RawStatistics s = recorder::rawStatistics(recording, hand);
     out[handNames[static_cast<std::size_t>(hand)]] = {{"samples", s.samples},
@@ -69,9 +58,9 @@ ordered_json describeDevice(recorder::Recording& recording) {
   return out;
 }
 
-ordered_json describe(recorder::Recording& recording, const recorder::ChainVerdict& chain) {
+Json describe(recorder::Recording& recording, const recorder::ChainVerdict& chain) {
   const recorder::AttemptHeader& header = recording.header();
-  ordered_json out;
+  Json out;
   out["file"] = recording.path().string();
   out["state"] = recording.complete() ? "complete" : "incomplete";
   out["outcome"] = recorder::outcomeNames[static_cast<std::size_t>(recording.outcome())];
@@ -94,7 +83,7 @@ ordered_json describe(recorder::Recording& recording, const recorder::ChainVerdi
                                                                         : "invalid";
   if (signature) out["public_key"] = toHex(signature->publicKey);
   out["this_simulation_version"] = simulationVersion;
-  ordered_json bytes;
+  Json bytes;
   std::uint64_t whole = 0;
   for (const recorder::StoredBytes& part : recorder::storedBytes(recording.path())) {
     bytes[part.group] = part.bytes;
@@ -102,53 +91,159 @@ ordered_json describe(recorder::Recording& recording, const recorder::ChainVerdi
   }
   out["bytes"] = whole;
   out["bytes_by_group"] = bytes;
-  ordered_json attributes;
+  Json attributes;
   recorder::forEachAttribute(header, [&](const char* name, const auto& value) { attributes[name] = value; });
   out["attempt"] = attributes;
   out["organs"] = header.organs;
   out["vessels"] = header.vessels;
   out["fat"] = header.fat;
-  ordered_json assets = ordered_json::array();
+  Json assets = Json::array();
   for (const recorder::Asset& asset : header.assets)
     assets.push_back({{"name", asset.name}, {"bytes", asset.bytes.size()}});
   out["scene_files"] = assets;
   return out;
 }
 
+using Lines = std::vector<std::pair<std::string, std::string>>;
+
+/// Headings in their order, each with the members that stand under it. What no heading names stands under the attempt.
+struct Group {
+  const char* heading;
+  std::vector<std::string_view> members;
+};
+
+const std::vector<Group> groups{
+    {"Recording", {"file", "state", "outcome", "seconds", "steps", "ticks", "events", "keyframes", "flushes"}},
+    {"Integrity", {"chain", "chain_broken_at_flush", "chain_head", "signature", "public_key"}},
+    {"Real time", {"missed_deadlines", "largest_lateness_s", "clock_stretched_s"}},
+    {"Tolerances", {"steps_missed_tolerance", "steps_missed_by_solver", "steps_missed_by_contact", "steps_held_back"}},
+    {"Device", {}},
+    {"Attempt", {}},
+    {"Versions",
+     {"format", "format_version", "software", "build", "simulation_version", "this_simulation_version",
+      "step_result_version"}},
+    {"Scene", {"scene_name", "scene_major", "scene_minor", "organs", "vessels", "fat"}},
+    {"Size", {"bytes"}},
+};
+
+std::string headingOf(const std::string& member) {
+  for (const Group& group : groups) {
+    if (std::find(group.members.begin(), group.members.end(), member) != group.members.end()) return group.heading;
+  }
+  return "Attempt";
+}
+
+std::string shownValue(const Json& value) {
+  if (value.is_string()) return value.get<std::string>();
+  if (!value.is_array()) return value.dump(-1, ' ', false, Json::error_handler_t::replace);
+  std::string list;
+  for (const Json& each : value) list += (list.empty() ? "" : ", ") + shownValue(each);
+  return list;
+}
+
+std::string shareOf(const Json& bytes, const Json& whole) {
+  const auto all = whole.get<double>();
+  return fmt::format("{} ({:.1f} %)", shownValue(bytes), all > 0.0 ? 100.0 * bytes.get<double>() / all : 0.0);
+}
+
+std::string deviceOf(const Json& s) {
+  return fmt::format(
+      "{} ({} valid, {} used by ticks, {} dropped, {} missing), {:.1f} a second, {:.0f} ms apart at most",
+      shownValue(s["samples"]), shownValue(s["valid"]), shownValue(s["used"]), shownValue(s["dropped"]),
+      shownValue(s["missing"]), s["rate_hz"].get<double>(), 1e3 * s["longest_interval_s"].get<double>());
+}
+
+/// The lines under one heading.
+Lines linesOf(const Json& d, const std::string& heading) {
+  Lines lines;
+  const auto take = [&](const std::string& member, const Json& value) {
+    if (headingOf(member) == heading && !shownValue(value).empty()) lines.emplace_back(member, shownValue(value));
+  };
+  for (const auto& [member, value] : d.items()) {
+    if (member == "attempt") {
+      for (const auto& [name, attribute] : value.items()) take(name, attribute);
+    } else if (member == "scene_files") {
+      if (heading != "Scene") continue;
+      for (const auto& asset : value)
+        lines.emplace_back("scene file",
+                           fmt::format("{} ({} bytes)", shownValue(asset["name"]), shownValue(asset["bytes"])));
+    } else if (member == "bytes_by_group") {
+      if (heading != "Size") continue;
+      for (const auto& [group, bytes] : value.items())
+        lines.emplace_back("bytes, " + group, shareOf(bytes, d["bytes"]));
+    } else if (member == "device_samples") {
+      if (heading != "Device") continue;
+      for (const auto& [hand, samples] : value.items()) lines.emplace_back("device, " + hand, deviceOf(samples));
+    } else {
+      take(member, value);
+    }
+  }
+  return lines;
+}
+
+/// The members of the JSON form, under headings.
+std::string inspectText(const Json& recording) {
+  constexpr std::size_t valueAt = 27;
+  std::string text;
+  for (const Group& group : groups) {
+    const Lines lines = linesOf(recording, group.heading);
+    if (lines.empty()) continue;
+    text += fmt::format("{}{}\n", text.empty() ? "" : "\n", group.heading);
+    for (const auto& [name, value] : lines)
+      text += fmt::format("  {:<24} {}\n", name, wrappedText(value, terminalColumns(), valueAt, valueAt));
+  }
+  return text;
+}
+
+struct InspectOptions {
+  std::string file, key;
+  bool json = false;
+};
+
+void inspect(const InspectOptions& o) {
+  const recorder::ChainVerdict chain = recorder::probe(o.file);
+  recorder::Recording recording(o.file);
+  const Json d = describe(recording, chain);
+  if (o.json) {
+    printResult("inspect", d);
+  } else {
+    fmt::print("{}", inspectText(d));
+  }
+  const std::string wanted = o.key.empty() ? "" : toHex(fromHex<32>(o.key, "--public-key"));
+  if (!chain.intact) throw Error(ErrorKind::refused, fmt::format("{}: {}", o.file, chain.what));
+  const auto& signature = recording.signature();
+  if (!wanted.empty() && (!signature || !signature->value || toHex(signature->publicKey) != wanted))
+    throw Error(ErrorKind::refused, fmt::format("{}: not signed by that key", o.file));
+}
+
+struct RecoverOptions {
+  std::string in, out;
+  bool force = false;
+};
+
+void recoverRecording(const RecoverOptions& o) {
+  const recorder::Recovered saved = recorder::recover(o.in, o.out, o.force);
+  fmt::print("{}: {} steps, {} ticks saved, {}\n", o.out, saved.steps, saved.ticks,
+             saved.complete ? "complete" : "incomplete");
+  if (!saved.lost.empty()) fmt::print("the rest is lost: {}\n", saved.lost);
+}
+
 }  // namespace
 
 void addInspect(CLI::App& app, Run& run) {
-  struct Options {
-    std::string file, key;
-    bool json = false;
-  };
-  const auto options = std::make_shared<Options>();
-  CLI::App* command =
-      app.add_subcommand("inspect", "Say what a recording holds, and whether its content chain is intact");
-  command->add_option("recording", options->file, "Recording (.h5)")->required();
-  command->add_option("--public-key", options->key, "The key that must have signed it; else the exit code is 3");
-  command->add_flag("--json", options->json, "Print JSON");
-  command->callback([options, &run] {
-    run = [options] {
-      const recorder::ChainVerdict chain = recorder::probe(options->file);
-      recorder::Recording recording(options->file);
-      const ordered_json d = describe(recording, chain);
-      if (options->json) {
-        printResult("inspect", d);
-      } else {
-        fmt::print("{}", inspectText(d, terminalColumns()));
-      }
-      if (!options->key.empty()) {
-        const auto wanted = fromHex<32>(options->key, "--public-key");
-        const auto& signature = recording.signature();
-        const bool by = signature && signature->value && toHex(signature->publicKey) == toHex(wanted);
-        if (!by && chain.intact)
-          throw Error(ErrorKind::refused, fmt::format("{}: not signed by that key", options->file));
-      }
-      if (!chain.intact) throw Error(ErrorKind::refused, fmt::format("{}: {}", options->file, chain.what));
-      return static_cast<int>(ExitCode::yes);
-    };
-  });
+  const auto [command, o] =
+      addCommand(app, run, "inspect", "Say what a recording holds, and whether its content chain is intact", inspect);
+  command->add_option("recording", o->file, "Recording (.h5)")->required();
+  command->add_option("--public-key", o->key, "The key that must have signed it; else the exit code is 3");
+  command->add_flag("--json", o->json, "Print JSON");
+}
+
+void addRecover(CLI::App& app, Run& run) {
+  const auto [command, o] = addCommand(
+      app, run, "recover", "Rewrite a recording that was cut off or whose writer was killed", recoverRecording);
+  command->add_option("recording", o->in, "Recording (.h5)")->required();
+  command->add_option("-o,--output", o->out, "File to write")->required();
+  command->add_flag("--force", o->force, "Replace the output if it is there");
 }
 
 }  // namespace calot::apps

@@ -1,15 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
-#include <string>
-#include <vector>
 
-#include "apps/calot/cohort_option.h"
-#include "apps/calot/commands.h"
-#include "apps/calot/environment.h"
+#include "apps/calot/command.h"
 #include "apps/calot/help.h"
-#include "apps/calot/wrong_word.h"
 #include "apps/common/help_json.h"
-#include "apps/common/program.h"
 #include "recorder/attempt.h"
 #include "recorder/compliance_cache.h"
 #include "recorder/prepared_scene.h"
@@ -27,7 +21,7 @@ int main(int argc, char** argv) {
 #define CALOT_ADD_COMMAND(name) apps::add##name(app, run);
   CALOT_COMMAND_LIST(CALOT_ADD_COMMAND)
 #undef CALOT_ADD_COMMAND
-  apps::dressHelp(app);
+  apps::formatHelp(app);
   apps::addHelpJson(app);
   try {
     app.parse(argc, argv);

@@ -1,18 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // calot mesh: tetrahedra from a closed surface, with an honest report; repaired and coarser surfaces for scenes.
-#include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
-#include <memory>
-#include <nlohmann/json.hpp>
-#include <string>
-#include <utility>
 
-#include "apps/calot/commands.h"
-#include "apps/calot/results.h"
-#include "apps/calot/wrong_word.h"
-#include "apps/common/exit_code.h"
-#include "recorder/base/errors.h"
+#include "apps/calot/command.h"
 #include "recorder/base/text_output.h"
 #include "recorder/formats/mesh_file.h"
 #include "recorder/formats/mesh_report.h"
@@ -28,15 +19,13 @@ struct CoarseSurface {
   TriangleMesh mesh;
 };
 
-/// A closed surface of about so many triangles: the boundary of a tetrahedral mesh (mesh_to_count.h) of the same
-/// volume within 1 %. Thin parts go as they do there.
-/// @param surface closed, outward, manifold
-[[nodiscard]] CoarseSurface coarseSurface(const TriangleMesh& surface, int triangles);
-
 /// Share of the requested number.
 constexpr double goodEnough = 0.1, acceptable = 0.3;
 constexpr int searches = 8;
 
+/// A closed surface of about this number of triangles: the boundary of a tetrahedral mesh (mesh_to_count.h) of the same
+/// volume within 1 %. Thin parts go as they do there.
+/// @param surface closed, outward, manifold
 CoarseSurface coarseSurface(const TriangleMesh& surface, int triangles) {
   CoarseSurface best;
   if (triangles >= surface.triangles()) {
@@ -91,7 +80,7 @@ void checkFiles(const MeshOptions& o) {
   if (!o.output.empty() && !o.output.ends_with(".vtk"))
     throw Error(ErrorKind::invalid, o.output + ": the output's name must end in .vtk");
   if (!o.output.empty() && o.tetrahedra == 0)
-    throw Error(ErrorKind::invalid, "mesh: --tetrahedra is wanted, the number of them");
+    throw Error(ErrorKind::invalid, "mesh: --tetrahedra gives the number of tetrahedra");
   if (!o.surfaceOutput.empty() && !o.surfaceOutput.ends_with(".obj"))
     throw Error(ErrorKind::invalid, o.surfaceOutput + ": the surface's name must end in .obj");
   for (const std::string& file : {o.output, o.surfaceOutput}) {
@@ -160,7 +149,7 @@ void writeOutputs(const MeshOptions& o, const TriangleMesh& surface, recorder::M
   report.surfaceOutputVolume = signedVolume(written);
 }
 
-int meshSurface(const MeshOptions& o) {
+void meshSurface(const MeshOptions& o) {
   checkFiles(o);
   recorder::MeshReport report;
   report.input = o.input;
@@ -187,7 +176,7 @@ int meshSurface(const MeshOptions& o) {
     writeOutputs(o, whole, report);
   }
   if (o.json) {
-    printResult("mesh", nlohmann::ordered_json::parse(recorder::meshReportJson(report)));
+    printResult("mesh", Json::parse(recorder::meshReportJson(report)));
   } else {
     fmt::print("{}", recorder::meshReportText(report));
     std::fflush(stdout);
@@ -195,33 +184,30 @@ int meshSurface(const MeshOptions& o) {
   for (const std::string& warning : recorder::meshWarnings(report))
     fmt::print(stderr, "calot: warning: {}: {}\n", o.input, warning);
   if (!report.faults.empty()) throw Error(ErrorKind::refused, o.input + ": " + report.faults.front());
-  return static_cast<int>(ExitCode::yes);
 }
 
 }  // namespace
 
 void addMesh(CLI::App& app, Run& run) {
-  CLI::App* command = app.add_subcommand(
-      "mesh", "Fill a closed surface with tetrahedra (isosurface stuffing); repair a surface for a scene");
-  const auto options = std::make_shared<MeshOptions>();
+  const auto [command, options] = addCommand(
+      app, run, "mesh", "Fill a closed surface with tetrahedra (isosurface stuffing); repair a surface for a scene",
+      meshSurface);
   command->add_option("surface", options->input, "the surface, a .obj, .stl or .ply file")->required();
   command->add_option("--unit", options->unit, "of the file's coordinates: m, cm or mm")
       ->required()
       ->check(oneOf({"m", "cm", "mm"}));
-  command->add_option("--tetrahedra", options->tetrahedra, "how many are wanted")
-      ->check(CLI::Range(12, maxTetrahedronCount));
+  command->add_option("--tetrahedra", options->tetrahedra, "their number")->check(CLI::Range(12, maxTetrahedronCount));
   command->add_option("-o,--output", options->output, "the mesh to write, a .vtk file");
   CLI::Option* surface = command->add_option("--surface-output", options->surfaceOutput,
                                              "the closed surface to write, a .obj file in metres, for scenes");
   command
       ->add_option("--surface-triangles", options->surfaceTriangles,
-                   "make that surface anew with about so many triangles")
+                   "remesh that surface with about this number of triangles")
       ->check(CLI::Range(100, 1'000'000))
       ->needs(surface);
   command->add_flag("--repair", options->repair, "fill holes");
   command->add_flag("--json", options->json, "print the report as JSON");
   command->add_flag("--force", options->force, "replace files that are there");
-  command->callback([options, &run] { run = [options] { return meshSurface(*options); }; });
 }
 
 }  // namespace calot::apps

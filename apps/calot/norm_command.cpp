@@ -1,29 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // calot norm: named, versioned cohorts that others are held against.
-#include <fmt/format.h>
 #include <algorithm>
-#include <CLI/CLI.hpp>
-#include <filesystem>
-#include <iostream>
-#include <memory>
-#include <nlohmann/json.hpp>
-#include <string>
-#include <vector>
 
 #include "analytics/assessment/create_norm.h"
 #include "analytics/assessment/grade.h"
 #include "analytics/assessment/norm.h"
 #include "analytics/assessment/norm_rule.h"
-#include "analytics/checkpoints/registry.h"
+#include "analytics/checkpoints/checkpoint.h"
 #include "analytics/cohort/assessment_database.h"
 #include "analytics/report/report_document.h"
-#include "analytics/report/study_tables.h"
-#include "apps/calot/cohort_option.h"
-#include "apps/calot/commands.h"
+#include "analytics/report/study_output.h"
+#include "apps/calot/command.h"
 #include "apps/calot/environment.h"
-#include "apps/calot/results.h"
-#include "apps/calot/wrong_word.h"
-#include "apps/common/exit_code.h"
 #include "recorder/base/errors.h"
 #include "recorder/base/file_bytes.h"
 #include "recorder/base/text_words.h"
@@ -31,23 +19,17 @@
 namespace calot::apps {
 namespace {
 
-/// Adds `calot norm angoff`: how many figures of the rule a borderline trainee passes, by judges.
-void addNormAngoff(CLI::App& norm, Run& run);
-
 struct AngoffOptions {
   std::string table;
   bool json = false;
 };
 
-int judgeByAngoff(const AngoffOptions& o) {
-  using Align = analytics::TextTable::Align;
+void judgeByAngoff(const AngoffOptions& o) {
   const analytics::AngoffJudgement a = analytics::readAngoff(readCsvTable(o.table));
   const double judges = static_cast<double>(a.judges.size());
-  analytics::ReportTable table{
-      "Probability that a borderline trainee passes",
-      {{"item", Align::left}, {"mean", Align::right}, {"least", Align::right}, {"most", Align::right}},
-      {}};
-  nlohmann::ordered_json items = nlohmann::ordered_json::array();
+  analytics::ReportTable table =
+      analytics::tableOf("Probability that a borderline trainee passes", {"=item", "mean", "least", "most"});
+  Json items = Json::array();
   for (std::size_t item = 0; item < a.items.size(); ++item) {
     double sum = 0.0, least = 1.0, most = 0.0;
     for (std::size_t j = 0; j < a.judges.size(); ++j) {
@@ -68,7 +50,7 @@ int judgeByAngoff(const AngoffOptions& o) {
                                 {"lower", a.cut.interval.lower},
                                 {"upper", a.cut.interval.upper},
                                 {"needed", a.needed}});
-    return static_cast<int>(ExitCode::yes);
+    return;
   }
   analytics::printTable(table, std::cout);
   analytics::printWrapped(
@@ -78,22 +60,9 @@ int judgeByAngoff(const AngoffOptions& o) {
           a.judges.size(), analytics::significant(a.cut.cut), a.items.size(),
           analytics::significant(a.cut.interval.lower), analytics::significant(a.cut.interval.upper), a.needed),
       std::cout);
-  return static_cast<int>(ExitCode::yes);
-}
-
-void addNormAngoff(CLI::App& norm, Run& run) {
-  const auto o = std::make_shared<AngoffOptions>();
-  CLI::App* command =
-      norm.add_subcommand("angoff", "How many figures a borderline trainee passes, by judges (Angoff), for --rule");
-  command->add_option("judges", o->table, "CSV file: a column judge, and one of probabilities for each figure")
-      ->required();
-  command->add_flag("--json", o->json, "Print JSON");
-  command->callback([o, &run] { run = [o] { return judgeByAngoff(*o); }; });
 }
 
 using Access = analytics::CohortDatabase::Access;
-using Align = analytics::TextTable::Align;
-using Json = nlohmann::ordered_json;
 
 constexpr std::size_t maxEvidence = std::size_t{1} << 30U;
 
@@ -115,7 +84,7 @@ std::uint32_t minOf(const std::string& rule) {
   const long long least = counted ? recorder::readWholeNumber(rule.substr(prefix.size()), fault) : 0;
   if (!fault.empty() || least < 1 || least > 1000)
     throw Error(ErrorKind::invalid,
-                fmt::format("norm: --rule {}: all, or at-least:K is wanted", recorder::shown(rule)));
+                fmt::format("norm: --rule {}: all, or at-least:K is expected", recorder::shown(rule)));
   return static_cast<std::uint32_t>(least);
 }
 
@@ -159,19 +128,12 @@ Json jsonOf(const analytics::Norm& norm) {
   return j;
 }
 
-void print(const analytics::Norm& norm) {
+void printNorm(const analytics::Norm& norm) {
   if (norm.synthetic) std::cout << analytics::watermarkText << '\n';
   for (const std::string& line : analytics::normSummary(norm)) analytics::printWrapped(line, std::cout);
   std::cout << '\n';
-  analytics::ReportTable table{"Pass marks",
-                               {{"checkpoint", Align::left},
-                                {"unit", Align::left},
-                                {"better", Align::left},
-                                {"cut", Align::right},
-                                {"95 %", Align::right},
-                                {"rule", Align::left},
-                                {"", Align::left}},
-                               {}};
+  analytics::ReportTable table =
+      analytics::tableOf("Pass marks", {"=checkpoint", "=unit", "=better", "cut", "95 %", "=rule", "="});
   for (const analytics::NormCheckpoint& c : norm.checkpoints) {
     const analytics::CheckpointDefinition* d =
         c.metric ? &c.metric->definition : analytics::findCheckpoint(c.checkpoint);
@@ -187,7 +149,7 @@ void print(const analytics::Norm& norm) {
   if (norm.synthetic) std::cout << analytics::watermarkText << '\n';
 }
 
-int create(NormOptions& o) {
+void createNorm(NormOptions& o) {
   o.request.name = o.name;
   o.request.by = o.by;
   o.request.leastPassed = minOf(o.rule);
@@ -202,11 +164,10 @@ int create(NormOptions& o) {
   const analytics::Norm norm =
       analytics::createNorm(o.database, o.request, {}, [&](double share, const char*) { progress.showShare(share); });
   Progress::erase();
-  print(norm);
-  return static_cast<int>(ExitCode::yes);
+  printNorm(norm);
 }
 
-int list(NormOptions& o) {
+void listNorms(NormOptions& o) {
   Json rows = Json::array();
   std::string text;
   for (const analytics::Norm& norm : analytics::AssessmentDatabase(o.database, Access::read).norms()) {
@@ -224,20 +185,18 @@ int list(NormOptions& o) {
   } else {
     std::cout << (text.empty() ? "no norms\n" : text);
   }
-  return static_cast<int>(ExitCode::yes);
 }
 
-int show(NormOptions& o) {
+void showNorm(NormOptions& o) {
   const analytics::Norm norm = analytics::AssessmentDatabase(o.database, Access::read).norm(o.name, o.version);
   if (o.json) {
     printResult("norm", jsonOf(norm));
   } else {
-    print(norm);
+    printNorm(norm);
   }
-  return static_cast<int>(ExitCode::yes);
 }
 
-int attach(NormOptions& o) {
+void attachEvidence(NormOptions& o) {
   const std::filesystem::path file(o.file);
   const std::string name = file.filename().string();
   const std::string hash = recorder::sha256Hex(recorder::readFileBytes(file, name, maxEvidence));
@@ -245,20 +204,15 @@ int attach(NormOptions& o) {
   const analytics::Norm norm = database.norm(o.name, o.version);
   database.attachEvidence(norm, {o.statement, name, hash, o.by, ""});
   std::cout << analytics::useOf(database.norm(norm.name, norm.version)) << '\n';
-  return static_cast<int>(ExitCode::yes);
 }
 
 void addCreateOptions(CLI::App& command, NormOptions& o) {
   analytics::StudyOptions& who = o.request.who;
-  command.add_option("--by", o.by, "Who makes it")->required();
+  command.add_option("--by", o.by, "Person who makes it")->required();
   command.add_option("--rule", o.rule, "How figures combine: all, or at-least:K of them")->required();
-  command
-      .add_option(
-          "--checkpoints", o.request.checkpoints,
+  addList(command, "--checkpoints", o.request.checkpoints,
           "Figures in the rule, A,B: a checkpoint, or one of it (\"path-length left\"); all: every one with a mark; "
-          "default: time, path lengths, critical view, clip errors, perforations and burns, as far as they have one")
-      ->delimiter(',')
-      ->allow_extra_args(false);
+          "default: time, path lengths, critical view, clip errors, perforations and burns, as far as they have one");
   command
       .add_option("--fixed", o.fixed,
                   "A pass mark that a person sets, in the unit of the tables, such as \"clip-errors<=0\": the figure "
@@ -268,8 +222,8 @@ void addCreateOptions(CLI::App& command, NormOptions& o) {
       "--protocol", o.protocol,
       "A study's protocol, a file or the name of one that comes with the program: its groups, the better one, its "
       "criteria and attempt rule");
-  command.add_option("--groups", who.groups, "The two groups, A,B")->delimiter(',')->allow_extra_args(false);
-  command.add_option("--better", who.better, "Which of them is competent");
+  addList(command, "--groups", who.groups, "The two groups, A,B");
+  command.add_option("--better", who.better, "The competent one of them");
   command.add_option("--judged-by", o.request.judgedBy,
                      "Instead of groups: the form by which raters judged the attempts (competence)");
   CLI::Option* form =
@@ -280,10 +234,8 @@ void addCreateOptions(CLI::App& command, NormOptions& o) {
   mark->needs(form);
   for (const char* other : {"--groups", "--better", "--judged-by", "--protocol"})
     form->excludes(command.get_option(other));
-  command.add_option("--group-by", o.groupBy, "What makes the groups")
-      ->check(oneOf({"performer", "group"}))
-      ->capture_default_str();
-  command.add_option("--attempt-rule", o.attemptRule, "Of a participant's several attempts the first")
+  addChoice(command, "--group-by", o.groupBy, "Property that makes the groups", {"performer", "group"});
+  command.add_option("--attempt-rule", o.attemptRule, "The first of a participant's several attempts")
       ->check(oneOf({"first"}));
   command.add_option("--key", who.key, "Only attempts of this comparability key");
   command.add_flag("--include-synthetic", who.includeSynthetic, "Take in what performers made (watermarked)");
@@ -295,7 +247,7 @@ void addCreateOptions(CLI::App& command, NormOptions& o) {
     protocol->excludes(command.get_option(name));
   for (const char* name : {"--groups", "--better", "--group-by"})
     command.get_option("--judged-by")->excludes(command.get_option(name));
-  command.add_option("--seed", o.seed, "Of the bootstrap")->check(wholeNumber)->capture_default_str();
+  command.add_option("--seed", o.seed, "Seed of the bootstrap")->check(wholeNumber)->capture_default_str();
 }
 
 }  // namespace
@@ -304,28 +256,32 @@ void addNorm(CLI::App& app, Run& run) {
   const auto o = std::make_shared<NormOptions>();
   CLI::App* command = app.add_subcommand("norm", "Make and show the norms that attempts are graded against");
   command->require_subcommand(1);
-  const auto add = [&](const char* name, const char* what, int (*call)(NormOptions&)) {
-    CLI::App* sub = command->add_subcommand(name, what);
+  const auto add = [&](const char* name, const char* what, void (*work)(NormOptions&)) {
+    CLI::App* sub = addCommand(*command, run, name, what, work, o).first;
     addCohortOption(*sub, o->database)->required();
-    sub->callback([o, &run, call] { run = [o, call] { return call(*o); }; });
     return sub;
   };
-  CLI::App* made = add("create", "Make the next version of a norm from attempts of a cohort", create);
+  CLI::App* made = add("create", "Make the next version of a norm from attempts of a cohort", createNorm);
   made->add_option("name", o->name, "Its name")->required();
   addCreateOptions(*made, *o);
-  add("list", "List the norms of a cohort", list)->add_flag("--json", o->json, "Print JSON");
-  CLI::App* shown = add("show", "Show a norm: members, rule, pass rate, pass marks", show);
+  add("list", "List the norms of a cohort", listNorms)->add_flag("--json", o->json, "Print JSON");
+  CLI::App* shown = add("show", "Show a norm: members, rule, pass rate, pass marks", showNorm);
   CLI::App* proven =
-      add("evidence", "Attach the site's validity evidence; without it every sheet is formative", attach);
+      add("evidence", "Attach the site's validity evidence; without it every sheet is formative", attachEvidence);
   for (CLI::App* sub : {shown, proven}) {
     sub->add_option("name", o->name, "Its name")->required();
     sub->add_option("--norm-version", o->version, "Its version; default: the newest");
   }
-  addNormAngoff(*command, run);
+  const auto [angoff, a] =
+      addCommand(*command, run, "angoff",
+                 "How many figures a borderline trainee passes, by judges (Angoff), for --rule", judgeByAngoff);
+  angoff->add_option("judges", a->table, "CSV file: a column judge, and one of probabilities for each figure")
+      ->required();
+  angoff->add_flag("--json", a->json, "Print JSON");
   shown->add_flag("--json", o->json, "Print JSON");
   proven->add_option("--file", o->file, "The document; its name and hash are stored")->required();
-  proven->add_option("--statement", o->statement, "What it shows, one sentence")->required();
-  proven->add_option("--by", o->by, "Who attaches it")->required();
+  proven->add_option("--statement", o->statement, "Its finding, one sentence")->required();
+  proven->add_option("--by", o->by, "Person who attaches it")->required();
 }
 
 }  // namespace calot::apps

@@ -1,40 +1,29 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // calot participant: who took part, behind a pseudonym.
-#include <fmt/format.h>
-#include <iostream>
 #include <map>
-#include <memory>
 #include <set>
-#include <string>
-#include <vector>
 
 #include "analytics/cohort/cohort_database.h"
 #include "analytics/cohort/withdraw.h"
 #include "analytics/cohort_files.h"
-#include "apps/calot/cohort_lists.h"
-#include "apps/calot/commands.h"
-#include "apps/calot/wrong_word.h"
-#include "apps/common/exit_code.h"
-#include "recorder/base/errors.h"
+#include "apps/calot/command.h"
 
 namespace calot::apps {
 namespace {
 
-/// `calot participant withdraw`.
-void addWithdraw(CLI::App& participant, Run& run);
-
 namespace fs = std::filesystem;
+using Access = analytics::CohortDatabase::Access;
+
+struct ParticipantFilter {
+  std::string cohort, group;
+  bool json = false;
+};
 
 struct WithdrawOptions {
   std::string pseudonym, cohort, scope;
   std::vector<std::string> folders;
   bool noFolders = false, dryRun = false;
 };
-
-void checkStores(const WithdrawOptions& o) {
-  if (o.folders.empty() != o.noFolders)
-    throw Error(ErrorKind::invalid, "withdraw: name the folders of recordings (--recordings), or say --no-recordings");
-}
 
 void removeFile(const fs::path& file) {
   std::error_code error;
@@ -59,7 +48,7 @@ void addFilms(const analytics::Withdrawal& w, std::vector<fs::path>& remove) {
 }
 
 /// All of it, before anything is done: what goes, then what stays and has to be looked into.
-void tell(const WithdrawOptions& o, const analytics::Withdrawal& w, const analytics::WithdrawalFiles& files) {
+void printPlan(const WithdrawOptions& o, const analytics::Withdrawal& w, const analytics::WithdrawalFiles& files) {
   for (const std::string& uuid : w.attempts) std::cout << "attempt " << uuid << '\n';
   for (const std::string& uuid : w.branchesOfOthers)
     std::cout << "of these, a branch that another participant made: " << uuid << '\n';
@@ -82,8 +71,9 @@ void tell(const WithdrawOptions& o, const analytics::Withdrawal& w, const analyt
     std::cout << fmt::format("still names it: {} {}; written by a person, look into it\n", o.cohort, place);
 }
 
-int withdraw(const WithdrawOptions& o) {
-  checkStores(o);
+void withdraw(const WithdrawOptions& o) {
+  if (o.folders.empty() != o.noFolders)
+    throw Error(ErrorKind::invalid, "withdraw: name the folders of recordings (--recordings), or say --no-recordings");
   const auto scope = o.scope == "all" ? analytics::WithdrawalScope::all : analytics::WithdrawalScope::research;
   analytics::Withdrawal w = analytics::planWithdrawal(o.cohort, o.pseudonym, scope);
   const std::vector<fs::path> folders(o.folders.begin(), o.folders.end());
@@ -94,10 +84,10 @@ int withdraw(const WithdrawOptions& o) {
   if (!w.known && files.remove.empty())
     throw Error(ErrorKind::refused,
                 fmt::format("{}: no participant \"{}\", and nothing left of one", o.cohort, o.pseudonym));
-  tell(o, w, files);
+  printPlan(o, w, files);
   if (o.dryRun) {
     std::cout << "nothing was changed (--dry-run)\n";
-    return static_cast<int>(ExitCode::yes);
+    return;
   }
   // The database last: until its rows are gone, running again finds everything that is left.
   for (const fs::path& file : files.remove) removeFile(file);
@@ -111,12 +101,11 @@ int withdraw(const WithdrawOptions& o) {
     std::cout << fmt::format("{}: {} files removed; the participant was not in the database\n", o.cohort,
                              files.remove.size());
   }
-  return static_cast<int>(ExitCode::yes);
 }
 
 void addWithdraw(CLI::App& participant, Run& run) {
-  const auto o = std::make_shared<WithdrawOptions>();
-  CLI::App* command = participant.add_subcommand("withdraw", "Remove what there is of a participant, for good");
+  const auto [command, o] =
+      addCommand(participant, run, "withdraw", "Remove what there is of a participant, for good", withdraw);
   command->add_option("participant", o->pseudonym, "Pseudonym")->required();
   command->add_option("--cohort", o->cohort, "Cohort database")->required();
   command->add_option("--scope", o->scope, "research: all but training goes, the participant stays; all: everything")
@@ -126,10 +115,10 @@ void addWithdraw(CLI::App& participant, Run& run) {
       ->allow_extra_args(false);
   command->add_flag("--no-recordings", o->noFolders, "There is no such folder");
   command->add_flag("--dry-run", o->dryRun, "Say what would go, and change nothing");
-  command->callback([o, &run] { run = [o] { return withdraw(*o); }; });
 }
 
 struct ParticipantOptions {
+  const CLI::App* command = nullptr;
   std::string pseudonym, database, group, arm, site;
   std::vector<std::string> experience, consent;
 };
@@ -157,57 +146,77 @@ std::map<std::string, std::string> consentOf(const ParticipantOptions& o) {
   return pairs(o.consent, ':', "--consent", "PURPOSE:YYYY-MM-DD");
 }
 
-void addOptions(CLI::App* command, const std::shared_ptr<ParticipantOptions>& options) {
-  command->add_option("participant", options->pseudonym, "Pseudonym, never a name")->required();
-  command->add_option("--cohort", options->database, "Cohort database")->required();
-  command->add_option("--group", options->group, "Study group");
-  command->add_option("--arm", options->arm, "Study arm");
-  command->add_option("--site", options->site, "Site");
-  command->add_option("--experience", options->experience, "Recorded criterion, CRITERION=VALUE; may be repeated")
-      ->allow_extra_args(false);
-  command->add_option("--consent", options->consent, "Consent given, PURPOSE:YYYY-MM-DD; may be repeated")
-      ->allow_extra_args(false);
+void add(const ParticipantOptions& o) {
+  analytics::CohortDatabase(o.database, Access::create)
+      .addParticipant({o.pseudonym, o.group, o.arm, o.site, experienceOf(o), consentOf(o)});
+  std::cout << fmt::format("{}: participant {} added\n", o.database, o.pseudonym);
+}
+
+void change(const ParticipantOptions& o) {
+  analytics::ParticipantChange change{givenOf(*o.command, "--group", o.group), givenOf(*o.command, "--arm", o.arm),
+                                      givenOf(*o.command, "--site", o.site), experienceOf(o), consentOf(o)};
+  analytics::CohortDatabase(o.database, Access::write).setParticipant(o.pseudonym, change);
+  std::cout << fmt::format("{}: participant {} changed\n", o.database, o.pseudonym);
+}
+
+void listParticipants(const ParticipantFilter& o) {
+  const analytics::CohortDatabase database(o.cohort, Access::read);
+  std::map<std::string, std::uint64_t> attempts;
+  for (const analytics::AttemptRow& a : database.listAttempts()) ++attempts[a.participant];
+  analytics::ReportTable table =
+      analytics::tableOf("", {"=participant", "=group", "=arm", "=site", "attempts", "=experience", "=consent"});
+  const auto joined = [](const std::map<std::string, std::string>& pairs, char mark) {
+    std::string text;
+    for (const auto& [name, value] : pairs)
+      text += fmt::format("{}{}{}{}", text.empty() ? "" : ", ", name, mark, value);
+    return text;
+  };
+  Json list = Json::array();
+  for (const analytics::Participant& p : database.participants()) {
+    if (!o.group.empty() && p.group != o.group) continue;
+    list.push_back(jsonOf(fieldsOf(p)));
+    list.back()["attempts"] = attempts[p.pseudonym];
+    table.rows.push_back({p.pseudonym, p.group, p.arm, p.site, std::to_string(attempts[p.pseudonym]),
+                          joined(p.experience, '='), joined(p.consent, ':')});
+  }
+  if (o.json) {
+    printResult("participant-list", {{"participants", list}});
+    return;
+  }
+  if (!list.empty()) table.print(std::cout, terminalColumns());
+  std::cout << fmt::format("{}: {} participants\n", o.cohort, list.size());
 }
 
 }  // namespace
 
 void addParticipant(CLI::App& app, Run& run) {
-  CLI::App* command = app.add_subcommand("participant", "List, add, change or withdraw participants of a cohort");
-  command->require_subcommand(1);
-  addParticipantList(*command, run);
-  addWithdraw(*command, run);
+  CLI::App& participant = *app.add_subcommand("participant", "List, add, change or withdraw participants of a cohort");
+  participant.require_subcommand(1);
 
-  const auto added = std::make_shared<ParticipantOptions>();
-  CLI::App* add = command->add_subcommand("add", "Add a participant; makes the cohort database if there is none");
-  addOptions(add, added);
-  add->callback([added, &run] {
-    run = [added] {
-      const analytics::Participant participant{added->pseudonym, added->group,         added->arm,
-                                               added->site,      experienceOf(*added), consentOf(*added)};
-      analytics::CohortDatabase(added->database, analytics::CohortDatabase::Access::create).addParticipant(participant);
-      std::cout << fmt::format("{}: participant {} added\n", added->database, added->pseudonym);
-      return static_cast<int>(ExitCode::yes);
-    };
-  });
+  const auto [list, l] = addCommand(participant, run, "list", "List the participants of a cohort", listParticipants);
+  addCohortOption(*list, l->cohort)->required();
+  list->add_option("--group", l->group, "Only this group's");
+  list->add_flag("--json", l->json, "Print JSON");
 
-  const auto changed = std::make_shared<ParticipantOptions>();
-  CLI::App* set = command->add_subcommand("set", "Change what is given of a participant");
-  addOptions(set, changed);
-  set->callback([set, changed, &run] {
-    // Asked of the parser, so that --group "" takes a group away.
-    analytics::ParticipantChange change;
-    if (set->count("--group") > 0) change.group = changed->group;
-    if (set->count("--arm") > 0) change.arm = changed->arm;
-    if (set->count("--site") > 0) change.site = changed->site;
-    run = [changed, change]() mutable {
-      change.experience = experienceOf(*changed);
-      change.consent = consentOf(*changed);
-      analytics::CohortDatabase(changed->database, analytics::CohortDatabase::Access::write)
-          .setParticipant(changed->pseudonym, change);
-      std::cout << fmt::format("{}: participant {} changed\n", changed->database, changed->pseudonym);
-      return static_cast<int>(ExitCode::yes);
-    };
-  });
+  addWithdraw(participant, run);
+
+  const auto o = std::make_shared<ParticipantOptions>();
+  CLI::App* added =
+      addCommand(participant, run, "add", "Add a participant; makes the cohort database if there is none", add, o)
+          .first;
+  CLI::App* changed = addCommand(participant, run, "set", "Change what is given of a participant", change, o).first;
+  o->command = changed;
+  for (CLI::App* command : {added, changed}) {
+    command->add_option("participant", o->pseudonym, "Pseudonym, never a name")->required();
+    command->add_option("--cohort", o->database, "Cohort database")->required();
+    command->add_option("--group", o->group, "Study group");
+    command->add_option("--arm", o->arm, "Study arm");
+    command->add_option("--site", o->site, "Site");
+    command->add_option("--experience", o->experience, "Recorded criterion, CRITERION=VALUE; may be repeated")
+        ->allow_extra_args(false);
+    command->add_option("--consent", o->consent, "Consent given, PURPOSE:YYYY-MM-DD; may be repeated")
+        ->allow_extra_args(false);
+  }
 }
 
 }  // namespace calot::apps

@@ -1,31 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // calot power: how many people a study needs, by simulating the study itself.
-#include <fmt/format.h>
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <iostream>
 #include <map>
-#include <memory>
-#include <nlohmann/json.hpp>
-#include <optional>
-#include <string>
-#include <vector>
 
 #include "analytics/assessment/protocol.h"
+#include "analytics/report/study_output.h"
 #include "analytics/report/study_protocol.h"
-#include "analytics/report/study_tables.h"
 #include "analytics/statistics/power.h"
 #include "analytics/statistics/two_groups.h"
-#include "apps/calot/commands.h"
-#include "apps/calot/environment.h"
-#include "apps/calot/results.h"
-#include "apps/calot/study_options.h"
-#include "apps/calot/wrong_word.h"
-#include "apps/common/exit_code.h"
-#include "recorder/base/errors.h"
+#include "apps/calot/command.h"
+#include "apps/calot/study_command.h"
 #include "recorder/base/text_words.h"
 
 namespace calot::apps {
@@ -55,16 +40,9 @@ struct PlannedStudy {
   bool synthetic = false;
 };
 
-/// @throws Error (invalid) "power: WHAT".
-[[noreturn]] void failPower(const std::string& what);
-
-/// "5:30:5", "12" or "8,10,15": people in the first group. @throws Error (invalid)
-std::vector<std::size_t> sizesOf(const std::string& text);
-
-/// @throws Error (invalid) for words that say nothing or too much, and as studyOf().
-PlannedStudy planOf(PowerOptions& options);
-
 constexpr std::size_t maxSizes = 100, maxCheckpoints = 200;
+
+[[noreturn]] void failPower(const std::string& what) { throw Error(ErrorKind::invalid, "power: " + what); }
 
 std::vector<std::string> split(const std::string& text, char mark) {
   std::vector<std::string> parts{""};
@@ -78,7 +56,7 @@ std::vector<std::string> split(const std::string& text, char mark) {
   return parts;
 }
 
-/// Of values with this mean and deviation the curve of their logarithms, where they are lognormal.
+/// Curve of values with this mean and deviation; of their logarithms if they are lognormal.
 analytics::NormalCurve curveOf(double mean, double deviation, bool lognormal, const std::string& text) {
   if (!(deviation > 0.0)) failPower(fmt::format("--checkpoint {}: a deviation is not positive", recorder::shown(text)));
   if (!lognormal) return {mean, deviation};
@@ -99,7 +77,7 @@ void addCheckpoint(PlannedStudy& planned, const std::string& text, bool lognorma
     if (!fault.empty()) break;
   }
   if (colon == std::string::npos || colon == 0 || numbers.size() != 4)
-    failPower(fmt::format("--checkpoint {}: NAME:MEAN,SD,MEAN,SD is wanted", recorder::shown(text)));
+    failPower(fmt::format("--checkpoint {}: NAME:MEAN,SD,MEAN,SD is expected", recorder::shown(text)));
   planned.names.push_back(recorder::shown(text.substr(0, colon)));
   planned.plan.checkpoints.push_back(
       {curveOf(numbers[0], numbers[1], lognormal, text), curveOf(numbers[2], numbers[3], lognormal, text)});
@@ -154,8 +132,7 @@ void planByProtocol(PlannedStudy& planned, PowerOptions& o) {
   o.level = protocol.level;
 }
 
-void failPower(const std::string& what) { throw Error(ErrorKind::invalid, "power: " + what); }
-
+/// "5:30:5", "12" or "8,10,15": people in the first group. @throws Error (invalid)
 std::vector<std::size_t> sizesOf(const std::string& text) {
   const auto number = [&](const std::string& word) {
     std::string fault;
@@ -173,7 +150,8 @@ std::vector<std::size_t> sizesOf(const std::string& text) {
     if (parts.size() > 3) failPower(fmt::format("--n {}: FROM:TO:STEP", recorder::shown(text)));
     std::string fault;
     const long long by = parts.size() < 3 ? 1 : recorder::readWholeNumber(parts[2], fault);
-    if (!fault.empty() || by < 1) failPower(fmt::format("--n {}: the step is no number from 1", recorder::shown(text)));
+    if (!fault.empty() || by < 1)
+      failPower(fmt::format("--n {}: the step is not a number from 1", recorder::shown(text)));
     const std::size_t from = number(parts[0]), to = number(parts[1]);
     for (std::size_t n = from; n <= to; n += static_cast<std::size_t>(by)) sizes.push_back(n);
   }
@@ -182,6 +160,7 @@ std::vector<std::size_t> sizesOf(const std::string& text) {
   return sizes;
 }
 
+/// @throws Error (invalid) for words that say nothing or too much, and as studyOf().
 PlannedStudy planOf(PowerOptions& o) {
   PlannedStudy planned;
   planned.plan.checkpoints.clear();
@@ -216,13 +195,11 @@ PlannedStudy planOf(PowerOptions& o) {
   planned.plan.adjustment = o.adjustment == "holm"   ? analytics::Adjustment::holm
                             : o.adjustment == "none" ? analytics::Adjustment::none
                                                      : analytics::Adjustment::benjaminiHochberg;
-  // Draws from people have ties, whose exact distribution is counted anew each time.
+  // Draws from people have ties, whose exact distribution is counted each time.
   planned.plan.simulations = o.simulations > 0 ? o.simulations : data ? 2000 : 10000;
   planned.plan.seed = std::stoull(o.seed);
   return planned;
 }
-
-using Json = nlohmann::ordered_json;
 
 std::string shareText(const analytics::SimulatedShare& s) {
   return fmt::format("{:.3f} [{:.3f}, {:.3f}]", s.value, s.interval.lower, s.interval.upper);
@@ -242,22 +219,20 @@ double markOf(const PowerOptions& o, const PlannedStudy& planned) {
   return o.adjustment == "holm" ? o.level / static_cast<double>(planned.family) : o.level;
 }
 
-void print(const PowerOptions& o, const PlannedStudy& planned, const std::vector<Sized>& results, std::size_t enough) {
+void printPower(const PowerOptions& o, const PlannedStudy& planned, const std::vector<Sized>& results,
+                std::size_t enough) {
   if (planned.synthetic) std::cout << analytics::watermarkText << '\n';
   std::cout << fmt::format("Power of two-sided Mann-Whitney tests at {:g}, adjustment {}: {}\n", o.level, o.adjustment,
                            planned.origin);
   std::cout << fmt::format("{} simulations each, seed {}; in brackets Wilson's 95 % interval of the simulation\n\n",
                            planned.plan.simulations, o.seed);
-  using Align = analytics::TextTable::Align;
-  analytics::TextTable table({{"n (" + planned.groups[0] + ")", Align::right},
-                              {"n (" + planned.groups[1] + ")", Align::right},
-                              {"checkpoint", Align::left},
-                              {"power", Align::right}});
+  analytics::ReportTable table = analytics::tableOf(
+      "", {"n (" + planned.groups[0] + ")", "n (" + planned.groups[1] + ")", "=checkpoint", "power"});
   std::size_t untestable = 0;
   for (const Sized& r : results) {
     std::string nx = fmt::format("{}", r.nx), ny = fmt::format("{}", r.ny);
     const auto row = [&](const std::string& name, const analytics::SimulatedShare& share) {
-      table.add({nx, ny, name, shareText(share)});
+      table.rows.push_back({nx, ny, name, shareText(share)});
       nx.clear();
       ny.clear();
     };
@@ -289,7 +264,7 @@ void print(const PowerOptions& o, const PlannedStudy& planned, const std::vector
   }
 }
 
-int power(PowerOptions& o) {
+void power(PowerOptions& o) {
   const std::vector<std::size_t> sizes = sizesOf(o.sizes);
   PlannedStudy planned = planOf(o);
   std::vector<Sized> results;
@@ -309,8 +284,8 @@ int power(PowerOptions& o) {
   }
   Progress::erase();
   if (!o.json) {
-    print(o, planned, results, enough);
-    return static_cast<int>(ExitCode::yes);
+    printPower(o, planned, results, enough);
+    return;
   }
   Json j{{"synthetic", planned.synthetic},
          {"distributions", planned.origin},
@@ -337,54 +312,37 @@ int power(PowerOptions& o) {
     j["sizes"].push_back(row);
   }
   printResult("power", j);
-  return static_cast<int>(ExitCode::yes);
 }
 
 }  // namespace
 
 void addPower(CLI::App& app, Run& run) {
-  const auto o = std::make_shared<PowerOptions>();
-  CLI::App* command = app.add_subcommand("power", "How many people a study needs, by simulating the study itself");
+  const auto [command, o] =
+      addCommand(app, run, "power", "How many people a study needs, by simulating the study itself", power);
   addStudySource(*command, o->source);
-  command
-      ->add_option("--effect", o->effects,
-                   "Shift of the first group in standard deviations, one a checkpoint: A,B,...; 0: none")
-      ->delimiter(',')
-      ->allow_extra_args(false);
+  addList(*command, "--effect", o->effects,
+          "Shift of the first group in standard deviations, one a checkpoint: A,B,...; 0: none");
   command
       ->add_option("--checkpoint", o->checkpoints,
                    "NAME:MEAN,SD,MEAN,SD of the first and the second group; may be repeated")
       ->allow_extra_args(false);
-  command->add_option("--shape", o->shape, "Of --effect and --checkpoint")
-      ->check(oneOf({"normal", "lognormal"}))
-      ->capture_default_str();
+  addChoice(*command, "--shape", o->shape, "Distribution for --effect and --checkpoint", {"normal", "lognormal"});
   command->add_option("--n", o->sizes, "People in the first group: FROM:TO:STEP, A,B,C or one number")
       ->capture_default_str();
-  command->add_option("--allocation", o->allocation, "People in the second group for each in the first")
-      ->check(CLI::Range(0.1, 10.0))
-      ->capture_default_str();
-  command->add_option("--correlation", o->correlation, "Of a participant's checkpoints with each other")
-      ->check(CLI::Range(0.0, 0.99))
-      ->capture_default_str();
-  command->add_option("--step", o->step, "Round values to multiples of it (scores, counts); 0: not")
-      ->check(CLI::Range(0.0, 1e6))
-      ->capture_default_str();
-  command->add_option("--adjustment", o->adjustment, "Of the p values of all checkpoints")
-      ->check(oneOf({"holm", "benjamini-hochberg", "none"}))
-      ->capture_default_str();
-  command->add_option("--level", o->level, "Level of significance")
-      ->check(CLI::Range(0.0001, 0.5))
-      ->capture_default_str();
-  command->add_option("--target", o->target, "Power that is wanted")
-      ->check(CLI::Range(0.01, 0.99))
-      ->capture_default_str();
+  addNumber(*command, "--allocation", o->allocation, "People in the second group for each in the first", 0.1, 10.0);
+  addNumber(*command, "--correlation", o->correlation, "Correlation of a participant's checkpoints with each other",
+            0.0, 0.99);
+  addNumber(*command, "--step", o->step, "Round values to multiples of it (scores, counts); 0: not", 0.0, 1e6);
+  addChoice(*command, "--adjustment", o->adjustment, "Adjustment of the p values of all checkpoints",
+            {"holm", "benjamini-hochberg", "none"});
+  addNumber(*command, "--level", o->level, "Level of significance", 0.0001, 0.5);
+  addNumber(*command, "--target", o->target, "Power to reach", 0.01, 0.99);
   command->add_option("--simulations", o->simulations, "Studies a size; default 10000, from people at hand 2000")
       ->check(CLI::Range(std::uint64_t{100}, std::uint64_t{1000000}));
-  command->add_option("--seed", o->seed, "Of the simulation")->check(wholeNumber)->capture_default_str();
+  command->add_option("--seed", o->seed, "Seed of the simulation")->check(wholeNumber)->capture_default_str();
   command->add_flag("--json", o->json, "Print JSON");
   // These are the protocol's.
   for (const char* name : {"--level", "--adjustment"}) command->get_option(name)->excludes("--protocol");
-  command->callback([o, &run] { run = [o] { return power(*o); }; });
 }
 
 }  // namespace calot::apps

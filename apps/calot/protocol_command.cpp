@@ -1,26 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // calot protocol: checks a study's protocol, registers it in a cohort, lists what is registered.
-#include <fmt/format.h>
 
 #include <algorithm>
-#include <iostream>
-#include <memory>
-#include <nlohmann/json.hpp>
-#include <string>
 
 #include "analytics/assessment/protocol.h"
-#include "analytics/cohort/analysis_locks.h"
 #include "analytics/cohort/assessment_database.h"
+#include "analytics/cohort/blinding.h"
 #include "analytics/report/masked_study.h"
 #include "analytics/statistics/two_groups.h"
-#include "apps/calot/cohort_option.h"
-#include "apps/calot/commands.h"
-#include "apps/calot/environment.h"
-#include "apps/calot/results.h"
-#include "apps/calot/study_options.h"
-#include "apps/calot/terminal_text.h"
-#include "apps/common/exit_code.h"
-#include "recorder/base/errors.h"
+#include "apps/calot/command.h"
+#include "apps/calot/study_command.h"
 
 namespace calot::apps {
 namespace {
@@ -33,7 +22,7 @@ struct ProtocolOptions {
   bool json = false;
 };
 
-int check(const ProtocolOptions& o) {
+void checkProtocol(const ProtocolOptions& o) {
   const analytics::Protocol p = analytics::readProtocol(findAsset(o.protocol, "protocols", "protocol"));
   const auto primary = std::count_if(p.hypotheses.begin(), p.hypotheses.end(), [](const auto& h) { return h.primary; });
   std::cout << fmt::format("{}: protocol {} version {}, {} hypotheses, {} of them primary, SHA-256 {}\n", p.file,
@@ -44,10 +33,9 @@ int check(const ProtocolOptions& o) {
       "Support of any primary hypothesis needs p <= {:.3g} ({:g}, Holm over {}). Groups of {} and {} are the smallest "
       "equal ones that can reach it (smallest p {:.2g}, without ties); smaller ones can support none.\n",
       mark, p.level, primary, least, least, analytics::smallestRankTestP(least, least));
-  return static_cast<int>(ExitCode::yes);
 }
 
-int registerIt(const ProtocolOptions& o) {
+void registerProtocol(const ProtocolOptions& o) {
   const analytics::Protocol p = analytics::readProtocol(findAsset(o.protocol, "protocols", "protocol"));
   analytics::AssessmentDatabase database(o.database, Access::create);
   bool added = false;
@@ -56,10 +44,9 @@ int registerIt(const ProtocolOptions& o) {
   std::cout << fmt::format("{}: protocol {} version {} {} {} by {}, SHA-256 {}\n", o.database, stored.name,
                            stored.version, added ? "registered on" : "was registered on", stored.registeredUtc,
                            stored.by, stored.sha256);
-  return static_cast<int>(ExitCode::yes);
 }
 
-int lock(const ProtocolOptions& o) {
+void lockAnalysis(const ProtocolOptions& o) {
   const analytics::AssessmentDatabase assessment(o.database, Access::read);
   StudySource source = o.study;
   source.protocol = o.protocol;
@@ -73,7 +60,7 @@ int lock(const ProtocolOptions& o) {
                             protocol.name, protocol.version));
   }
   const analytics::CohortDatabase cohort(o.database, Access::read);
-  // What the study would refuse cannot be locked.
+  // An analysis that the study would refuse cannot be locked.
   static_cast<void>(analytics::makeMaskedStudy(cohort, assessment, options, false));
   analytics::AnalysisLock present = analytics::presentAnalysis(cohort, assessment, options);
   present.by = o.by;
@@ -81,12 +68,11 @@ int lock(const ProtocolOptions& o) {
   const analytics::AnalysisLock stored = analytics::storeAnalysisLock(o.database, present, added);
   std::cout << fmt::format("{}: analysis of protocol {} {} {} by {}, values SHA-256 {}\n", o.database, stored.protocol,
                            added ? "locked on" : "was locked on", stored.lockedUtc, stored.by, stored.valuesSha256);
-  return static_cast<int>(ExitCode::yes);
 }
 
 /// Those that come with the program.
-int listShipped(const ProtocolOptions& o) {
-  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+void listShipped(const ProtocolOptions& o) {
+  Json rows = Json::array();
   std::string text;
   for (const std::filesystem::path& file : listAssets("protocols")) {
     const analytics::Protocol p = analytics::readProtocol(file);
@@ -100,12 +86,11 @@ int listShipped(const ProtocolOptions& o) {
   } else {
     std::cout << (text.empty() ? "no protocols (CALOT_ASSETS names the folder that has them)\n" : text);
   }
-  return static_cast<int>(ExitCode::yes);
 }
 
-int list(const ProtocolOptions& o) {
+void listProtocols(const ProtocolOptions& o) {
   if (o.database.empty()) return listShipped(o);
-  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  Json rows = Json::array();
   std::string text;
   for (const auto& p : analytics::AssessmentDatabase(o.database, Access::read).protocols()) {
     rows.push_back({{"name", p.name},
@@ -121,7 +106,6 @@ int list(const ProtocolOptions& o) {
   } else {
     std::cout << (text.empty() ? "no protocols\n" : text);
   }
-  return static_cast<int>(ExitCode::yes);
 }
 
 }  // namespace
@@ -130,28 +114,27 @@ void addProtocol(CLI::App& app, Run& run) {
   const auto o = std::make_shared<ProtocolOptions>();
   CLI::App* command = app.add_subcommand("protocol", "Check, register, lock and list the protocols of studies");
   command->require_subcommand(1);
-  const auto add = [&](const char* name, const char* what, int (*call)(const ProtocolOptions&)) {
-    CLI::App* sub = command->add_subcommand(name, what);
-    sub->callback([o, &run, call] { run = [o, call] { return call(*o); }; });
-    return sub;
+  const auto add = [&](const char* name, const char* what, void (*work)(const ProtocolOptions&)) {
+    return addCommand(*command, run, name, what, work, o).first;
   };
   const char* file = "A protocol's JSON file, or the name of one that comes with the program";
-  CLI::App* checked = add("check", "Read a protocol and say what it holds", check);
+  CLI::App* checked = add("check", "Read a protocol and say what it holds", checkProtocol);
   checked->add_option("protocol", o->protocol, file)->required();
-  CLI::App* registered = add("register", "Store a protocol with its hash and the time of now", registerIt);
+  CLI::App* registered = add("register", "Store a protocol with its hash and the time of now", registerProtocol);
   registered->add_option("protocol", o->protocol, file)->required();
   addCohortOption(*registered, o->database, "Cohort database; made where there is none")->required();
-  registered->add_option("--by", o->by, "Who registers it")->required();
-  CLI::App* locked = add("lock", "Fix a study's analysis, after which its groups are named", lock);
+  registered->add_option("--by", o->by, "Person who registers it")->required();
+  CLI::App* locked = add("lock", "Fix a study's analysis, after which its groups are named", lockAnalysis);
   locked->add_option("protocol", o->protocol, file)->required();
   addCohortOption(*locked, o->database)->required();
-  locked->add_option("--by", o->by, "Who locks it")->required();
+  locked->add_option("--by", o->by, "Person who locks it")->required();
   locked->add_option("--cohort-name", o->study.cohortName, "As the study's option of this name");
   locked->add_option("--key", o->study.cohort.key, "As the study's option of this name");
   locked->add_flag("--mix-keys", o->study.cohort.mixKeys, "As the study's option of this name");
   locked->add_flag("--phases", o->study.cohort.includePhases, "As the study's option of this name");
-  CLI::App* listed = add("list", "List the protocols that a cohort holds, or those that come with the program", list);
-  addCohortOption(*listed, o->database, "Cohort database; none: what comes with the program");
+  CLI::App* listed =
+      add("list", "List the protocols that a cohort holds, or those that come with the program", listProtocols);
+  addCohortOption(*listed, o->database, "Cohort database (default: the protocols that come with the program)");
   listed->add_flag("--json", o->json, "Print JSON");
 }
 

@@ -1,34 +1,37 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // calot rate: what people judge, by forms.
-#include <fmt/format.h>
+// calot rate pack: films and a form for raters who know neither whose attempt they see nor its group.
 
-#include <iostream>
+#include <algorithm>
+#include <chrono>
 #include <map>
-#include <memory>
 #include <set>
-#include <string>
-#include <vector>
 
+#include "analytics/assessment/pack_answers.h"
 #include "analytics/assessment/rating_form.h"
 #include "analytics/cohort/assessment_database.h"
+#include "analytics/cohort/blinding.h"
+#include "analytics/cohort/cohort_database.h"
+#include "analytics/cohort/withdraw.h"
+#include "analytics/intake/manifest_table.h"
+#include "analytics/intake/rating_manifest.h"
+#include "analytics/interchange/folder_output.h"
+#include "analytics/report/rater_page.h"
 #include "analytics/report/rating_tables.h"
-#include "apps/calot/cohort_option.h"
-#include "apps/calot/commands.h"
-#include "apps/calot/environment.h"
-#include "apps/calot/rate_files.h"
-#include "apps/calot/results.h"
-#include "apps/calot/terminal_text.h"
-#include "apps/common/exit_code.h"
-#include "recorder/base/errors.h"
+#include "apps/calot/command.h"
+#include "apps/calot/import_command.h"
+#include "gui/film/film.h"
+#include "gui/film/film_writer.h"
 #include "recorder/base/file_bytes.h"
 #include "recorder/base/json_reader.h"
 #include "recorder/base/text_words.h"
+#include "recorder/recording/probe.h"
+#include "recorder/recording/reader.h"
 
 namespace calot::apps {
 namespace {
 
 using Access = analytics::CohortDatabase::Access;
-using Json = nlohmann::ordered_json;
 using Given = std::vector<std::pair<std::string, std::string>>;
 
 struct RateOptions {
@@ -39,7 +42,7 @@ struct RateOptions {
 
 [[noreturn]] void fail(const std::string& what) { throw Error(ErrorKind::invalid, "rate: " + what); }
 
-int listForms(const RateOptions& o) {
+void listForms(const RateOptions& o) {
   Json rows = Json::array();
   for (const std::filesystem::path& file : listAssets("forms")) {
     const analytics::RatingForm form = analytics::readRatingForm(file);
@@ -63,7 +66,6 @@ int listForms(const RateOptions& o) {
                     {"items", items}});
   }
   if (o.json) printResult("forms", {{"forms", rows}});
-  return static_cast<int>(ExitCode::yes);
 }
 
 /// A JSON object of items and scores; null where an item was left blank.
@@ -72,7 +74,7 @@ Given readAnswers(const std::string& file) {
   const std::string name = path.filename().string();
   const nlohmann::json json =
       recorder::parseStrictJson(recorder::readFileBytes(path, name, std::size_t{1} << 20U), name);
-  if (!json.is_object()) throw Error(ErrorKind::damaged, Where{name}, "/: an object of items and scores is wanted");
+  if (!json.is_object()) throw Error(ErrorKind::damaged, Where{name}, "/: an object of items and scores is expected");
   Given given;
   for (const auto& item : json.items()) {
     if (!item.value().is_null() && !item.value().is_number_integer())
@@ -87,13 +89,13 @@ Given readAnswers(const std::vector<std::string>& items) {
   for (const std::string& item : items) {
     const std::size_t at = item.find('=');
     if (at == std::string::npos || at == 0 || at + 1 == item.size())
-      fail(fmt::format("--answer {}: ITEM=SCORE is wanted", recorder::shown(item)));
+      fail(fmt::format("--answer {}: ITEM=SCORE is expected", recorder::shown(item)));
     given.emplace_back(item.substr(0, at), item.substr(at + 1));
   }
   return given;
 }
 
-int store(const RateOptions& o) {
+void storeAnswers(const RateOptions& o) {
   const analytics::RatingForm form = analytics::readRatingForm(findAsset(o.form, "forms", "form"));
   if (form.ofAttempts && (o.attempt.empty() || o.rater.empty() || !o.participant.empty()))
     fail(fmt::format("form {} is about an attempt: name --attempt and --rater", form.name));
@@ -111,10 +113,9 @@ int store(const RateOptions& o) {
   std::cout << fmt::format("{}: {} version {} of {}, {} of {} items answered\n", o.database, form.name, form.version,
                            form.ofAttempts ? "attempt " + o.attempt : "participant " + o.participant,
                            rating.answers.size(), form.items().size());
-  return static_cast<int>(ExitCode::yes);
 }
 
-int show(const RateOptions& o) {
+void showRatings(const RateOptions& o) {
   const analytics::CohortDatabase cohort(o.database, Access::read);
   const analytics::AssessmentDatabase database(o.database, Access::read);
   std::map<std::string, std::string> groupOf;
@@ -132,8 +133,8 @@ int show(const RateOptions& o) {
   const std::vector<analytics::FormReport> reports =
       analytics::reportForms(database, groupOf, {groups.begin(), groups.end()}, attemptOf);
   if (o.json) {
-    printResult("ratings", {{"forms", analytics::ratingsJson(reports)}});
-    return static_cast<int>(ExitCode::yes);
+    printResult("ratings", {{"forms", analytics::ratingsTree(reports)}});
+    return;
   }
   if (reports.empty()) std::cout << "no ratings\n";
   for (const analytics::FormReport& report : reports) {
@@ -141,49 +142,299 @@ int show(const RateOptions& o) {
     for (const std::string& note : analytics::ratingNotes(report)) analytics::printWrapped(note, std::cout);
     if (report.filled > 0) std::cout << '\n';
   }
-  return static_cast<int>(ExitCode::yes);
+}
+
+ExitCode storeRatingManifest(const RateOptions& o) {
+  const auto find = [](const std::string& name) { return findAsset(name, "forms", "form"); };
+  std::vector<Error> faults;
+  const analytics::RatingManifest read = analytics::readRatingManifest(
+      o.manifest, o.form, find, analytics::CohortDatabase(o.database, Access::read), faults);
+  if (!faults.empty()) return refuseRows(faults);
+  analytics::AssessmentDatabase database(o.database, Access::write);
+  const analytics::StoredRatings stored = analytics::storeRatings(database, read, o.force, faults);
+  if (!faults.empty()) return refuseRows(faults);
+  if (o.json) {
+    const Json row{{"manifest", o.manifest},
+                   {"ratings", read.rows.size()},
+                   {"added", stored.added},
+                   {"unchanged", stored.unchanged},
+                   {"replaced", stored.replaced}};
+    printResult("rate-manifest", row);
+  } else {
+    std::cout << fmt::format("{}: {} ratings: {} added, {} unchanged, {} replaced\n", o.manifest, read.rows.size(),
+                             stored.added, stored.unchanged, stored.replaced);
+  }
+  return ExitCode::yes;
+}
+
+void takePackAnswers(const RateOptions& o) {
+  const analytics::PackAnswers answers = analytics::readPackAnswers(
+      o.taken, [&](const std::string& id) { return analytics::readRatingPack(o.database, id); });
+  analytics::storePackAnswers(o.database, answers.pack, answers.rater, answers.ratings, o.force);
+  std::cout << fmt::format("{}: {} ratings by {} with {} version {} stored", o.taken, answers.ratings.size(),
+                           answers.rater, answers.form.name, answers.form.version);
+  if (answers.notJudged > 0) std::cout << fmt::format(", {} films could not be judged", answers.notJudged);
+  if (answers.withdrawn > 0) std::cout << fmt::format(", {} films of withdrawn attempts left out", answers.withdrawn);
+  std::cout << '\n';
+}
+
+/// Source of the film of an attempt.
+struct FilmOrigin {
+  std::string attempt;  ///< uuid
+  std::filesystem::path file;
+  bool isRecording = false;  ///< to be rendered
+};
+
+namespace fs = std::filesystem;
+using analytics::AttemptRow;
+
+/// True if a file is a recording of this attempt.
+bool isRecordingOf(const fs::path& file, const std::string& attempt) {
+  std::error_code ignored;
+  if (file.extension() != ".h5" || !fs::is_regular_file(file, ignored)) return false;
+  recorder::probe(file);
+  return recorder::Recording(file).header().attempt == attempt;
+}
+
+std::optional<FilmOrigin> filmIn(const fs::path& folder, const AttemptRow& attempt) {
+  std::error_code ignored;
+  const std::string stem = fs::path(attempt.fileName).stem().string();
+  for (const std::string& name : {attempt.uuid, stem}) {
+    for (const char* ending : {".mp4", ".mkv", ".webm", ".mov"}) {
+      const fs::path film = folder / (name + ending);
+      if (!name.empty() && fs::is_regular_file(film, ignored)) return FilmOrigin{attempt.uuid, film, false};
+    }
+  }
+  const fs::path recording = folder / attempt.fileName;
+  if (isRecordingOf(recording, attempt.uuid)) return FilmOrigin{attempt.uuid, recording, true};
+  return std::nullopt;
+}
+
+std::vector<std::string> attemptsOf(const analytics::CohortDatabase& cohort, const std::vector<std::string>& chosen) {
+  std::vector<std::string> uuids;
+  std::set<std::string> seen;
+  for (const std::string& name : chosen) {
+    uuids.push_back(cohort.attemptNamed(name));
+    if (!seen.insert(uuids.back()).second)
+      throw Error(ErrorKind::invalid, fmt::format("rate: attempt {} is named twice", uuids.back()));
+  }
+  if (chosen.empty()) {
+    for (const AttemptRow& a : cohort.listAttempts()) {
+      if (!a.excluded) uuids.push_back(a.uuid);
+    }
+  }
+  return uuids;
+}
+
+std::vector<FilmOrigin> filmsInTable(const analytics::CohortDatabase& cohort, const fs::path& path,
+                                     const std::vector<std::string>& chosen) {
+  const analytics::ManifestTable table(readCsvTable(path.string()), {"attempt", "film"});
+  std::map<std::string, FilmOrigin> films;
+  std::vector<std::string> order;
+  for (const CsvRow& row : table.rows()) {
+    const fs::path film = table.fileNamed(table.cell(row, "film"));
+    std::error_code ignored;
+    if (!fs::is_regular_file(film, ignored)) {
+      throw table.fault(row, "film",
+                        fmt::format("there is no file \"{}\"; paths are relative to the table",
+                                    recorder::shown(table.cell(row, "film"))));
+    }
+    std::string uuid;
+    try {
+      uuid = cohort.attemptNamed(table.cell(row, "attempt"));
+    } catch (const Error& e) {
+      throw table.fault(row, "attempt", e.fault());
+    }
+    if (!films.emplace(uuid, FilmOrigin{uuid, film, isRecordingOf(film, uuid)}).second)
+      throw table.fault(row, "attempt", "has a film in a row before; remove one");
+    order.push_back(uuid);
+  }
+  std::vector<FilmOrigin> found;
+  for (const std::string& uuid : chosen.empty() ? order : attemptsOf(cohort, chosen)) {
+    const auto at = films.find(uuid);
+    if (at == films.end())
+      throw Error(ErrorKind::damaged, Where{path.string()}, fmt::format("has no film of attempt {}", uuid));
+    found.push_back(at->second);
+  }
+  return found;
+}
+
+/// Films of attempts.
+/// @param films a folder, in which a film has the uuid or the name of the recording or motion file (`.mp4`, `.mkv`,
+/// `.webm`, `.mov`), and recordings without a film are rendered; or a CSV table with the columns `attempt` and `film`
+/// @param chosen uuids or their beginnings; empty: every attempt that is not excluded, or every row of the table
+/// @throws calot::Error (damaged) for an attempt without film, or a wrong row; (refused) for an attempt that is not
+/// there
+std::vector<FilmOrigin> findFilms(const analytics::CohortDatabase& cohort, const fs::path& films,
+                                  const std::vector<std::string>& chosen) {
+  std::error_code ignored;
+  if (!fs::is_directory(films, ignored)) return filmsInTable(cohort, films, chosen);
+  std::vector<FilmOrigin> found;
+  for (const std::string& uuid : attemptsOf(cohort, chosen)) {
+    const std::optional<FilmOrigin> film = filmIn(films, *cohort.attempt(uuid));
+    if (!film) {
+      throw Error(ErrorKind::damaged, Where{films.string()},
+                  fmt::format("there is neither a film nor the recording of attempt {} ({}); add it, or leave the "
+                              "attempt out with --attempts",
+                              uuid, recorder::shown(cohort.attempt(uuid)->fileName)));
+    }
+    found.push_back(*film);
+  }
+  return found;
+}
+
+struct PackOptions {
+  std::string database, form, films, output;
+  std::vector<std::string> attempts, raters;
+};
+
+/// Raters' pseudonyms are names of folders.
+void checkRaters(const std::vector<std::string>& raters) {
+  std::set<std::string> seen;
+  for (const std::string& rater : raters) {
+    const bool plain = !rater.empty() && rater.size() <= 64 && rater.front() != '.' &&
+                       std::all_of(rater.begin(), rater.end(), [](char c) {
+                         return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                                c == '-' || c == '_' || c == '.';
+                       });
+    if (!plain || !seen.insert(rater).second) {
+      throw Error(
+          ErrorKind::invalid,
+          fmt::format("rate: --raters: \"{}\": different pseudonyms of letters, digits, - and _ are expected", rater));
+    }
+  }
+}
+
+void writeFilmTo(const fs::path& target, const FilmOrigin& origin) {
+  if (!origin.isRecording) {
+    gui::copyCleanFilm(origin.file, target);
+    return;
+  }
+  gui::FilmSettings settings;
+  settings.blinded = true;
+  gui::writeFilm(origin.file, target, settings, [&](std::uint64_t, std::uint64_t) {
+    if (stopRequested())
+      throw Error(ErrorKind::failure, "rate: stopped before the pack was whole; nothing is left of it");
+  });
+}
+
+/// One time for all files: their order in time would be that of the attempts.
+void levelTimes(const fs::path& folder) {
+  const auto day = std::chrono::floor<std::chrono::days>(fs::file_time_type::clock::now());
+  std::error_code ignored;
+  for (fs::recursive_directory_iterator it(folder, ignored), end; it != end; it.increment(ignored))
+    fs::last_write_time(it->path(), day, ignored);
+}
+
+analytics::RatingPage pageOf(const analytics::RatingPack& pack, const analytics::PackedRater& rater,
+                             const analytics::RatingForm& form) {
+  analytics::RatingPage page{pack.id, rater.rater, form, {}};
+  for (const analytics::PackedFilm& film : rater.films) page.films.push_back(film.name);
+  return page;
+}
+
+void packForRaters(const PackOptions& o) {
+  checkRaters(o.raters);
+  const analytics::RatingForm form = analytics::readRatingForm(findAsset(o.form, "forms", "form"));
+  if (!form.ofAttempts) throw Error(ErrorKind::invalid, fmt::format("rate: form {} is not about attempts", form.name));
+  const std::vector<FilmOrigin> films =
+      findFilms(analytics::CohortDatabase(o.database, Access::read), o.films, o.attempts);
+  std::vector<std::string> attempts;
+  std::map<std::string, const FilmOrigin*> originOf;
+  for (const FilmOrigin& film : films) {
+    attempts.push_back(film.attempt);
+    originOf[film.attempt] = &film;
+  }
+  if (attempts.empty()) throw Error(ErrorKind::refused, Where{o.database}, "has no attempt to rate");
+
+  const analytics::RatingPack pack =
+      analytics::drawRatingPack({form.name, form.version, form.sha256, form.text}, o.raters, attempts);
+  analytics::FolderOutput output(o.output);
+  stopOnSignals();
+  {
+    Progress progress("packing, films");
+    std::map<std::string, fs::path> first;  // each is encoded once
+    std::size_t done = 0;
+    for (const analytics::PackedRater& rater : pack.raters) {
+      const fs::path folder = output.folder() / rater.rater / "films";
+      fs::create_directories(folder);
+      for (const analytics::PackedFilm& film : rater.films) {
+        progress.show(done++, pack.raters.size() * films.size());
+        const fs::path target = folder / (film.name + ".mp4");
+        if (const auto [at, isNew] = first.emplace(film.attempt, target); isNew) {
+          writeFilmTo(target, *originOf.at(film.attempt));
+        } else {
+          fs::copy_file(at->second, target);
+        }
+      }
+      output.add(rater.rater + "/rate.html", analytics::ratingPageHtml(pageOf(pack, rater, form)));
+    }
+  }
+  levelTimes(output.folder());
+  // The key before the pack: a pack without one could not be taken back.
+  analytics::storeRatingPack(o.database, pack);
+  analytics::recordExport(o.database, "rating-pack", o.output, attempts);
+  output.finish();
+  std::cout << fmt::format(
+      "{}: {} films for {} rater{} with {} version {}; give each the folder of their name, and "
+      "store what comes back with calot rate {} --take answers-RATER.json\n",
+      o.output, films.size(), o.raters.size(), o.raters.size() == 1 ? "" : "s", form.name, form.version, o.database);
+}
+
+ExitCode rate(const RateOptions& o) {
+  const bool one = !(o.attempt + o.rater + o.participant + o.answersFile).empty() || !o.answers.empty();
+  const bool byFile = !o.manifest.empty() || !o.taken.empty();
+  if (!o.forms && o.database.empty()) fail("name a cohort database, or ask for --forms");
+  if (!o.forms && byFile && (one || (!o.manifest.empty() && !o.taken.empty()) || (!o.taken.empty() && !o.form.empty())))
+    fail("--manifest and --take say themselves what was rated, by whom and how");
+  if (o.forms) {
+    listForms(o);
+  } else if (!o.manifest.empty()) {
+    return storeRatingManifest(o);
+  } else if (byFile) {
+    takePackAnswers(o);
+  } else if (!o.form.empty()) {
+    storeAnswers(o);
+  } else if (one) {
+    fail("name the form that was filled in with --form");
+  } else {
+    showRatings(o);
+  }
+  return ExitCode::yes;
 }
 
 }  // namespace
 
 void addRate(CLI::App& app, Run& run) {
-  const auto o = std::make_shared<RateOptions>();
-  CLI::App* command = app.add_subcommand("rate", "Store and summarise what raters and participants judge, by forms");
+  const auto [command, o] =
+      addCommand(app, run, "rate", "Store and summarise what raters and participants judge, by forms", rate);
   addCohortOption(*command, o->database);
   command->add_flag("--forms", o->forms, "List the forms that come with the program");
   command->add_option("--form", o->form, "The form that was filled in: its name (calot rate --forms), or a JSON file");
   command->add_option("--attempt", o->attempt, "Uuid of the attempt that was rated");
   command->add_option("--rater", o->rater, "Pseudonym of who rated it");
   command->add_option("--participant", o->participant, "Pseudonym of the participant who filled in a questionnaire");
-  command
-      ->add_option("--answer", o->answers,
-                   "ITEM=SCORE for each item, - where it was left blank: A=4,B=- or one option each")
-      ->delimiter(',')
-      ->allow_extra_args(false);
+  addList(*command, "--answer", o->answers,
+          "ITEM=SCORE for each item, - where it was left blank: A=4,B=- or one option each");
   command->add_option("--answers", o->answersFile, "The same as a JSON object of items and scores, null for blank");
   command->add_option("--manifest", o->manifest,
                       "A CSV table of completed forms: attempt, file or participant, rater, and one column an item");
   command->add_option("--take", o->taken, "The answers to a pack as the rater's page saved them");
   command->add_flag("--force", o->force, "Replace what the same rater or participant has given before");
   command->add_flag("--json", o->json, "Print JSON");
-  const CLI::App* pack = addRatePack(*command, run);
-  command->callback([o, pack, &run] {
-    if (pack->parsed()) return;
-    run = [o] {
-      if (o->forms) return listForms(*o);
-      if (o->database.empty()) fail("name a cohort database, or ask for --forms");
-      const bool one = !(o->attempt + o->rater + o->participant + o->answersFile).empty() || !o->answers.empty();
-      if (!o->manifest.empty() || !o->taken.empty()) {
-        if (one || (!o->manifest.empty() && !o->taken.empty()) || (!o->taken.empty() && !o->form.empty()))
-          fail("--manifest and --take say themselves what was rated, by whom and how");
-        return o->manifest.empty() ? takePackAnswers(o->database, o->taken, o->force)
-                                   : storeRatingManifest(o->database, o->manifest, o->form, o->force, o->json);
-      }
-      if (!o->form.empty()) return store(*o);
-      if (one) fail("name the form that was filled in with --form");
-      return show(*o);
-    };
-  });
+
+  const auto [pack, p] = addCommand(
+      *command, run, "pack",
+      "Pack films and a form for raters, under random names and in random order; the key stays in the cohort",
+      packForRaters);
+  addCohortOption(*pack, p->database)->required();
+  pack->add_option("--form", p->form, "The form to fill in: its name, or a file")->required();
+  pack->add_option("--films", p->films,
+                   "A folder with the attempts' films or recordings, or a CSV table with columns attempt and film")
+      ->required();
+  addList(*pack, "--raters", p->raters, "Pseudonyms of the raters: R1,R2")->required();
+  addList(*pack, "--attempts", p->attempts, "Uuids, U1,U2 (default: all that are not excluded, or the table's)");
+  pack->add_option("-o,--output", p->output, "The pack's folder, which must not exist")->required();
 }
 
 }  // namespace calot::apps

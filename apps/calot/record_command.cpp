@@ -1,24 +1,102 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <fmt/format.h>
+// calot record and calot branch: an attempt from its start, or from a moment of another one.
 
 #include <cmath>
-#include <memory>
 
-#include "apps/calot/commands.h"
-#include "apps/calot/environment.h"
-#include "apps/calot/run_report.h"
+#include "apps/calot/command.h"
+#include "apps/calot/replay_report.h"
 #include "apps/calot/source_options.h"
-#include "apps/calot/wrong_word.h"
-#include "recorder/base/errors.h"
+#include "recorder/base/text_output.h"
+#include "recorder/branch.h"
 #include "recorder/formats/scene_file.h"
 #include "recorder/live/worker_pool.h"
+#include "recorder/live/wrapped_sources.h"
 #include "recorder/loop.h"
 #include "recorder/prepared_scene.h"
+#include "recorder/recording/probe.h"
 #include "recorder/recording/writer.h"
+#include "recorder/replay.h"
+#include "recorder/sources/scope/scope_source.h"
 
 namespace calot::apps {
-
 namespace {
+
+struct FinishedRun {
+  std::string attempt;  ///< uuid
+  std::string file;
+  double stepSeconds = 0.0;
+  recorder::RunReport report;
+  std::string why;     ///< the source's word on why it failed, or empty
+  bool paced = false;  ///< or live: deadlines mean something
+  bool live = false;
+};
+
+void printRunJson(const FinishedRun& run, double seconds) {
+  const recorder::RunReport& r = run.report;
+  Json out{{"attempt", run.attempt},
+           {"file", run.file},
+           {"outcome", wordFor(r.outcome)},
+           {"steps", r.steps},
+           {"seconds", seconds},
+           {"wall_seconds", r.wallSeconds},
+           {"missed_tolerance", missesJson(r.misses)},
+           {"ticks", r.ticks},
+           {"missed_deadlines", r.missedDeadlines},
+           {"largest_lateness_s", r.maxLateness},
+           {"clock_stretched_s", r.stretched},
+           {"pauses", r.pauses},
+           {"paused_s", r.paused}};
+  if (!run.why.empty()) out["source_status"] = run.why;
+  if (run.live) {
+    out["real_time_thread"] = r.realTime;
+    out["tick_cpu_mean_s"] = r.tickMean;
+    out["tick_cpu_p999_s"] = r.tickP999;
+    out["tick_cpu_largest_s"] = r.tickLargest;
+    out["arenas_grown"] = r.arenasGrown;
+    out["force_disagreements"] = r.disagreements;
+  }
+  printResult("record", out);
+}
+
+void printRun(const FinishedRun& run, double seconds) {
+  const recorder::RunReport& r = run.report;
+  const bool failed = r.outcome == recorder::Outcome::technicalFailure && !run.why.empty();
+  fmt::print("{}: attempt {}, {:.2f} s, {}{}{}\n", run.file, run.attempt, seconds, wordFor(r.outcome),
+             failed ? ": " : "", failed ? run.why : "");
+  if (r.misses.any > 0) fmt::print("{}: {}\n", run.file, describe(r.misses));
+  if (run.paced) {
+    fmt::print("{}: {} of {} ticks missed their deadline, at most {:.1f} ms late, clock stretched by {:.3f} s\n",
+               run.live ? "live" : "paced", r.missedDeadlines, r.ticks, 1e3 * r.maxLateness, r.stretched);
+  }
+  if (run.live) {
+    fmt::print(
+        "haptic tick: {:.1f} us of CPU on average, {:.1f} us at 99.9 %, {:.1f} us at most; {}; {} arenas grown\n",
+        1e6 * r.tickMean, 1e6 * r.tickP999, 1e6 * r.tickLargest,
+        r.realTime ? "real-time thread" : "ordinary thread (no permission for real time)", r.arenasGrown);
+  }
+  if (r.pauses > 0) fmt::print("{} pauses of the source, {:.1f} s in all\n", r.pauses, r.paused);
+}
+
+/// Prints it on stdout. @throws Error (failure) for what must not be missed
+void reportRun(const FinishedRun& run, bool json) {
+  Progress::erase();
+  const double seconds = static_cast<double>(run.report.steps) * run.stepSeconds;
+  if (json) {
+    printRunJson(run, seconds);
+  } else {
+    printRun(run, seconds);
+  }
+  if (run.report.disagreements > 0) {
+    throw Error(
+        ErrorKind::failure,
+        fmt::format("{}: {} ticks got other forces on the haptic thread than when computed again; the recording "
+                    "will not replay",
+                    run.file, run.report.disagreements));
+  }
+  if (!run.report.fault.empty()) {
+    throw Error(ErrorKind::failure, fmt::format("{}: {}", run.file, run.report.fault));
+  }
+}
 
 struct RecordOptions {
   SourceOptions source;
@@ -30,10 +108,10 @@ struct RecordOptions {
   bool paced = false, live = false, force = false, json = false;
 };
 
-int record(const RecordOptions& o) {
-  if (!std::isfinite(o.seconds)) throw Error(ErrorKind::invalid, "--seconds: a number is wanted");
+void record(const RecordOptions& o) {
+  if (!std::isfinite(o.seconds)) throw Error(ErrorKind::invalid, "--seconds: a number is expected");
   stopOnSignals();
-  refuseExisting(o.output, o.force);
+  recorder::refuseOutput(o.output, o.force);
   std::optional<recorder::StationKey> key = stationKeyOf(o.stationKey);
   recorder::LoadedScene scene = recorder::loadScene(recorder::findScene(o.scene, assetFolders()));
   for (const std::string& warning : scene.warnings) fmt::print(stderr, "calot: warning: {}\n", warning);
@@ -74,16 +152,97 @@ int record(const RecordOptions& o) {
   writer.finish();
   prepared->save();
   Progress::erase();
-  if (!o.json) tellDevice(*source);
-  return tell({header.attempt, o.output, stepSeconds, report, source->statusText(), run.paced || o.live, o.live},
-              o.json);
+  if (!o.json) printDevice(*source);
+  reportRun({header.attempt, o.output, stepSeconds, report, source->statusText(), run.paced || o.live, o.live}, o.json);
+}
+
+struct BranchOptions {
+  SourceOptions source;
+  std::string parent, at, stationKey, output, broadPhase = "grid";
+  std::uint64_t seed = 1;
+  double seconds = 0.0;
+  unsigned threads = 1;
+  bool live = false, force = false, json = false;
+};
+
+/// Keeps the newest measured pose of each hand, and the camera.
+class LastPose final : public recorder::Observer {
+ public:
+  void onStep(const recorder::StepRecord& record) override {
+    for (const TickSamples& tick : record.samples) {
+      for (std::size_t h = 0; h < handCount; ++h) {
+        if (tick.hand[h].valid) last.hand[h] = tick.hand[h];
+      }
+      last.camera = tick.camera;
+    }
+  }
+  void onEnd(recorder::Outcome /*outcome*/) override {}
+  TickSamples last;
+};
+
+void branch(const BranchOptions& o) {
+  if (!std::isfinite(o.seconds)) throw Error(ErrorKind::invalid, "--seconds: a number is expected");
+  stopOnSignals();
+  const double at = parseTime(o.at);
+  std::optional<recorder::StationKey> key = stationKeyOf(o.stationKey);
+  recorder::BranchFile file(o.output, o.force);
+  const recorder::ChainVerdict chain = recorder::probe(o.parent);
+  recorder::Recording parent(o.parent);
+  recorder::refuseParent(parent, chain);
+  const std::uint64_t forkStep = recorder::forkStepAt(parent, at);
+  const std::shared_ptr<recorder::PreparedScene> scene = recorder::sceneOf(parent);
+  const Model& model = scene->model();
+  const std::unique_ptr<recorder::SampleSource> source = makeSource(o.source, model.scene(), o.seed);
+  recorder::AttemptHeader header = recorder::branchHeader(parent, model, forkStep, source->provenance());
+  if (key) header.station = key->station;  // of who signs, wherever the parent came from
+
+  recorder::RecordingWriter writer(file.path(), header, {true, std::move(key)});
+  recorder::WorkerPool pool(o.threads);
+  recorder::Session session(model, header.seed, pool, scene->services(broadPhaseOf(o.broadPhase)));
+  LastPose pose;
+  session.join(writer);
+  session.join(pose);
+  {
+    Progress progress("taking the parent's steps", o.json);
+    recorder::takeParent(parent, session, forkStep, [&](std::uint64_t step, std::uint64_t of) {
+      if (writer.failed()) {
+        session.end(recorder::Outcome::technicalFailure);
+        writer.finish();  // says why
+      }
+      if (stopRequested()) throw Error(ErrorKind::failure, fmt::format("{}: stopped before the fork", o.output));
+      progress.show(step, of);
+    });
+  }
+  file.publish();
+
+  if (auto* const scope = source->scope(); scope != nullptr) scope->setOutFrom(pose.last.camera);
+  recorder::BlendedSource blended(*source, pose.last);
+  recorder::RunSettings run;
+  run.seconds = o.seconds > 0.0 ? static_cast<double>(session.steps()) * model.stepSeconds() + o.seconds : 0.0;
+  run.live = o.live;
+  driveDevice(*source, run);
+  recordDevice(*source, writer, session.steps() * model.scene().ticksPerStep);
+  run.stop = &stopRequested();
+  Progress progress("recording, steps", o.json);
+  run.progress = [&](std::uint64_t step) {
+    if (writer.failed()) stopRequested() = true;  // nothing more can be kept; finish() says why
+    progress.show(step, 0);
+  };
+  const recorder::RunReport report = recorder::runAttempt(session, blended, run);
+  writer.finish();
+  Progress::erase();
+  if (!o.json) {
+    fmt::print("{}: branch of {} after its step {}\n", o.output, header.parent, forkStep);
+    printDevice(*source);
+  }
+  reportRun({header.attempt, o.output, model.stepSeconds(), report, source->statusText(), run.paced || o.live, o.live},
+            o.json);
 }
 
 }  // namespace
 
 void addRecord(CLI::App& app, Run& run) {
-  auto o = std::make_shared<RecordOptions>();
-  CLI::App* command = app.add_subcommand("record", "Runs an attempt and records it.");
+  const auto [command, o] = addCommand(app, run, "record", "Runs an attempt and records it.", record);
   command->add_option("--scene", o->scene, "name of a scene (calot scenes), or a scene file")->required();
   addSource(*command, o->source);
   command->add_option("--seed", o->seed, "of performer and simulation")->check(wholeNumber)->capture_default_str();
@@ -94,25 +253,38 @@ void addRecord(CLI::App& app, Run& run) {
   });
   command->add_option("--station", o->station, "name of this training station");
   addStationKey(*command, o->stationKey);
-  command->add_option("--purpose", o->purpose, "training, study, demo, golden")
-      ->check(oneOf({"training", "study", "demo", "golden"}))
-      ->capture_default_str();
-  command->add_option("--handedness", o->handedness, "right, left, unknown")
-      ->check(oneOf({"right", "left", "unknown"}))
-      ->capture_default_str();
-  command->add_option("--mode", o->mode, "practice or assessment")
-      ->check(oneOf({"practice", "assessment"}))
-      ->capture_default_str();
+  addChoice(*command, "--purpose", o->purpose, "training, study, demo, golden",
+            {"training", "study", "demo", "golden"});
+  addChoice(*command, "--handedness", o->handedness, "right, left, unknown", {"right", "left", "unknown"});
+  addChoice(*command, "--mode", o->mode, "practice or assessment", {"practice", "assessment"});
   command->add_flag("--paced", o->paced, "run at real time: tick n no earlier than n ms after the start");
   command->add_flag("--live", o->live, "run at real time with the haptic ticks on a thread of their own, 1 kHz");
   addBroadPhase(*command, o->broadPhase);
-  command->add_option("--threads", o->threads, "of the simulation; 0: all")
-      ->check(CLI::Range(0U, 64U))
-      ->capture_default_str();
+  addThreads(*command, o->threads, "of the simulation; 0: all");
   command->add_option("-o,--output", o->output, "the recording")->required();
   command->add_flag("--force", o->force, "replace the output if it is there");
   command->add_flag("--json", o->json, "print the result as JSON");
-  command->callback([o, &run] { run = [o] { return record(*o); }; });
+}
+
+void addBranch(CLI::App& app, Run& run) {
+  const auto [command, o] =
+      addCommand(app, run, "branch", "Continues a recording from a chosen moment as a new recording.", branch);
+  command->add_option("recording", o->parent, "the parent")->required();
+  command->add_option("--at", o->at, "where the branch leaves it: seconds (12.5) or minutes and seconds (1:02.5)")
+      ->required();
+  addSource(*command, o->source);
+  command->add_option("--seed", o->seed, "of a performer; the simulation keeps the parent's")
+      ->check(wholeNumber)
+      ->capture_default_str();
+  command->add_option("--seconds", o->seconds, "stop so long after the fork; 0: when the source ends")
+      ->check(CLI::Range(0.0, 36000.0));
+  command->add_flag("--live", o->live, "run at real time after the fork, the haptic ticks on a thread of their own");
+  addStationKey(*command, o->stationKey);
+  addBroadPhase(*command, o->broadPhase);
+  addThreads(*command, o->threads, "of the simulation; 0: all");
+  command->add_option("-o,--output", o->output, "the branch, a recording")->required();
+  command->add_flag("--force", o->force, "replace the output if it is there");
+  command->add_flag("--json", o->json, "print the result as JSON");
 }
 
 }  // namespace calot::apps

@@ -1,19 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// calot regrade: the derived values of a cohort, computed anew.
-#include <fmt/format.h>
+// calot regrade: recomputes the derived values of a cohort.
 
-#include <iostream>
-#include <memory>
-#include <string>
-#include <vector>
+#include <map>
 
+#include "analytics/checkpoints/checkpoint.h"
 #include "analytics/regrade.h"
-#include "apps/calot/cohort_option.h"
-#include "apps/calot/commands.h"
-#include "apps/calot/environment.h"
-#include "apps/calot/regrade_report.h"
-#include "apps/calot/results.h"
-#include "recorder/base/errors.h"
+#include "apps/calot/command.h"
+#include "apps/calot/replay_report.h"
 
 namespace calot::apps {
 namespace {
@@ -31,27 +24,128 @@ std::vector<std::filesystem::path> placesOf(const RegradeOptions& o) {
   return {folder.empty() ? std::filesystem::path(".") : folder};
 }
 
-int regrade(const RegradeOptions& o) {
+ExitCode regrade(const RegradeOptions& o) {
   Progress progress("regrading, recordings", o.json);
   const analytics::Regrade regrade = analytics::regrade(
       o.cohort, placesOf(o), o.jobs, [&](std::uint64_t done, std::uint64_t of) { progress.show(done, of); });
   Progress::erase();
-  return static_cast<int>(reportRegrade(o.cohort, regrade, "regrade", o.json));
+  return reportRegrade(o.cohort, regrade, o.json);
 }
 
 }  // namespace
 
 void addRegrade(CLI::App& app, Run& run) {
-  const auto o = std::make_shared<RegradeOptions>();
-  CLI::App* command =
-      app.add_subcommand("regrade", "Compute the derived values of a cohort anew, and show what changed");
+  const auto [command, o] =
+      addCommand(app, run, "regrade", "Recompute the derived values of a cohort, and show what changed", regrade);
   addCohortOption(*command, o->cohort)->required();
   command->add_option("recordings", o->places, "Recordings, or folders that hold them; default: the database's folder");
-  command->add_option("--jobs", o->jobs, "Recordings at a time; 0: one for each processor")
-      ->check(CLI::Range(0U, 64U))
-      ->capture_default_str();
+  addThreads(*command, o->jobs, "Recordings at a time; 0: one for each processor", "--jobs");
   command->add_flag("--json", o->json, "Print JSON");
-  command->callback([o, &run] { run = [o] { return regrade(*o); }; });
+}
+
+namespace {
+
+using analytics::Regraded;
+
+const char* regradedName(Regraded how) {
+  constexpr const char* names[] = {"unchanged", "changed", "missing", "motion", "unreadable", "conflict"};
+  return names[static_cast<std::size_t>(how)];
+}
+
+std::string titleOf(const analytics::CheckpointValue& v) {
+  return v.subject.empty() ? v.name : v.name + " " + v.subject;
+}
+
+std::string shownValue(const std::optional<analytics::CheckpointValue>& v) {
+  if (!v) return "-";
+  if (!v->value) return v->availability == analytics::Availability::notApplicable ? "n/a" : nameOf(v->availability);
+  const analytics::CheckpointDefinition* definition = analytics::findCheckpoint(v->name);
+  return analytics::significant(*v->value * (definition != nullptr ? definition->displayFactor : 1.0), 6) + " " +
+         (definition != nullptr ? definition->displayUnit : v->unit);
+}
+
+/// Differences besides the figure.
+std::string otherwise(const analytics::ValueChange& c) {
+  if (!c.before) return "new";
+  if (!c.now) return "no longer computed";
+  std::string text;
+  const auto add = [&](const std::string& part) { text += (text.empty() ? "" : ", ") + part; };
+  if (c.before->version != c.now->version) add(fmt::format("version {} -> {}", c.before->version, c.now->version));
+  if (c.before->origin != c.now->origin)
+    add(fmt::format("{} -> {}", analytics::nameOf(c.before->origin), analytics::nameOf(c.now->origin)));
+  if (c.before->filter != c.now->filter) add("filter");
+  if (c.before->unit != c.now->unit) add("unit");
+  if (c.before->reason != c.now->reason && !c.now->value) add("reason");
+  if (c.before->note != c.now->note) add("note");
+  return text;
+}
+
+Json regradeJson(const analytics::Regrade& regrade) {
+  Json out;
+  out["attempts"] = Json::array();
+  for (const analytics::RegradedAttempt& a : regrade.attempts) {
+    Json row = {{"attempt", a.uuid}, {"file", a.file}, {"result", regradedName(a.how)}};
+    if (!a.message.empty()) row["message"] = a.message;
+    if (!a.remedies.empty()) row["advice"] = advice(a.remedies);
+    row["changes"] = Json::array();
+    for (const analytics::ValueChange& c : a.changes) {
+      Json change = {{"name", c.any().name}, {"subject", c.any().subject}};
+      change["before"] = c.before ? apps::jsonOf(std::vector{*c.before}).front() : Json();
+      change["now"] = c.now ? apps::jsonOf(std::vector{*c.now}).front() : Json();
+      row["changes"].push_back(change);
+    }
+    out["attempts"].push_back(row);
+  }
+  out["not_read"] = Json::array();
+  for (const Error& fault : regrade.notRead) out["not_read"].push_back(messageOf(fault));
+  return out;
+}
+
+void printRegrade(const analytics::Regrade& regrade) {
+  std::map<Regraded, std::uint64_t> counts;
+  std::vector<std::string> order;
+  std::map<std::string, std::uint64_t> attemptsOf;
+  analytics::ReportTable table = analytics::tableOf("", {"=attempt", "=checkpoint", "before", "now", "="});
+  for (const analytics::RegradedAttempt& a : regrade.attempts) {
+    ++counts[a.how];
+    for (const analytics::ValueChange& c : a.changes) {
+      const std::string title = titleOf(c.any());
+      if (attemptsOf[title]++ == 0) order.push_back(title);
+      table.rows.push_back({a.uuid.substr(0, 8), title, shownValue(c.before), shownValue(c.now), otherwise(c)});
+    }
+  }
+  if (!table.rows.empty()) {
+    table.print(std::cout);
+    std::cout << '\n';
+    for (const std::string& title : order)
+      std::cout << fmt::format("{}: changed in {} of {} attempts\n", title, attemptsOf[title], regrade.attempts.size());
+  }
+  std::cout << fmt::format("{} attempts: {} changed, {} unchanged", regrade.attempts.size(), counts[Regraded::changed],
+                           counts[Regraded::unchanged]);
+  for (const Regraded how : {Regraded::missing, Regraded::motion, Regraded::unreadable, Regraded::conflict}) {
+    if (counts[how] > 0) std::cout << fmt::format(", {} {}", counts[how], regradedName(how));
+  }
+  std::cout << '\n';
+  for (const Error& fault : regrade.notRead) std::cout << "not read: " << messageOf(fault) << '\n';
+  std::cout << std::flush;
+}
+
+}  // namespace
+
+ExitCode reportRegrade(const std::string& cohort, const analytics::Regrade& regrade, bool json) {
+  if (json) {
+    printResult("regrade", regradeJson(regrade));
+  } else {
+    printRegrade(regrade);
+  }
+  std::vector<ExitCode> codes;
+  for (const analytics::RegradedAttempt& a : regrade.attempts) {
+    codes.push_back(codeOf(a.fault));
+    if (a.fault)
+      fmt::print(stderr, "calot: {}: attempt {}: {}: {}\n", cohort, a.uuid, regradedName(a.how),
+                 advised(a.message, a.remedies));
+  }
+  return worstOf(codes);
 }
 
 }  // namespace calot::apps

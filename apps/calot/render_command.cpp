@@ -1,16 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <fmt/format.h>
-
-#include <optional>
-#include <string>
-#include <vector>
 
 #include "analytics/cohort/withdraw.h"
-#include "apps/calot/commands.h"
-#include "apps/calot/environment.h"
-#include "apps/calot/wrong_word.h"
+#include "apps/calot/command.h"
 #include "gui/film/film.h"
-#include "recorder/base/errors.h"
+#include "recorder/base/text_output.h"
 #include "recorder/recording/probe.h"
 #include "recorder/recording/reader.h"
 
@@ -39,14 +32,14 @@ void refuseMixed(const RenderOptions& o, bool film) {
   if (!o.beside && !o.align.empty()) throw Error(ErrorKind::invalid, "--align needs --beside");
 }
 
-int render(const RenderOptions& o) {
+void render(const RenderOptions& o) {
   const std::filesystem::path output(o.output);
   const bool film = output.extension() == ".mp4" || output.extension() == ".mkv";
   if (!film && output.extension() != ".png") {
     throw Error(ErrorKind::invalid,
                 fmt::format("{}: pictures are written as .png, films as .mp4 or .mkv", output.string()));
   }
-  refuseExisting(output, o.force);
+  recorder::refuseOutput(output, o.force);
   refuseMixed(o, film);
   gui::FilmSettings settings;
   settings.size = gui::parsePictureSize(o.size);
@@ -79,7 +72,7 @@ int render(const RenderOptions& o) {
   if (!film) {
     const gui::ShownMoment shown = gui::writeMoment(o.recording, output, settings);
     fmt::print("{}: step {}, {:.2f} s\n", o.output, shown.step, shown.seconds);
-    return 0;
+    return;
   }
   stopOnSignals();
   Progress bar("frames");
@@ -89,14 +82,13 @@ int render(const RenderOptions& o) {
   });
   Progress::erase();
   fmt::print("{}: {} frames, {:.2f} s\n", o.output, frames, static_cast<double>(frames) / settings.fps);
-  return 0;
 }
 
 }  // namespace
 
 void addRender(CLI::App& app, Run& run) {
-  auto o = std::make_shared<RenderOptions>();
-  CLI::App* command = app.add_subcommand("render", "Draws a moment of a recording, or makes a film of it.");
+  const auto [command, o] =
+      addCommand(app, run, "render", "Draws a moment of a recording, or makes a film of it.", render);
   command->add_option("recording", o->recording, "recording")->required();
   command->add_option("-o,--output", o->output, "picture (.png) or film (.mp4, .mkv)")->required();
   command->add_option("--at", o->at, "of a picture: seconds, or minutes:seconds (default: the start)");
@@ -120,7 +112,6 @@ void addRender(CLI::App& app, Run& run) {
   command->add_flag("--anyway", o->anyway,
                     "draw recordings of a simulation version without an engine, and changed ones, too: with a mark");
   command->add_flag("--force", o->force, "replace the output if it is there");
-  command->callback([o, &run] { run = [o] { return render(*o); }; });
 }
 
 }  // namespace calot::apps

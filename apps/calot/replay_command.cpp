@@ -1,20 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
-#include <iostream>
 #include <mutex>
-#include <nlohmann/json.hpp>
-#include <optional>
 #include <thread>
 
-#include "apps/calot/commands.h"
-#include "apps/calot/environment.h"
+#include "apps/calot/command.h"
 #include "apps/calot/replay_report.h"
-#include "apps/calot/results.h"
 #include "apps/calot/source_options.h"
-#include "recorder/base/errors.h"
 #include "recorder/base/text_output.h"
 #include "recorder/recording/probe.h"
 #include "recorder/replay.h"
@@ -32,7 +24,7 @@ struct ReplayOptions {
   bool anyway = false, apart = false, json = false;
 };
 
-int replay(const ReplayOptions& o) {
+ExitCode replay(const ReplayOptions& o) {
   if (!o.segments.empty() && o.files.size() > 1)
     throw Error(ErrorKind::invalid, "--segments are those of one recording: name one");
   if (!o.junit.file.empty()) recorder::refuseOutput(o.junit.file, o.junit.force);
@@ -85,23 +77,18 @@ int replay(const ReplayOptions& o) {
     });
     if (reports.size() > 1) fmt::print("{} recordings, {} bit-exact\n", reports.size(), exact);
   }
-  return static_cast<int>(worstOf(reports));
+  return worstOf(reports);
 }
 
 }  // namespace
 
 void addReplay(CLI::App& app, Run& run) {
-  auto o = std::make_shared<ReplayOptions>();
-  CLI::App* command = app.add_subcommand("replay", "Re-simulates recordings and compares every digest and force.");
+  const auto [command, o] =
+      addCommand(app, run, "replay", "Re-simulates recordings and compares every digest and force.", replay);
   command->add_option("recordings", o->files, "recordings")->required();
-  command
-      ->add_option("--threads", o->threads,
-                   "segments between keyframes that are verified at a time, of each recording; 0: one a processor")
-      ->check(CLI::Range(0U, 64U))
-      ->capture_default_str();
-  command->add_option("--jobs", o->jobs, "recordings at a time; 0: one a processor")
-      ->check(CLI::Range(0U, 64U))
-      ->capture_default_str();
+  addThreads(*command, o->threads,
+             "segments between keyframes that are verified at a time, of each recording; 0: one a processor");
+  addThreads(*command, o->jobs, "recordings at a time; 0: one a processor", "--jobs");
   command->add_option("--segments", o->segments, "verify these alone, FIRST LAST, numbered from 0")->expected(2);
   addJunitOptions(*command, o->junit);
   command->add_flag("--anyway", o->anyway, "re-simulate recordings of another simulation version too (still exit 5)");
@@ -111,7 +98,6 @@ void addReplay(CLI::App& app, Run& run) {
       command->add_option("--engine", o->engine, "this engine's program or module, whatever is installed");
   addBroadPhase(*command, o->broadPhase)->excludes(apart)->excludes(engine);
   command->add_flag("--json", o->json, "print the result as JSON");
-  command->callback([o, &run] { run = [o] { return replay(*o); }; });
 }
 
 }  // namespace calot::apps

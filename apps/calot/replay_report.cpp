@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "apps/calot/replay_report.h"
 
-#include <fmt/format.h>
+#include <algorithm>
+#include <iterator>
 
 #include <array>
-
-#include "analytics/report/report_text.h"
+#include "analytics/checkpoints/motion.h"
+#include "analytics/cohort/registers.h"
 #include "apps/calot/environment.h"
-#include "apps/common/advice.h"
-#include "apps/common/exit_code.h"
 #include "recorder/base/text_output.h"
 
 namespace calot::apps {
@@ -29,7 +29,7 @@ void printReport(const recorder::ReplayReport& r) {
   fmt::print(stderr, "calot: {}: {}\n", r.path.string(), advised(r.message, r.remedies));
 }
 
-nlohmann::ordered_json missesJson(const recorder::StepMisses& m) {
+Json missesJson(const recorder::StepMisses& m) {
   return {{"steps", m.any}, {"solver", m.solver}, {"contact", m.contact}, {"held_back", m.heldBack}};
 }
 
@@ -104,6 +104,79 @@ ExitCode worstOf(const std::vector<recorder::ReplayReport>& reports) {
   codes.reserve(reports.size());
   for (const recorder::ReplayReport& report : reports) codes.push_back(codeOf(report.fault()));
   return worstOf(codes);
+}
+
+const char* importedName(analytics::Imported imported) {
+  constexpr const char* names[] = {"added", "unchanged", "extended"};
+  return names[static_cast<std::size_t>(imported)];
+}
+
+namespace {
+
+Json intervalJson(const analytics::ValueInterval& i) {
+  if (!i.lower) return {{"lower", nullptr}, {"upper", nullptr}, {"reason", i.reason}};
+  return Json{{"lower", *i.lower},           {"upper", *i.upper},           {"limit", i.limit()},
+              {"step_effect", i.stepEffect}, {"mesh_effect", i.meshEffect}, {"constants_spread", i.constantsSpread}};
+}
+
+}  // namespace
+
+Json jsonOf(const std::vector<analytics::CheckpointValue>& values,
+            const std::vector<analytics::ValueInterval>& intervals) {
+  Json list = Json::array();
+  for (const analytics::CheckpointValue& v : values) {
+    Json row = {{"name", v.name}, {"subject", v.subject}, {"version", v.version}};
+    row["value"] = v.value ? Json(*v.value) : Json();
+    row["unit"] = v.unit;
+    row["origin"] = nameOf(v.origin);
+    if (v.metric) row["sha256"] = v.metric->sha256;
+    row["filter"] = v.filter;
+    if (!v.value) {
+      row["missing"] = nameOf(v.availability);
+      row["reason"] = v.reason;
+    }
+    if (!v.note.empty()) row["note"] = v.note;
+    if (v.coverage) row["coverage"] = *v.coverage;
+    if (const analytics::ValueInterval* interval = analytics::findInterval(intervals, v))
+      row["interval"] = intervalJson(*interval);
+    list.push_back(row);
+  }
+  return list;
+}
+
+void addStoring(CLI::App& command, std::string& cohort, double& cutoff) {
+  command.add_option("--cohort", cohort, "cohort database; made where there is none");
+  command
+      .add_option("--cutoff", cutoff,
+                  "instead of --cohort: cut-off of the motion filter (Hz), 3, 6 or 10; shows, stores nothing")
+      ->check([](const std::string& text) {
+        const bool known = std::any_of(std::begin(analytics::motionCutoffs), std::end(analytics::motionCutoffs),
+                                       [&](double hertz) { return text == std::to_string(static_cast<int>(hertz)); });
+        return known ? std::string() : std::string("3, 6 or 10 is expected");
+      });
+}
+
+void checkStored(const std::string& cohort, double cutoff) {
+  if (cohort.empty() && cutoff == 0.0)
+    throw Error(ErrorKind::invalid, "--cohort: a database for the values is expected (or --cutoff, to see them only)");
+  if (!cohort.empty() && cutoff != 0.0) {
+    throw Error(ErrorKind::invalid,
+                "--cutoff: values of a cohort have one filter, 6 Hz; leave out --cohort to see those of another");
+  }
+}
+
+std::string keyFaultOf(const analytics::AttemptRecord& attempt, const std::string& cohort) {
+  if (attempt.station.empty()) return {};
+  std::optional<analytics::PublicKey> key;
+  if (attempt.signature) key = attempt.signature->publicKey;
+  switch (analytics::standingOf(analytics::readRegisters(cohort), attempt.station, key)) {
+    case analytics::KeyStanding::another:
+      return fmt::format("signed by another key than that of station {} in {}", attempt.station, cohort);
+    case analytics::KeyStanding::unsignedButExpected:
+      return fmt::format("not signed, though station {} has a key in {}", attempt.station, cohort);
+    default:
+      return {};
+  }
 }
 
 }  // namespace calot::apps

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Reports that commands share: replays, stored and shown values, values that were computed again.
 #pragma once
 
-#include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
-#include "apps/common/exit_code.h"
+#include "analytics/checkpoints/checkpoint.h"
+#include "analytics/cohort/cohort_database.h"
+#include "analytics/regrade.h"
+#include "apps/calot/command.h"
 #include "recorder/replay.h"
 
 namespace calot::apps {
@@ -33,9 +35,30 @@ void writeJunit(const JunitOptions& options, const std::string& suite,
 nlohmann::json reportJson(const recorder::ReplayReport& report);
 
 /// How many steps missed a tolerance, by what was missed.
-nlohmann::ordered_json missesJson(const recorder::StepMisses& misses);
+Json missesJson(const recorder::StepMisses& misses);
 
 /// Exit code over many recordings, as worstOf of their codes.
 ExitCode worstOf(const std::vector<recorder::ReplayReport>& reports);
+
+/// The report of `calot regrade` and of `calot cohort merge --newer`: on stdout each changed value, how many attempts
+/// each checkpoint changed in, and a line of counts, or JSON; on stderr one line for each attempt with a fault.
+/// @returns the faults' exit code
+ExitCode reportRegrade(const std::string& cohort, const analytics::Regrade& regrade, bool json);
+
+/// "added", "unchanged", "extended".
+const char* importedName(analytics::Imported imported);
+
+/// A row for each value: its name, subject, version, number or the reason why there is none, filter, interval.
+Json jsonOf(const std::vector<analytics::CheckpointValue>& values,
+            const std::vector<analytics::ValueInterval>& intervals = {});
+
+/// Adds --cohort, where values are stored, and --cutoff, with which they are only shown.
+/// @param[out] cutoff Hz; 0: not given
+void addStoring(CLI::App& command, std::string& cohort, double& cutoff);
+/// Stored values have one filter: one of both options is needed. @throws Error (invalid)
+void checkStored(const std::string& cohort, double cutoff);
+
+/// Fault of a recording's signature where the cohort registers its station's key; empty: it is in order.
+std::string keyFaultOf(const analytics::AttemptRecord& attempt, const std::string& cohort);
 
 }  // namespace calot::apps

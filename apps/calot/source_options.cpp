@@ -14,8 +14,10 @@
 #include "recorder/sources/kinematics_source.h"
 #include "recorder/sources/performer.h"
 #include "recorder/sources/performer_profile.h"
-#include "recorder/sources/scope/scope_assistant.h"
 #include "recorder/sources/scope/scope_source.h"
+#ifdef CALOT_BULLET
+#include "sim/bullet/bullet_tree.h"
+#endif
 
 namespace calot::apps {
 namespace {
@@ -29,7 +31,7 @@ void addTools(CLI::App& command, DeviceOptions& options) {
 }
 
 std::array<std::string, handCount> toolsOf(const DeviceOptions& options) {
-  if (options.tools.size() != handCount) throw Error(ErrorKind::invalid, "--tools: two names are wanted: LEFT,RIGHT");
+  if (options.tools.size() != handCount) throw Error(ErrorKind::invalid, "--tools: two names are expected: LEFT,RIGHT");
   std::array<std::string, handCount> out;
   for (std::size_t h = 0; h < handCount; ++h) out[h] = options.tools[h] == "-" ? "" : options.tools[h];
   return out;
@@ -74,7 +76,7 @@ void recordDevice(recorder::SampleSource& source, recorder::RecordingWriter& wri
   if (auto* device = source.device(); device != nullptr) writer.takeRawSamples(device->rawSamples(), firstTick);
 }
 
-void tellDevice(recorder::SampleSource& source) {
+void printDevice(recorder::SampleSource& source) {
   const auto* device = source.device();
   if (device == nullptr) return;
   const recorder::DeviceCounts& counts = device->counts();
@@ -116,7 +118,7 @@ void refuseScope(const ScopeOptions& options) {
   if (!options.moves())
     throw Error(ErrorKind::invalid, "--scope-device: the endoscope is fixed; --scope 0 or --scope 30 lets it move");
   if (recorder::isCombination(options.device))
-    throw Error(ErrorKind::invalid, "--scope-device: one device is wanted, without left= and right=");
+    throw Error(ErrorKind::invalid, "--scope-device: one device is expected, without left= and right=");
 }
 
 std::unique_ptr<recorder::SampleSource> withScope(std::unique_ptr<recorder::SampleSource> source,
@@ -176,14 +178,6 @@ std::string stationOf(const std::string& named, const std::optional<recorder::St
     throw Error(ErrorKind::invalid, fmt::format("--station {}: the key is that of station {}", named, key->station));
   return key->station;
 }
-
-}  // namespace calot::apps
-
-#ifdef CALOT_BULLET
-#include "sim/bullet/bullet_tree.h"
-#endif
-
-namespace calot::apps {
 
 CLI::Option* addBroadPhase(CLI::App& command, std::string& name) {
   return command

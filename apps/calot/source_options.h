@@ -21,7 +21,7 @@
 #include "recorder/sources/devices/device_source.h"
 #include "recorder/sources/devices/open_device.h"
 #include "recorder/sources/devices/window_input.h"
-#include "recorder/sources/scope/scope_skill.h"
+#include "recorder/sources/scope/scope_source.h"
 #include "recorder/sources/source.h"
 #include "sim/contact/broad_phase.h"
 #include "sim/scene/description.h"
@@ -45,16 +45,16 @@ std::array<std::string, handCount> toolsOf(const DeviceOptions& options);
 std::unique_ptr<recorder::DeviceSource> makeDeviceSource(const DeviceOptions& options, const SceneDescription& scene,
                                                          recorder::Mode mode, const std::atomic<bool>* stop);
 
-/// Where the source is a device: runs it at the pace of the clock if it lives in real time, and lets its motors have
+/// If the source is a device: runs it at the pace of the clock if it lives in real time, and gives its motors
 /// the forces. @param source outlives the run.
 void driveDevice(recorder::SampleSource& source, recorder::RunSettings& run);
 
-/// Where the source is a device: its raw samples go into the recording. @param firstTick as
+/// If the source is a device: its raw samples go into the recording. @param firstTick as
 /// RecordingWriter::takeRawSamples. Source and writer outlive the run.
 void recordDevice(recorder::SampleSource& source, recorder::RecordingWriter& writer, std::uint64_t firstTick = 0);
 
-/// Where the source is a device: what came from it, on stdout.
-void tellDevice(recorder::SampleSource& source);
+/// If the source is a device: prints its counts on stdout.
+void printDevice(recorder::SampleSource& source);
 
 struct ScopeOptions {
   std::optional<double> optic;  ///< degrees between shaft and view; none: the camera is fixed

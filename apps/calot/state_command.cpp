@@ -1,14 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <fmt/format.h>
 
-#include <iostream>
-#include <nlohmann/json.hpp>
-
-#include "apps/calot/commands.h"
-#include "apps/calot/environment.h"
-#include "apps/calot/results.h"
-#include "apps/common/exit_code.h"
-#include "recorder/base/errors.h"
+#include "apps/calot/command.h"
 #include "recorder/base/text_output.h"
 #include "recorder/engine/state_fields.h"
 #include "recorder/prepared_scene.h"
@@ -30,8 +22,8 @@ struct StateOptions {
   bool flat = false, force = false, anyway = false;
 };
 
-int state(const StateOptions& o) {
-  refuseExisting(o.output, o.force);
+void state(const StateOptions& o) {
+  recorder::refuseOutput(o.output, o.force);
   recorder::probe(o.recording);
   recorder::Recording recording(o.recording);
   if (o.step >= recording.stepCount()) {
@@ -46,7 +38,7 @@ int state(const StateOptions& o) {
     if (!o.anyway) throw Error(ErrorKind::undecided, Where{o.recording}, what, {Remedy::replayAnyway});
     std::cerr << "calot: warning: " << o.recording << ": " << what << '\n';
   }
-  // What a State's bytes mean this build knows of its own version alone.
+  // This build can read the State of its own version only.
   const recorder::EngineChoice choice(recording, {.anyway = true});
   recorder::Seeker seeker(recording, choice);
   seeker.seek(o.step);
@@ -54,11 +46,11 @@ int state(const StateOptions& o) {
   State state;
   const recorder::Keyframe keyframe = seeker.keyframe();
   if (!restoreState(scene->model(), keyframe.state, state))
-    throw Error(ErrorKind::damaged, fmt::format("{}: the State of step {} is none", o.recording, o.step));
+    throw Error(ErrorKind::damaged, fmt::format("{}: the State of step {} cannot be restored", o.recording, o.step));
   if (!o.flat) {
     recorder::writeStateFile(o.output, o.step, simulationVersion, recorder::stateFields(scene->model(), state),
                              o.force);
-    return 0;
+    return;
   }
   FlatState flat;
   flat.scene = scene->model().scene();
@@ -70,7 +62,6 @@ int state(const StateOptions& o) {
   }
   const std::vector<std::byte> bytes = saveFlat(flat);
   recorder::writeText(o.output, {reinterpret_cast<const char*>(bytes.data()), bytes.size()}, o.force);
-  return 0;
 }
 
 struct DiffOptions {
@@ -78,7 +69,7 @@ struct DiffOptions {
   bool json = false;
 };
 
-int diff(const DiffOptions& o) {
+ExitCode diff(const DiffOptions& o) {
   const recorder::StateFile a = recorder::readStateFile(o.first);
   const recorder::StateFile b = recorder::readStateFile(o.second);
   const auto difference = recorder::firstDifference(a.fields, b.fields);
@@ -97,31 +88,28 @@ int diff(const DiffOptions& o) {
     fmt::print("equal: {} fields of step {}\n", a.fields.size(), a.step);
   }
   if (a.step != b.step && !o.json) fmt::print("the first is of step {}, the second of step {}\n", a.step, b.step);
-  return static_cast<int>(difference ? ExitCode::no : ExitCode::yes);
+  return difference ? ExitCode::no : ExitCode::yes;
 }
 
 }  // namespace
 
 void addState(CLI::App& app, Run& run) {
-  auto o = std::make_shared<StateOptions>();
-  CLI::App* command = app.add_subcommand("state", "Writes the State after a step, as HDF5 or as plain bytes.");
+  const auto [command, o] =
+      addCommand(app, run, "state", "Writes the State after a step, as HDF5 or as plain bytes.", state);
   command->add_option("recording", o->recording, "recording")->required();
   command->add_option("--step", o->step, "the step after which")->check(wholeNumber)->required();
   command->add_flag("--flat", o->flat, "scene, State and the next 200 steps' samples as plain bytes, for the matrix");
   command->add_option("-o,--output", o->output, "file to write")->required();
   command->add_flag("--anyway", o->anyway, "what this build makes of a recording of another simulation version, too");
   command->add_flag("--force", o->force, "replace the output if it is there");
-  command->callback([o, &run] { run = [o] { return state(*o); }; });
 }
 
 void addDiff(CLI::App& app, Run& run) {
-  auto o = std::make_shared<DiffOptions>();
-  CLI::App* command =
-      app.add_subcommand("diff", "First field, index and both values that differ between two State files.");
+  const auto [command, o] =
+      addCommand(app, run, "diff", "First field, index and both values that differ between two State files.", diff);
   command->add_option("first", o->first, "file of `calot state`")->required();
   command->add_option("second", o->second, "file of `calot state`")->required();
   command->add_flag("--json", o->json, "print the result as JSON");
-  command->callback([o, &run] { run = [o] { return diff(*o); }; });
 }
 
 }  // namespace calot::apps

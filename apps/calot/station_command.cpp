@@ -1,43 +1,39 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // calot station: the key that a station signs its recordings with.
-#include <fmt/format.h>
 
-#include <iostream>
-#include <memory>
-#include <string>
-
-#include "apps/calot/commands.h"
-#include "apps/calot/environment.h"
-#include "apps/common/exit_code.h"
-#include "recorder/base/errors.h"
+#include "apps/calot/command.h"
 #include "recorder/recording/station_key.h"
 
 namespace calot::apps {
 
+namespace {
+
+struct StationOptions {
+  std::string name, file;
+};
+
+void printKey(const recorder::StationKey& key) {
+  std::cout << fmt::format("station {}\npublic key {}\n", key.station, toHex(key.publicKey));
+}
+
+void initStation(const StationOptions& o) {
+  const recorder::StationKey key = recorder::makeStationKey(o.name);
+  recorder::writeStationKey(o.file, key);
+  printKey(key);
+}
+
+void showStation(const StationOptions& o) { printKey(recorder::readStationKey(o.file)); }
+
+}  // namespace
+
 void addStation(CLI::App& app, Run& run) {
   CLI::App* command = app.add_subcommand("station", "The key that this station signs its recordings with");
   command->require_subcommand(1);
-  struct Options {
-    std::string name, file;
-  };
-  const auto o = std::make_shared<Options>();
-  const auto tell = [](const recorder::StationKey& key) {
-    std::cout << fmt::format("station {}\npublic key {}\n", key.station, toHex(key.publicKey));
-    return static_cast<int>(ExitCode::yes);
-  };
-  CLI::App* init = command->add_subcommand("init", "Make a key; it is never replaced");
-  init->add_option("name", o->name, "Name of the station")->required();
-  init->add_option("-o,--output", o->file, "File to write; keep it on this station")->required();
-  init->callback([o, tell, &run] {
-    run = [o, tell] {
-      const recorder::StationKey key = recorder::makeStationKey(o->name);
-      recorder::writeStationKey(o->file, key);
-      return tell(key);
-    };
-  });
-  CLI::App* show = command->add_subcommand("show", "Print station and public key of a key file");
-  show->add_option("file", o->file, "Key file")->required();
-  show->callback([o, tell, &run] { run = [o, tell] { return tell(recorder::readStationKey(o->file)); }; });
+  const auto [init, i] = addCommand(*command, run, "init", "Make a key; it is never replaced", initStation);
+  init->add_option("name", i->name, "Name of the station")->required();
+  init->add_option("-o,--output", i->file, "File to write; keep it on this station")->required();
+  const auto [show, s] = addCommand(*command, run, "show", "Print station and public key of a key file", showStation);
+  show->add_option("file", s->file, "Key file")->required();
 }
 
 }  // namespace calot::apps

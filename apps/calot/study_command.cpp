@@ -1,54 +1,158 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // calot study: groups side by side and the other designs, of a cohort or of a table from elsewhere.
-#include <fmt/format.h>
+
+#include "apps/calot/study_command.h"
+
 #include <algorithm>
-#include <CLI/CLI.hpp>
 #include <cmath>
-#include <iostream>
-#include <memory>
 #include <set>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "analytics/cohort/check.h"
 #include "analytics/cohort/withdraw.h"
 #include "analytics/design/design_report.h"
 #include "analytics/report/study_output.h"
-#include "analytics/report/study_tables.h"
-#include "apps/calot/commands.h"
+#include "apps/calot/command.h"
 #include "apps/calot/environment.h"
-#include "apps/calot/report_files.h"
-#include "apps/calot/results.h"
-#include "apps/calot/study_options.h"
-#include "apps/calot/wrong_word.h"
-#include "apps/common/advice.h"
-#include "apps/common/exit_code.h"
+#include "recorder/attempt.h"
 #include "recorder/base/errors.h"
 #include "recorder/base/text_output.h"
+#ifdef CALOT_PDF
+#include "gui/report/pdf_report.h"
+#endif
 
 namespace calot::apps {
 namespace {
 
-struct DesignOptions {
-  std::string design;  ///< empty: implied by other options, else two groups
-  std::string strata, against, finishedColumn;
-  std::optional<double> criterion;
-  std::size_t run = 1;
-  double errorRatio = 1.0;
-};
+void addCohortOptions(CLI::App& command, StudySource& options, CLI::Option& table) {
+  CLI::Option* cohort = addCohortOption(command, options.database);
+  command.add_option("--protocol", options.protocol,
+                     "The study's protocol, a file or the name of one that comes with the program; it makes the "
+                     "choices");
+  command.add_option("--cohort-name", options.cohortName,
+                     "Only attempts of the participants of this cohort (calot cohort name)");
+  addChoice(command, "--group-by", options.groupBy,
+            "Property that makes the groups: the participants' group or the performers' profile",
+            {"performer", "group"});
+  command.add_flag("--include-synthetic", options.cohort.includeSynthetic,
+                   "Take in what performers made (watermarked)");
+  command.add_flag("--include-practice", options.cohort.includePractice, "Take in attempts in practice mode");
+  command.add_flag("--include-branches", options.cohort.includeBranches, "Take in branches of other attempts");
+  command.add_flag("--phases", options.cohort.includePhases,
+                   "The checkpoints of each phase of the procedure, too (else the phases' durations, and what --family "
+                   "or the protocol names)");
+  command.add_option("--key", options.cohort.key, "Only attempts of this comparability key");
+  command.add_flag("--mix-keys", options.cohort.mixKeys, "Compare across scenes, devices and versions, and say so");
+  cohort->excludes(&table);
+  for (const char* name : {"--cohort-name", "--group-by", "--include-synthetic", "--include-practice",
+                           "--include-branches", "--phases", "--key", "--mix-keys"})
+    command.get_option(name)->excludes(&table);
+  for (const char* name : {"--group-by", "--include-synthetic", "--include-practice", "--include-branches"})
+    command.get_option(name)->excludes(command.get_option("--protocol"));
+}
 
-/// Adds --design and what single designs need. @pre addStudySource() was called
-void addDesignOptions(CLI::App& command, DesignOptions& options);
+void addTableOptions(CLI::App& command, StudySource& options, CLI::Option& table) {
+  analytics::TableStudyOptions& study = options.elsewhere;
+  command.add_option("--participant-column", study.participantColumn, "Column of who it was")->needs(&table);
+  command.add_option("--group-column", study.groupColumn, "Column of the study group")->needs(&table);
+  command.add_option("--outcome", study.outcomes, "Column to compare; NAME:lower or NAME:higher says what is better")
+      ->allow_extra_args(false)
+      ->needs(&table);
+  addList(command, "--occasion-column", study.occasionColumns, "Column of the occasion; several: A,B")->needs(&table);
+  command.add_option("--occasion", study.occasion, "The occasion to compare; of several columns: a/b")->needs(&table);
+  command.add_option("--baseline-occasion", study.baselineOccasion, "The occasion whose value is the baseline")
+      ->needs(&table);
+}
 
-/// Chosen or implied: three groups, strata. @throws Error (invalid) for options that the design does not take, or
-/// lacks.
-analytics::Design designOf(const DesignOptions& options, const StudySource& source);
+/// The words of the command line as the library has them.
+void settle(StudySource& source) {
+  if (!source.attemptRule.empty())
+    source.choices.attemptRule =
+        source.attemptRule == "first" ? analytics::AttemptRule::first : analytics::AttemptRule::mean;
+  source.cohort.grouping = source.groupBy == "performer" ? analytics::Grouping::performer : analytics::Grouping::group;
+  if (!source.cohortName.empty()) source.cohort.cohort = analytics::CohortInUse{source.cohortName, {}};
+}
 
-/// @throws Error as analytics::cohortDesignData(), tableDesignData() and makeDesignReport().
-analytics::DesignReport designReportOf(const DesignOptions& options, StudySource& source);
+analytics::Study plainStudyOf(StudySource& options, const analytics::StudyProgress& progress) {
+  settle(options);
+  if (!options.table.empty()) {
+    static_cast<analytics::StudyChoices&>(options.elsewhere) = options.choices;
+    if (!options.protocol.empty())
+      options.elsewhere.protocol = analytics::readProtocol(findAsset(options.protocol, "protocols", "protocol"));
+    return analytics::makeTableStudy(readCsvTable(options.table), options.elsewhere);
+  }
+  if (options.database.empty()) throw Error(ErrorKind::invalid, "name a cohort database, or a table with --table");
+  static_cast<analytics::StudyChoices&>(options.cohort) = options.choices;
+  const auto read = analytics::CohortDatabase::Access::read;
+  const analytics::AssessmentDatabase assessment(options.database, read);
+  if (!options.protocol.empty()) options.cohort = protocolStudyOptions(options, assessment);
+  const analytics::CohortDatabase cohort(options.database, read);
+  if (options.cohort.protocol)
+    return analytics::makeProtocolStudy(cohort, assessment, options.cohort, options.masked, progress);
+  if (options.masked) throw Error(ErrorKind::invalid, "study: --masked needs the --protocol whose groups are masked");
+  analytics::Study study = analytics::makeStudy(cohort, options.cohort, progress);
+  analytics::addRatings(study, assessment);
+  return study;
+}
+
+}  // namespace
+
+analytics::StudyOptions protocolStudyOptions(const StudySource& source, const analytics::AssessmentDatabase& database) {
+  analytics::StudyOptions options = source.cohort;
+  if (!source.cohortName.empty()) options.cohort = analytics::CohortInUse{source.cohortName, {}};
+  analytics::ProtocolInUse& use = options.protocol.emplace();
+  use.protocol = analytics::readProtocol(findAsset(source.protocol, "protocols", "protocol"));
+  use.registered = database.protocols(use.protocol.name);
+  return options;
+}
+
+analytics::Study studyOf(StudySource& options, const analytics::StudyProgress& progress) {
+  analytics::Study study = plainStudyOf(options, progress);
+  if (study.better.empty() && !(study.protocol && study.protocol->masked))
+    study.remarks.emplace_back("--better GROUP says which group is expected to do better.");
+  for (std::string& remark : study.remarks) {
+    if (study.phasesLeftOut && remark.ends_with("single phases are left out.")) remark += " --phases takes them in.";
+  }
+  return study;
+}
+
+void addStudySource(CLI::App& command, StudySource& source) {
+  CLI::Option* table = command.add_option("--table", source.table, "A CSV file instead of a cohort");
+  addCohortOptions(command, source, *table);
+  addTableOptions(command, source, *table);
+  addList(command, "--groups", source.choices.groups, "The two groups to compare, A,B");
+  command.add_option("--better", source.choices.better, "The group that is expected to do better (the hypothesis)");
+  command
+      .add_option("--attempt-rule", source.attemptRule,
+                  "One value of a participant's several attempts: the first, or the mean")
+      ->check(oneOf({"first", "mean"}));
+  addList(command, "--family", source.choices.family, "Rows whose p values are adjusted for each other (default: all)");
+  for (const char* name : {"--groups", "--better", "--attempt-rule", "--family"})
+    command.get_option(name)->excludes(command.get_option("--protocol"));
+}
+
+void addPdfOption(CLI::App& command, std::string& file, const std::string& help) {
+  [[maybe_unused]] CLI::Option* option = command.add_option("--pdf", file, help);
+#ifndef CALOT_PDF
+  option->check([](const std::string&) { return "this build writes no PDF; --html writes the same report"; });
+#endif
+}
+
+void writeReport(const analytics::ReportDocument& document, const std::string& html,
+                 [[maybe_unused]] const std::string& pdf, bool force, const analytics::CarriedRecording* recording) {
+  if (!html.empty()) recorder::writeText(html, analytics::pageHtml(document, recording), force);
+#ifdef CALOT_PDF
+  if (!pdf.empty()) recorder::writeText(pdf, gui::pdfReport(document, recorder::softwareName()), force);
+#endif
+}
+
+namespace {
 
 using analytics::Design;
+
+struct DesignOptions {
+  std::string design;  ///< empty: implied by other options, else two groups
+  analytics::DesignChoices choices;
+};
 
 /// An option that belongs to some designs alone.
 struct DesignOption {
@@ -73,29 +177,27 @@ std::string helpOfDesigns() {
 Design chosenDesign(const DesignOptions& o, const StudySource& source) {
   if (!o.design.empty()) return *analytics::designOf(o.design);
   if (source.choices.groups.size() > 2) return Design::severalGroups;
-  return o.strata.empty() ? Design::twoGroups : Design::strata;
+  return o.choices.strata.empty() ? Design::twoGroups : Design::strata;
 }
 
 void addDesignOptions(CLI::App& command, DesignOptions& o) {
   std::vector<std::string> names;
   for (const analytics::DesignEntry& e : analytics::designs()) names.emplace_back(e.name);
-  command.add_option("--design", o.design, "What is asked of the data; see below (default: two-groups)")
+  command.add_option("--design", o.design, "Question to the data; see below (default: two-groups)")
       ->check(oneOf(names));
-  command.add_option("--strata", o.strata,
+  command.add_option("--strata", o.choices.strata,
                      "Strata of the designs strata and repeated: of a cohort site or arm, of a table a column");
-  command.add_option("--against", o.against,
+  command.add_option("--against", o.choices.against,
                      "Figure that others are held against (correlation, agreement): a checkpoint, a column, or of a "
                      "cohort \"rating FORM\"");
-  command.add_option("--criterion", o.criterion,
+  command.add_option("--criterion", o.choices.criterion,
                      "Value that one figure is to reach (learning), in its display unit; adds attempts to "
                      "the criterion");
-  command.add_option("--in-a-row", o.run, "Attempts in a row that must meet the criterion (learning)")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
-  command.add_option("--finished-column", o.finishedColumn,
-                     "Of a table: whether the attempt was finished, 1 or 0 (time-to-criterion)");
+  addNumber(command, "--in-a-row", o.choices.run, "Attempts in a row that must meet the criterion (learning)", 1, 1000);
+  command.add_option("--finished-column", o.choices.finishedColumn,
+                     "Column of a table: 1 if the attempt was finished, else 0 (time-to-criterion)");
   command
-      .add_option("--error-ratio", o.errorRatio,
+      .add_option("--error-ratio", o.choices.errorRatio,
                   "Error variance of the second method over that of the first (agreement)")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
@@ -103,15 +205,18 @@ void addDesignOptions(CLI::App& command, DesignOptions& o) {
   command.footer(helpOfDesigns());
 }
 
-analytics::Design designOf(const DesignOptions& o, const StudySource& source) {
+/// Chosen or implied: three groups, strata. @throws Error (invalid) for options that the design does not take, or
+/// lacks.
+Design designOf(const DesignOptions& o, const StudySource& source) {
   const Design design = chosenDesign(o, source);
   const std::string name = analytics::entryOf(design).name;
-  const std::vector<DesignOption> own{{"--strata", !o.strata.empty(), {Design::strata, Design::repeated}},
-                                      {"--against", !o.against.empty(), {Design::correlation, Design::agreement}},
-                                      {"--criterion", o.criterion.has_value(), {Design::learning}},
-                                      {"--in-a-row", o.run != 1, {Design::learning}},
-                                      {"--finished-column", !o.finishedColumn.empty(), {Design::timeToCriterion}},
-                                      {"--error-ratio", o.errorRatio != 1.0, {Design::agreement}}};
+  const std::vector<DesignOption> own{
+      {"--strata", !o.choices.strata.empty(), {Design::strata, Design::repeated}},
+      {"--against", !o.choices.against.empty(), {Design::correlation, Design::agreement}},
+      {"--criterion", o.choices.criterion.has_value(), {Design::learning}},
+      {"--in-a-row", o.choices.run != 1, {Design::learning}},
+      {"--finished-column", !o.choices.finishedColumn.empty(), {Design::timeToCriterion}},
+      {"--error-ratio", o.choices.errorRatio != 1.0, {Design::agreement}}};
   for (const DesignOption& option : own) {
     if (option.given && std::find(option.designs.begin(), option.designs.end(), design) == option.designs.end())
       failDesign(fmt::format("{} is of --design {}, not of {}", option.name,
@@ -121,38 +226,31 @@ analytics::Design designOf(const DesignOptions& o, const StudySource& source) {
   if (!source.protocol.empty()) failDesign(fmt::format("a protocol is of two groups, not of --design {}", name));
   if (!source.elsewhere.baselineOccasion.empty())
     failDesign(fmt::format("--baseline-occasion is of --design two-groups, not of {}", name));
-  if (design == Design::strata && o.strata.empty()) failDesign("--design strata needs --strata");
-  if (design == Design::correlation && o.against.empty()) failDesign("--design correlation needs --against");
-  if (design == Design::timeToCriterion && !source.table.empty() && o.finishedColumn.empty())
+  if (design == Design::strata && o.choices.strata.empty()) failDesign("--design strata needs --strata");
+  if (design == Design::correlation && o.choices.against.empty()) failDesign("--design correlation needs --against");
+  if (design == Design::timeToCriterion && !source.table.empty() && o.choices.finishedColumn.empty())
     failDesign("--design time-to-criterion of a table needs --finished-column");
-  if (!o.criterion && o.run != 1) failDesign("--in-a-row needs --criterion");
-  if (o.criterion && !std::isfinite(*o.criterion)) failDesign("--criterion: a finite number is wanted");
-  if (source.table.empty() && !o.strata.empty() && o.strata != "site" && o.strata != "arm")
+  if (!o.choices.criterion && o.choices.run != 1) failDesign("--in-a-row needs --criterion");
+  if (o.choices.criterion && !std::isfinite(*o.choices.criterion))
+    failDesign("--criterion: a finite number is expected");
+  if (source.table.empty() && !o.choices.strata.empty() && o.choices.strata != "site" && o.choices.strata != "arm")
     failDesign("--strata of a cohort: site or arm");
   if (!source.table.empty() && source.elsewhere.occasionColumns.empty() && design == Design::agreement &&
-      o.against.empty())
+      o.choices.against.empty())
     failDesign("--design agreement of a table needs --against, or --occasion-column of the device");
   return design;
 }
 
+/// @throws Error as analytics::cohortDesignData(), tableDesignData() and makeDesignReport().
 analytics::DesignReport designReportOf(const DesignOptions& o, StudySource& source) {
-  analytics::DesignChoices choices;
+  settle(source);
+  analytics::DesignChoices choices = o.choices;
   static_cast<analytics::StudyChoices&>(choices) = source.choices;
   choices.design = designOf(o, source);
-  if (!source.attemptRule.empty())
-    choices.attemptRule = source.attemptRule == "first" ? analytics::AttemptRule::first : analytics::AttemptRule::mean;
-  choices.strata = o.strata;
-  choices.against = o.against;
-  choices.finishedColumn = o.finishedColumn;
-  choices.criterion = o.criterion;
-  choices.run = o.run;
-  choices.errorRatio = o.errorRatio;
   if (!source.table.empty())
     return analytics::makeDesignReport(
         analytics::tableDesignData(readCsvTable(source.table), source.elsewhere, choices), choices);
   if (source.database.empty()) throw Error(ErrorKind::invalid, "name a cohort database, or a table with --table");
-  source.cohort.grouping = source.groupBy == "performer" ? analytics::Grouping::performer : analytics::Grouping::group;
-  if (!source.cohortName.empty()) source.cohort.cohort = analytics::CohortInUse{source.cohortName, {}};
   const auto read = analytics::CohortDatabase::Access::read;
   const analytics::DesignData data =
       analytics::cohortDesignData(analytics::CohortDatabase(source.database, read),
@@ -160,7 +258,7 @@ analytics::DesignReport designReportOf(const DesignOptions& o, StudySource& sour
   return analytics::makeDesignReport(data, choices);
 }
 
-struct ParsedStudyOptions {
+struct StudyCommandOptions {
   StudySource source;
   DesignOptions design;
   std::string csv, html, pdf;
@@ -168,7 +266,7 @@ struct ParsedStudyOptions {
 };
 
 /// Notes in the cohort that attempts went into files: a withdrawal lists them.
-void noteExports(const ParsedStudyOptions& options, const std::vector<std::string>& attempts) {
+void noteExports(const StudyCommandOptions& options, const std::vector<std::string>& attempts) {
   const std::vector<std::pair<std::string, std::string>> written{
       {"study-csv", options.csv}, {"study-html", options.html}, {"study-pdf", options.pdf}};
   try {
@@ -176,11 +274,11 @@ void noteExports(const ParsedStudyOptions& options, const std::vector<std::strin
       if (!file.empty()) analytics::recordExport(options.source.database, kind, file, attempts);
     }
   } catch (const Error& e) {
-    std::cerr << "calot: warning: what was written is not noted for withdrawals: " << messageOf(e) << '\n';
+    std::cerr << "calot: warning: the export could not be registered for later withdrawal: " << messageOf(e) << '\n';
   }
 }
 
-bool isExported(const ParsedStudyOptions& options) {
+bool isExported(const StudyCommandOptions& options) {
   return !options.source.database.empty() && !(options.csv + options.html + options.pdf).empty();
 }
 
@@ -200,7 +298,7 @@ std::vector<std::string> attemptsIn(const analytics::Study& study, const std::st
   return attempts;
 }
 
-void print(const analytics::Study& study, bool all) {
+void printStudy(const analytics::Study& study, bool all) {
   analytics::printStudy(study, std::cout, all ? analytics::StudyDetail::all : analytics::StudyDetail::first);
   if (all) return;
   const auto others = std::count_if(study.rows.begin(), study.rows.end(), [](const analytics::StudyRow& row) {
@@ -209,7 +307,7 @@ void print(const analytics::Study& study, bool all) {
   std::cout << fmt::format("{} more figures, and the methods: --all; as a report: --pdf, --html\n", others);
 }
 
-int runTwoGroups(ParsedStudyOptions& options) {
+void runTwoGroups(StudyCommandOptions& options) {
   Progress progress("computing the study", options.json);
   const analytics::Study study = studyOf(options.source, [&](double share, const char*) { progress.showShare(share); });
   Progress::erase();
@@ -217,14 +315,13 @@ int runTwoGroups(ParsedStudyOptions& options) {
   writeReport(analytics::studyDocument(study), options.html, options.pdf, options.force);
   if (isExported(options)) noteExports(options, attemptsIn(study, options.source.database));
   if (options.json) {
-    printResult("study", nlohmann::ordered_json::parse(analytics::studyJson(study)));
+    printResult("study", analytics::studyTree(study));
   } else {
-    print(study, options.all);
+    printStudy(study, options.all);
   }
-  return static_cast<int>(ExitCode::yes);
 }
 
-int runDesign(ParsedStudyOptions& options) {
+void runDesign(StudyCommandOptions& options) {
   if (!options.csv.empty())
     throw Error(ErrorKind::invalid, "study: --csv is of --design two-groups; the others have --json");
   if (options.source.masked) throw Error(ErrorKind::invalid, "study: --masked is of --design two-groups");
@@ -232,19 +329,26 @@ int runDesign(ParsedStudyOptions& options) {
   writeReport(analytics::designDocument(report), options.html, options.pdf, options.force);
   if (isExported(options)) noteExports(options, report.attempts);
   if (options.json) {
-    printResult("design", nlohmann::ordered_json::parse(analytics::designJson(report)));
+    printResult("design", report.json);
   } else {
     analytics::printDesign(report, std::cout);
   }
-  return static_cast<int>(ExitCode::yes);
+}
+
+void study(StudyCommandOptions& o) {
+  for (const std::string& file : {o.html, o.pdf}) {
+    if (!file.empty()) recorder::refuseOutput(file, o.force);
+  }
+  if (!o.source.database.empty()) analytics::refuseUnsound(o.source.database);
+  return designOf(o.design, o.source) == Design::twoGroups ? runTwoGroups(o) : runDesign(o);
 }
 
 }  // namespace
 
 void addStudy(CLI::App& app, Run& run) {
-  const auto options = std::make_shared<ParsedStudyOptions>();
-  CLI::App* command = app.add_subcommand(
-      "study", "Compare groups of a cohort, or of a table from elsewhere, in two groups or another design");
+  const auto [command, options] =
+      addCommand(app, run, "study",
+                 "Compare groups of a cohort, or of a table from elsewhere, in two groups or another design", study);
   addStudySource(*command, options->source);
   command->add_flag("--masked", options->source.masked,
                     "Call the protocol's groups \"group 1\" and \"group 2\" until its analysis is locked");
@@ -255,16 +359,6 @@ void addStudy(CLI::App& app, Run& run) {
   command->add_option("--html", options->html, "Write one self-contained page with figures");
   addPdfOption(*command, options->pdf, "Write the same on A4 pages");
   command->add_flag("--force", options->force, "Replace files that are there");
-  command->callback([options, &run] {
-    run = [options] {
-      for (const std::string& file : {options->html, options->pdf}) {
-        if (!file.empty()) recorder::refuseOutput(file, options->force);
-      }
-      if (!options->source.database.empty()) analytics::refuseUnsound(options->source.database);
-      return designOf(options->design, options->source) == analytics::Design::twoGroups ? runTwoGroups(*options)
-                                                                                        : runDesign(*options);
-    };
-  });
 }
 
 }  // namespace calot::apps

@@ -9,10 +9,11 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
-#include <QStringList>
+#include <optional>
 
 #include "gui/attempt/theme.h"
 #include "gui/render/graphics.h"
+#include "gui/render/image.h"
 #include "gui/view/scene_picture_widget.h"
 #include "recorder/base/errors.h"
 #include "recorder/base/text_words.h"
@@ -30,29 +31,17 @@ void addLook(CLI::App& options, LookOptions& look, const std::string& usual) {
 QSize windowSize(const LookOptions& look) {
   if (look.size.empty()) return {};
   constexpr int least = 640, most = 8192;
-  const QStringList parts = QString::fromStdString(look.size).split('x');
-  bool known[2] = {false, false};
-  const QSize size(parts[0].toInt(&known[0]), parts.size() == 2 ? parts[1].toInt(&known[1]) : 0);
-  if (!known[0] || !known[1] || std::min(size.width(), size.height()) < least || size.width() > most ||
-      size.height() > most)
+  const std::optional<gui::PictureSize> size = gui::readSize(look.size);
+  if (!size || std::min(size->width, size->height) < least || std::max(size->width, size->height) > most)
     throw Error(ErrorKind::invalid,
-                "--size " + recorder::shown(look.size) + ": WIDTHxHEIGHT is wanted, of 640 to 8192 pixels");
-  return size;
+                "--size " + recorder::shown(look.size) + ": WIDTHxHEIGHT is expected, of 640 to 8192 pixels");
+  return {size->width, size->height};
 }
-
-namespace {
-
-std::string variable(const char* name) {
-  const char* const value = std::getenv(name);
-  return value != nullptr ? value : "";
-}
-
-}  // namespace
 
 void requireFolder(const std::string& folder, const std::string& what) {
   std::error_code ignored;
   if (!std::filesystem::is_directory(folder, ignored))
-    throw Error(ErrorKind::invalid, Where{folder}, fmt::format("is no folder; {} go into one that exists", what));
+    throw Error(ErrorKind::invalid, Where{folder}, fmt::format("is not a folder; {} go into one that exists", what));
   // Rights alone do not tell: a file system may take no files, or be for reading only.
   std::string trial = folder + "/.calot-XXXXXX";
   const int file = ::mkstemp(trial.data());
@@ -64,6 +53,10 @@ void requireFolder(const std::string& folder, const std::string& what) {
 }
 
 void requireScreen() {
+  const auto variable = [](const char* name) -> std::string {
+    const char* const value = std::getenv(name);
+    return value != nullptr ? value : "";
+  };
   const std::string platform = variable("QT_QPA_PLATFORM");
   const bool onScreen = platform.empty() || platform.starts_with("xcb") || platform.starts_with("wayland");
   if (onScreen && variable("DISPLAY").empty() && variable("WAYLAND_DISPLAY").empty())
@@ -89,8 +82,9 @@ std::string positiveSeconds(const std::string& text) {
   char* end = nullptr;
   const double seconds = std::strtod(text.c_str(), &end);
   const bool whole = end != text.c_str() && *end == '\0';
-  return whole && std::isfinite(seconds) && seconds > 0.0 ? std::string()
-                                                          : fmt::format("'{}' is no number of seconds above 0", text);
+  return whole && std::isfinite(seconds) && seconds > 0.0
+             ? std::string()
+             : fmt::format("'{}' is not a number of seconds above 0", text);
 }
 
 }  // namespace calot::apps

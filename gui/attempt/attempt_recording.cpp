@@ -3,8 +3,6 @@
 
 #include <fmt/format.h>
 #include <algorithm>
-#include <cmath>
-#include <utility>
 
 #include "gui/words/event_words.h"
 #include "recorder/base/errors.h"
@@ -61,11 +59,6 @@ class Tracer {
 };
 
 }  // namespace
-
-std::string timeText(double seconds) {
-  const auto tenths = static_cast<std::int64_t>(std::floor(std::max(0.0, seconds) * 10.0 + 1e-6));
-  return fmt::format("{}:{:02}.{}", tenths / 600, tenths / 10 % 60, tenths % 10);
-}
 
 AttemptTrack readTrack(recorder::Recording& recording,
                        const std::function<void(std::uint64_t, std::uint64_t)>& progress) {

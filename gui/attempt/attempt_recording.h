@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "analytics/cohort/cohort_database.h"
+#include "gui/words/event_words.h"
 #include "recorder/recording/probe.h"
 #include "recorder/recording/reader.h"
 
@@ -51,9 +52,6 @@ inline constexpr std::uint64_t maxBins = 1500;  ///< of a trace: more than a scr
 /// @throws Error (damaged)
 AttemptTrack readTrack(recorder::Recording& recording,
                        const std::function<void(std::uint64_t, std::uint64_t)>& progress = {});
-
-/// "0:42.5", "12:03.0": minutes, seconds and tenths, with the decimal point of no locale.
-std::string timeText(double seconds);
 
 /// The file of this name beside the database, or in one of the folders, in their order; empty where there is none.
 std::filesystem::path findRecording(const analytics::AttemptRow& attempt, const std::filesystem::path& database,

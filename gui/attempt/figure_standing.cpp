@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <map>
 
-#include "analytics/checkpoints/registry.h"
+#include "analytics/checkpoints/checkpoint.h"
 #include "analytics/statistics/descriptive.h"
 #include "gui/words/problem_words.h"
 #include "recorder/base/errors.h"

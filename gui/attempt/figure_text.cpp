@@ -7,56 +7,45 @@
 #include <QLocale>
 #include <QTimeZone>
 
-#include "analytics/checkpoints/registry.h"
-#include "analytics/report/report_text.h"
+#include "analytics/checkpoints/checkpoint.h"
+#include "analytics/report/report_document.h"
 #include "gui/attempt/theme.h"
 
 namespace calot::gui {
 
 using analytics::Verdict;
 
-QString badgeText(Verdict verdict) {
-  const char* sign = "–";
+namespace {
+
+struct VerdictWords {
+  const char *sign, *explanation;
+};
+
+VerdictWords wordsOf(Verdict verdict) {
   switch (verdict) {
     case Verdict::verified:
-      sign = "✓";
-      break;
+      return {"✓", "The recording was simulated again and every digest and force was equal, bit for bit."};
     case Verdict::diverged:
-      sign = "≠";
-      break;
+      return {"≠", "The recording and its re-simulation differ. This says what was found, not who caused it."};
     case Verdict::damaged:
-      sign = "✕";
-      break;
+      return {"✕", "The recording cannot be read in full."};
     case Verdict::notCheckableHere:
-      sign = "?";
-      break;
+      return {"?", "The recording was made by another simulation version, which this version cannot repeat."};
     case Verdict::notChecked:
       break;
   }
-  return QString::fromUtf8(sign) + ' ' + QString::fromStdString(analytics::nameOf(verdict));
+  return {"–", "Nobody has simulated this recording again yet."};
+}
+
+}  // namespace
+
+QString badgeText(Verdict verdict) {
+  return QString::fromUtf8(wordsOf(verdict).sign) + ' ' + QString::fromStdString(analytics::nameOf(verdict));
 }
 
 Badge badgeOf(const analytics::AttemptRow& attempt) {
-  Badge badge;
-  badge.text = badgeText(attempt.verification.verdict);
-  badge.colour = theme::ofVerdict(attempt.verification.verdict);
-  switch (attempt.verification.verdict) {
-    case Verdict::verified:
-      badge.explanation = "The recording was simulated again and every digest and force was equal, bit for bit.";
-      break;
-    case Verdict::diverged:
-      badge.explanation = "The recording and its re-simulation differ. This says what was found, not who caused it.";
-      break;
-    case Verdict::damaged:
-      badge.explanation = "The recording cannot be read in full.";
-      break;
-    case Verdict::notCheckableHere:
-      badge.explanation = "The recording was made by another simulation version, which this version cannot repeat.";
-      break;
-    case Verdict::notChecked:
-      badge.explanation = "Nobody has simulated this recording again yet.";
-      break;
-  }
+  const Verdict verdict = attempt.verification.verdict;
+  Badge badge{badgeText(verdict), wordsOf(verdict).explanation, theme::ofVerdict(verdict)};
   if (!attempt.verification.text.empty())
     badge.explanation += "\nFound: " + QString::fromStdString(attempt.verification.text);
   if (!attempt.verification.software.empty())
@@ -74,15 +63,8 @@ QString outcomeText(recorder::Outcome outcome) {
 QString operatorText(const analytics::AttemptRow& attempt) {
   if (!attempt.participant.empty()) return QString::fromStdString(attempt.participant);
   if (!attempt.profile.empty()) return QString::fromStdString(attempt.profile);
-  switch (attempt.operatorKind) {
-    case recorder::OperatorKind::human:
-      return "(no pseudonym)";
-    case recorder::OperatorKind::kinematics:
-      return "(kinematics file)";
-    case recorder::OperatorKind::performer:
-      return "(performer)";
-  }
-  return {};
+  if (attempt.operatorKind == recorder::OperatorKind::human) return "(no pseudonym)";
+  return attempt.operatorKind == recorder::OperatorKind::kinematics ? "(kinematics file)" : "(performer)";
 }
 
 QString startText(const std::string& startUtc) {
@@ -101,10 +83,10 @@ QString numberText(double value) {
 
 DisplayedValue displayedValue(const analytics::CheckpointValue& value) {
   const analytics::CheckpointDefinition* const definition = analytics::definitionOf(value);
-  if (definition == nullptr || definition->version != value.version || definition->unit != value.unit)
-    return {value.value.value_or(0.0), value.unit == "1" ? QString() : QString::fromStdString(value.unit)};
-  return {value.value.value_or(0.0) * definition->displayFactor,
-          definition->displayUnit == "1" ? QString() : QString::fromStdString(definition->displayUnit)};
+  const bool known = definition != nullptr && definition->version == value.version && definition->unit == value.unit;
+  const std::string& unit = known ? definition->displayUnit : value.unit;
+  return {value.value.value_or(0.0) * (known ? definition->displayFactor : 1.0),
+          unit == "1" ? QString() : QString::fromStdString(unit)};
 }
 
 QString valueText(const analytics::CheckpointValue& value) {
@@ -116,15 +98,8 @@ QString valueText(const analytics::CheckpointValue& value) {
 QString directionText(const analytics::CheckpointValue& value) {
   const analytics::CheckpointDefinition* const definition = analytics::definitionOf(value);
   if (definition == nullptr) return "unknown to this version";
-  switch (definition->direction) {
-    case analytics::Direction::none:
-      return "describes only";
-    case analytics::Direction::lower:
-      return "↓ lower is better";
-    case analytics::Direction::higher:
-      return "↑ higher is better";
-  }
-  return {};
+  if (definition->direction == analytics::Direction::none) return "describes only";
+  return definition->direction == analytics::Direction::lower ? "↓ lower is better" : "↑ higher is better";
 }
 
 QString originText(analytics::Origin origin) { return QString::fromStdString(analytics::nameOf(origin)); }

@@ -5,6 +5,7 @@
 #include <exception>
 #include <QBoxLayout>
 #include <QLabel>
+#include <QMetaObject>
 #include <QProgressBar>
 #include <QPushButton>
 #include <QTimer>
@@ -16,6 +17,50 @@
 
 namespace calot::gui {
 
+Background::Background(QObject* parent)
+    : QObject(parent), thread_([this](const std::stop_token& stop) { loop(stop); }) {}
+
+void Background::run(Job job) {
+  {
+    const std::lock_guard lock(mutex_);
+    next_ = std::move(job);
+    ++newest_;
+  }
+  wake_.notify_one();
+}
+
+void Background::forget() {
+  const std::lock_guard lock(mutex_);
+  next_ = {};
+  ++newest_;
+}
+
+void Background::loop(const std::stop_token& stop) {
+  stepBack(behindInterface);
+  for (;;) {
+    Job job;
+    quint64 mine = 0;
+    {
+      std::unique_lock lock(mutex_);
+      wake_.wait(lock, stop, [this] { return static_cast<bool>(next_); });
+      if (stop.stop_requested()) return;
+      job = std::exchange(next_, {});
+      mine = newest_;
+    }
+    Completion answer = job();
+    QMetaObject::invokeMethod(
+        this,
+        [this, mine, answer = std::move(answer)] {
+          {
+            const std::lock_guard lock(mutex_);
+            if (mine != newest_) return;
+          }
+          answer();
+        },
+        Qt::QueuedConnection);
+  }
+}
+
 void LongWork::Control::progress(double share, const QString& what) {
   if (broken_) throw Broken{};
   {
@@ -25,11 +70,7 @@ void LongWork::Control::progress(double share, const QString& what) {
     percent_ = percent;
     what_ = what;
   }
-  back_->pass([&](LongWork& work) {
-    QMetaObject::invokeMethod(
-        &work, [back = back_, share, what] { back->pass([&](LongWork& w) { w.take(share, what); }); },
-        Qt::QueuedConnection);
-  });
+  Link<LongWork>::post(back_, [share, what](LongWork& work) { work.take(share, what); });
 }
 
 LongWork::~LongWork() { end(); }
@@ -59,19 +100,12 @@ void LongWork::start(Work work) {
     } catch (const std::exception& error) {
       text = QString::fromStdString(problemText(error));
     }
-    const auto back = control->back_;
-    back->pass([&](LongWork& object) {
-      QMetaObject::invokeMethod(
-          &object,
-          [back, &object, good, text] {
-            if (!back->stands()) return;
-            object.end();
-            if (good)
-              emit object.done(text);
-            else
-              emit object.failed(text);
-          },
-          Qt::QueuedConnection);
+    Link<LongWork>::post(control->back_, [good, text](LongWork& object) {
+      object.end();
+      if (good)
+        emit object.done(text);
+      else
+        emit object.failed(text);
     });
   });
 }

@@ -2,17 +2,87 @@
 #pragma once
 
 #include <atomic>
+#include <condition_variable>
 #include <functional>
 #include <memory>
 #include <mutex>
 #include <QElapsedTimer>
 #include <QObject>
 #include <QString>
+#include <QThreadPool>
 #include <QWidget>
-
-#include "gui/attempt/background.h"
+#include <thread>
 
 namespace calot::gui {
+
+/// Work that would keep the interface waiting, on a thread of its own. A newer job replaces one that waits, and the
+/// answer of one that was overtaken is dropped.
+class Background : public QObject {
+  Q_OBJECT
+ public:
+  using Completion = std::function<void()>;  ///< called on the object's thread
+  using Job = std::function<Completion()>;   ///< called on the background's thread; must not throw
+
+  explicit Background(QObject* parent = nullptr);
+  /// Waits for the job that is being done; its answer is dropped.
+  ~Background() override = default;
+  void run(Job job);
+  /// Drops the job that waits and the answer of the one that is being done.
+  void forget();
+
+ private:
+  void loop(const std::stop_token& stop);
+
+  std::mutex mutex_;
+  std::condition_variable_any wake_;
+  Job next_;
+  quint64 newest_ = 0;   ///< number of the newest job; changed on the object's thread
+  std::jthread thread_;  // last: it uses what is above
+};
+
+/// The way back from another thread to an object of the interface that may be gone by then, or no longer interested.
+template <class Object>
+class Link {
+ public:
+  explicit Link(Object& object) : object_(&object) {}
+  /// Nothing passes from here on; waits for what is just passing.
+  void cut() {
+    const std::lock_guard lock(mutex_);
+    object_ = nullptr;
+  }
+  /// Calls with the object, unless the link was cut. @param call is short: the object's thread may wait for it
+  template <class Call>
+  void pass(Call&& call) {
+    const std::lock_guard lock(mutex_);
+    if (object_ != nullptr) call(*object_);
+  }
+  /// True while the link stands. Object's thread only.
+  [[nodiscard]] bool stands() const { return object_ != nullptr; }
+  /// Has the object's thread call with the object, unless the link is cut by then.
+  template <class Call>
+  static void post(const std::shared_ptr<Link>& link, Call call) {
+    link->pass([&](Object& object) {
+      QMetaObject::invokeMethod(
+          &object,
+          [link, call = std::move(call)]() mutable {
+            if (link->stands()) call(*link->object_);
+          },
+          Qt::QueuedConnection);
+    });
+  }
+
+ private:
+  std::mutex mutex_;
+  Object* object_;
+};
+
+/// Threads for what must not keep the interface waiting: reading recordings, ending players. Ends with the program.
+inline QThreadPool& taskPool() {
+  static QThreadPool pool;
+  constexpr int maxTasks = 16;
+  pool.setMaxThreadCount(maxTasks);
+  return pool;
+}
 
 /// Work that takes seconds, on a thread of its own: it reports how far it is, and can be broken off. One at a time.
 class LongWork : public QObject {
@@ -41,7 +111,7 @@ class LongWork : public QObject {
   explicit LongWork(QObject* parent = nullptr) : QObject(parent) {}
   /// Breaks off what is being done, without waiting for it.
   ~LongWork() override;
-  /// Breaks off what is being done and begins anew.
+  /// Cancels the present work and begins again.
   void start(Work work);
   void cancel();
   [[nodiscard]] bool busy() const { return control_ != nullptr; }

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <exception>
 
@@ -43,7 +44,7 @@ class ReplayPlayer::Run {
     goTo(0);
     publish(true, false);
     for (;;) {
-      Wish wish;
+      Asked wish;
       {
         std::unique_lock lock(player_.mutex_);
         player_.wake_.wait(lock, [&] { return player_.wish_.number != seen_ || player_.wish_.playing; });
@@ -90,7 +91,7 @@ class ReplayPlayer::Run {
     player_.receiver_.moment(std::make_shared<const SceneView>(seeker_.view()), position_);
   }
 
-  void take(const Wish& wish) {
+  void take(const Asked& wish) {
     seen_ = wish.number;
     position_.playing = wish.playing;
     position_.speed = wish.speed;
@@ -176,51 +177,29 @@ ReplayPlayer::ReplayPlayer(std::filesystem::path file, std::string attempt, Rece
       thread_([this] { run(); }) {}
 
 ReplayPlayer::~ReplayPlayer() {
-  change([](Wish& wish) { wish.stop = true; });
-  thread_.join();
-}
-
-void ReplayPlayer::change(const std::function<void(Wish&)>& how) {
   {
     const std::lock_guard lock(mutex_);
-    how(wish_);
+    wish_.stop = true;
     ++wish_.number;
   }
   wake_.notify_one();
+  thread_.join();
 }
 
-void ReplayPlayer::seek(double time) {
-  change([&](Wish& wish) {
-    wish.time = time;
-    wish.steps = 0;
-  });
-}
-
-void ReplayPlayer::stepBy(int steps) {
-  change([&](Wish& wish) {
-    wish.steps += steps;
-    wish.playing = false;
-  });
-}
-
-void ReplayPlayer::play() {
-  change([](Wish& wish) { wish.playing = true; });
-}
-
-void ReplayPlayer::playFrom(double time) {
-  change([&](Wish& wish) {
-    wish.time = time;
-    wish.steps = 0;
-    wish.playing = true;
-  });
-}
-
-void ReplayPlayer::pause() {
-  change([](Wish& wish) { wish.playing = false; });
-}
-
-void ReplayPlayer::setSpeed(double speed) {
-  change([&](Wish& wish) { wish.speed = std::clamp(speed, slowestReplay, fastestReplay); });
+void ReplayPlayer::ask(const ReplayWish& wish) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (wish.time) {
+      wish_.time = wish.time;
+      wish_.steps = 0;
+    }
+    wish_.steps += wish.steps;
+    if (wish.steps != 0) wish_.playing = false;
+    if (wish.playing) wish_.playing = *wish.playing;
+    if (wish.speed) wish_.speed = std::clamp(*wish.speed, slowestReplay, fastestReplay);
+    ++wish_.number;
+  }
+  wake_.notify_one();
 }
 
 void ReplayPlayer::run() {

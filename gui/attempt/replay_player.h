@@ -2,7 +2,6 @@
 // Decides what a replay shows next, apart from the thread that carries it out.
 #pragma once
 
-#include <chrono>
 #include <condition_variable>
 #include <cstdint>
 #include <filesystem>
@@ -32,6 +31,14 @@ struct PlayerPosition {
 
 inline constexpr double slowestReplay = 0.1, fastestReplay = 16.0;  ///< times real time
 
+/// A request to a replay: what it names changes.
+struct ReplayWish {
+  std::optional<double> time = {};   ///< to go there (s since the attempt's start); clamped
+  int steps = 0;                     ///< then by this number, clamped; playing stops
+  std::optional<bool> playing = {};  ///< true, at the end: from the start again
+  std::optional<double> speed = {};  ///< clamped to slowestReplay and fastestReplay
+};
+
 /// Plays a recording by simulating it again, on a thread of its own. A moment is reached from the nearest keyframe; the
 /// keyframe is shown at once where the way from there is long. Every picture is of a State that the recording gives;
 /// its time is reported with it. Knows no window.
@@ -51,26 +58,21 @@ class ReplayPlayer {
   ReplayPlayer(const ReplayPlayer&) = delete;
   ReplayPlayer& operator=(const ReplayPlayer&) = delete;
 
-  // Any thread; each returns at once. What is asked for before the file is open is done then. A newer wish replaces
-  // one that is not reached yet.
-  void seek(double time);  ///< (s) since the attempt's start; clamped
-  void stepBy(int steps);  ///< stops playing; clamped
-  void play();             ///< from the start again, where it stands at the end
-  void playFrom(double time);
-  void pause();
-  void setSpeed(double speed);  ///< clamped to slowestReplay and fastestReplay
+  /// Any thread; returns at once. What is asked for before the file is open is done then. A newer wish replaces one
+  /// that is not reached yet.
+  void ask(const ReplayWish& wish);
 
  private:
   class Run;
-  struct Wish {
-    std::optional<double> time;  ///< to go there
-    int steps = 0;               ///< then by so many
+  /// The wishes so far.
+  struct Asked {
+    std::optional<double> time;
+    int steps = 0;
     bool playing = false;
     double speed = 1.0;
     bool stop = false;
     std::uint64_t number = 0;  ///< of changes so far
   };
-  void change(const std::function<void(Wish&)>& how);
   void run();
 
   std::filesystem::path file_;
@@ -78,11 +80,11 @@ class ReplayPlayer {
   Receiver receiver_;
   std::mutex mutex_;
   std::condition_variable wake_;
-  Wish wish_;
+  Asked wish_;
   std::thread thread_;  // last: it uses what is above
 };
 
-/// Where a replay stands and what it can do.
+/// State of a replay and its possible controls.
 struct ReplayReach {
   std::optional<std::uint64_t> step;         ///< the last step done; none before the first
   std::span<const std::uint64_t> keyframes;  ///< steps after which there is a keyframe, rising

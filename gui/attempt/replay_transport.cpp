@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "gui/attempt/replay_transport.h"
 
-#include <algorithm>
 #include <array>
 #include <QBoxLayout>
 #include <QComboBox>
@@ -33,18 +32,12 @@ void Replay::open(const std::filesystem::path& file, const std::string& attempt)
                                back->pass([&](Replay& replay) { replay.hear(back, std::move(view), position); });
                              },
                              [back](const std::string& fault) {
-                               back->pass([&](Replay& replay) {
-                                 QMetaObject::invokeMethod(
-                                     &replay,
-                                     [&replay, back, text = QString::fromStdString(fault)] {
-                                       if (!back->stands()) return;
-                                       replay.open_ = false;
-                                       emit replay.failed(text);
-                                     },
-                                     Qt::QueuedConnection);
+                               Link<Replay>::post(back, [text = QString::fromStdString(fault)](Replay& replay) {
+                                 replay.open_ = false;
+                                 emit replay.failed(text);
                                });
                              }});
-  player_->setSpeed(speed_);
+  setSpeed(speed_);
 }
 
 void Replay::close() {
@@ -78,32 +71,6 @@ void Replay::take(const Back& back) {
   }
   if (!std::exchange(open_, true)) emit opened();
   emit positionChanged();
-}
-
-void Replay::seek(double time) {
-  if (player_) player_->seek(time);
-}
-void Replay::stepBy(int steps) {
-  if (player_) player_->stepBy(steps);
-}
-void Replay::play() {
-  if (player_) player_->play();
-}
-void Replay::playFrom(double time) {
-  if (player_) player_->playFrom(time);
-}
-void Replay::pause() {
-  if (player_) player_->pause();
-}
-void Replay::togglePlaying() {
-  if (open_ && position_.playing)
-    pause();
-  else
-    play();
-}
-void Replay::setSpeed(double speed) {
-  speed_ = speed;
-  if (player_) player_->setSpeed(speed);
 }
 
 namespace {

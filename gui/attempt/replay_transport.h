@@ -9,7 +9,7 @@
 #include <QObject>
 #include <QWidget>
 
-#include "gui/attempt/background.h"
+#include "gui/attempt/long_work.h"
 #include "gui/attempt/replay_player.h"
 
 namespace calot::gui {
@@ -31,14 +31,14 @@ class Replay : public QObject {
   /// @pre isOpen()
   [[nodiscard]] const PlayerPosition& position() const { return position_; }
 
-  // Without a recording these do nothing.
-  void seek(double time);
-  void stepBy(int steps);
-  void togglePlaying();
-  void play();
-  void playFrom(double time);
-  void pause();
-  void setSpeed(double speed);
+  // Without a recording these do nothing; a speed holds for those to come.
+  void seek(double time) { ask({.time = time}); }
+  void stepBy(int steps) { ask({.steps = steps}); }
+  void togglePlaying() { ask({.playing = !(open_ && position_.playing)}); }
+  void play() { ask({.playing = true}); }
+  void playFrom(double time) { ask({.time = time, .playing = true}); }
+  void pause() { ask({.playing = false}); }
+  void setSpeed(double speed) { ask({.speed = speed_ = speed}); }
 
  signals:
   void opened();
@@ -47,6 +47,9 @@ class Replay : public QObject {
 
  private:
   using Back = std::shared_ptr<Link<Replay>>;
+  void ask(const ReplayWish& wish) {
+    if (player_) player_->ask(wish);
+  }
   void hear(const Back& back, std::shared_ptr<const SceneView> view, const PlayerPosition& position);
   void take(const Back& back);
 
@@ -55,7 +58,7 @@ class Replay : public QObject {
   double speed_ = 1.0;
   PlayerPosition position_;
   std::mutex mutex_;
-  std::optional<PlayerPosition> newest_;  ///< told and not yet taken
+  std::optional<PlayerPosition> newest_;  ///< reported and not yet taken
   Back back_;                             ///< of the present player
   std::unique_ptr<ReplayPlayer> player_;
 };

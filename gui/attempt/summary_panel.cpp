@@ -43,8 +43,6 @@ void SummaryPanel::showSummary(const analytics::AttemptSummary& summary) {
   show();
 }
 
-void SummaryPanel::clear() { hide(); }
-
 QString keyFigureText(const analytics::KeyFigure& figure) {
   QStringList parts;
   for (const analytics::CheckpointValue& value : figure.values) {

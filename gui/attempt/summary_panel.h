@@ -15,7 +15,6 @@ class SummaryPanel : public QWidget {
  public:
   explicit SummaryPanel(QWidget* parent = nullptr);
   void showSummary(const analytics::AttemptSummary& summary);
-  void clear();
 
  private:
   QLabel* verdict_;

@@ -71,54 +71,45 @@ void mend(QPalette& palette, QPalette::ColorGroup group, Role text, Role ground)
   }
 }
 
-QPalette darkPalette() {
-  QPalette made(QColor(0x3a, 0x3d, 0x41), QColor(0x25, 0x28, 0x2b));
-  const QColor letters(0xec, 0xec, 0xec), ground(0x1b, 0x1d, 0x1f);
+/// @param letters of all texts, disabled or not, @param rest colours of single roles
+QPalette paletteFrom(QRgb button, QRgb window, QRgb letters, QRgb disabled,
+                     std::initializer_list<std::pair<Role, QRgb>> rest) {
+  QPalette made{QColor(button), QColor(window)};
   for (const Role role : {QPalette::WindowText, QPalette::Text, QPalette::ButtonText, QPalette::ToolTipText})
-    made.setColor(role, letters);
-  made.setColor(QPalette::Base, ground);
-  made.setColor(QPalette::AlternateBase, QColor(0x24, 0x27, 0x2a));
-  made.setColor(QPalette::ToolTipBase, QColor(0x30, 0x33, 0x37));
-  made.setColor(QPalette::PlaceholderText, QColor(0xa8, 0xac, 0xb0));
-  made.setColor(QPalette::Highlight, QColor(0x1f, 0x5f, 0x8f));
-  made.setColor(QPalette::HighlightedText, Qt::white);
-  made.setColor(QPalette::Link, QColor(0x7c, 0xc4, 0xf0));
-  made.setColor(QPalette::LinkVisited, QColor(0xd0, 0xb0, 0xf0));
+    made.setColor(role, QColor(letters));
+  for (const auto& [role, colour] : rest) made.setColor(role, QColor(colour));
   for (const Role role : {QPalette::WindowText, QPalette::Text, QPalette::ButtonText})
-    made.setColor(QPalette::Disabled, role, QColor(0x80, 0x84, 0x88));
+    made.setColor(QPalette::Disabled, role, QColor(disabled));
   return made;
+}
+
+QPalette darkPalette() {
+  return paletteFrom(0x3a3d41, 0x25282b, 0xececec, 0x808488,
+                     {{QPalette::Base, 0x1b1d1f},
+                      {QPalette::AlternateBase, 0x24272a},
+                      {QPalette::ToolTipBase, 0x303337},
+                      {QPalette::PlaceholderText, 0xa8acb0},
+                      {QPalette::Highlight, 0x1f5f8f},
+                      {QPalette::HighlightedText, 0xffffff},
+                      {QPalette::Link, 0x7cc4f0},
+                      {QPalette::LinkVisited, 0xd0b0f0}});
 }
 
 QPalette lightPalette() {
-  QPalette made(QColor(0xef, 0xef, 0xef), QColor(0xef, 0xef, 0xef));
-  for (const Role role : {QPalette::WindowText, QPalette::Text, QPalette::ButtonText, QPalette::ToolTipText})
-    made.setColor(role, Qt::black);
-  made.setColor(QPalette::Base, Qt::white);
-  made.setColor(QPalette::AlternateBase, QColor(0xf5, 0xf5, 0xf5));
-  made.setColor(QPalette::ToolTipBase, QColor(0xff, 0xff, 0xe6));
-  made.setColor(QPalette::PlaceholderText, QColor(0x66, 0x66, 0x66));
-  made.setColor(QPalette::Highlight, QColor(0x1f, 0x6f, 0xa8));
-  made.setColor(QPalette::HighlightedText, Qt::white);
-  for (const Role role : {QPalette::WindowText, QPalette::Text, QPalette::ButtonText})
-    made.setColor(QPalette::Disabled, role, QColor(0x8c, 0x8c, 0x8c));
-  return made;
+  return paletteFrom(0xefefef, 0xefefef, 0x000000, 0x8c8c8c,
+                     {{QPalette::Base, 0xffffff},
+                      {QPalette::AlternateBase, 0xf5f5f5},
+                      {QPalette::ToolTipBase, 0xffffe6},
+                      {QPalette::PlaceholderText, 0x666666},
+                      {QPalette::Highlight, 0x1f6fa8},
+                      {QPalette::HighlightedText, 0xffffff}});
 }
 
-QColor either(const QColor& onLight, const QColor& onDark) { return dark() ? onDark : onLight; }
+QColor either(QRgb onLight, QRgb onDark) { return QColor(dark() ? onDark : onLight); }
 
 }  // namespace
 
-QString wordOf(Choice choice) {
-  switch (choice) {
-    case Choice::light:
-      return "light";
-    case Choice::dark:
-      return "dark";
-    case Choice::system:
-      break;
-  }
-  return "system";
-}
+QString wordOf(Choice choice) { return choice == Choice::light ? "light" : choice == Choice::dark ? "dark" : "system"; }
 
 Choice choiceOf(const QString& word) {
   return word == "light" ? Choice::light : word == "dark" ? Choice::dark : Choice::system;
@@ -168,26 +159,16 @@ int inType(int pixels) { return static_cast<int>(std::lround(pixels * std::max(1
 
 QColor text() { return QApplication::palette().color(QPalette::Text); }
 QColor surface() { return QApplication::palette().color(QPalette::Base); }
-QColor muted() { return either(QColor(0x50, 0x50, 0x50), QColor(0xb8, 0xbc, 0xc0)); }
-QColor grid() { return either(QColor(0xe4, 0xe4, 0xe4), QColor(0x3c, 0x40, 0x44)); }
-QColor first() { return either(QColor(0x00, 0x72, 0xb2), QColor(0x56, 0xb4, 0xe9)); }
-QColor second() { return either(QColor(0xc0, 0x50, 0x00), QColor(0xf0, 0x8c, 0x3c)); }
-QColor box() { return either(QColor(0xdd, 0xdd, 0xdd), QColor(0x4a, 0x4e, 0x53)); }
-QColor trouble() { return either(QColor(0xa0, 0x42, 0x00), QColor(0xf4, 0xa2, 0x60)); }
+QColor muted() { return either(0x505050, 0xb8bcc0); }
+QColor grid() { return either(0xe4e4e4, 0x3c4044); }
+QColor first() { return either(0x0072b2, 0x56b4e9); }
+QColor second() { return either(0xc05000, 0xf08c3c); }
+QColor trouble() { return either(0xa04200, 0xf4a260); }
 
 QColor ofVerdict(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::verified:
-      return either(QColor(0x00, 0x5a, 0x8e), QColor(0x7c, 0xc4, 0xf0));
-    case Verdict::diverged:
-      return trouble();
-    case Verdict::damaged:
-      return either(QColor(0x8b, 0x2a, 0x5e), QColor(0xe9, 0xa0, 0xcf));
-    case Verdict::notCheckableHere:
-    case Verdict::notChecked:
-      break;
-  }
-  return muted();
+  if (verdict == Verdict::verified) return either(0x005a8e, 0x7cc4f0);
+  if (verdict == Verdict::diverged) return trouble();
+  return verdict == Verdict::damaged ? either(0x8b2a5e, 0xe9a0cf) : muted();
 }
 
 QIcon buttonIcon(QStyle::StandardPixmap picture) {

@@ -43,7 +43,6 @@ inline constexpr double leastContrast = 4.5;
 [[nodiscard]] QColor grid();
 [[nodiscard]] QColor first();    ///< lines and marks: left hand, people
 [[nodiscard]] QColor second();   ///< right hand, performers, errors
-[[nodiscard]] QColor box();      ///< of a box plot
 [[nodiscard]] QColor trouble();  ///< text of what went wrong
 [[nodiscard]] QColor ofVerdict(analytics::Verdict verdict);
 

@@ -2,10 +2,12 @@
 // Building blocks of pages, panels and dialogs.
 #pragma once
 
+#include <initializer_list>
 #include <QBoxLayout>
 #include <QComboBox>
 #include <QLabel>
 #include <QPushButton>
+#include <QScrollArea>
 
 namespace calot::gui::parts {
 
@@ -30,13 +32,29 @@ inline void embolden(QWidget* widget) {
   widget->setFont(bold);
 }
 
+inline void enlarge(QWidget* widget, double factor) {
+  QFont large = widget->font();
+  large.setPointSizeF(factor * large.pointSizeF());
+  widget->setFont(large);
+}
+
+/// Letters may be so large that not all of a page fits: it is scrolled up and down.
+inline QScrollArea* scrolled(QWidget* page) {
+  auto* const scroll = new QScrollArea;
+  scroll->setFrameShape(QFrame::NoFrame);
+  scroll->setWidgetResizable(true);
+  scroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+  scroll->setWidget(page);
+  return scroll;
+}
+
 inline QPushButton* button(const char* text, const char* name) {
   auto* const made = named(name, new QPushButton(text));
   made->setAutoDefault(true);  // Enter presses it
   return made;
 }
 
-/// A choice as wide as so many letters, however long its entries are.
+/// A choice as wide as this number of letters, however long its entries are.
 inline QComboBox* choice(const char* name, int letters) {
   auto* const made = named(name, new QComboBox);
   made->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
@@ -60,6 +78,11 @@ Layout* bare(QWidget* parent = nullptr) {
   auto* const made = new Layout(parent);
   made->setContentsMargins(0, 0, 0, 0);
   return made;
+}
+
+/// Puts widgets into a row or column.
+inline void fill(QBoxLayout& layout, std::initializer_list<QWidget*> widgets) {
+  for (QWidget* const widget : widgets) layout.addWidget(widget);
 }
 
 /// Hides a label that has nothing to say.

@@ -1,33 +1,32 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "gui/dashboard/attempt_page.h"
 
-#include <QBoxLayout>
+#include <chrono>
+#include <cmath>
+#include <condition_variable>
+#include <mutex>
 #include <QFileDialog>
 #include <QFileInfo>
-#include <QPushButton>
-#include <QShortcut>
-#include <QSplitter>
+#include <QSaveFile>
 
-#include "analytics/checkpoints/registry.h"
-#include "gui/attempt/attempt_recording.h"
-#include "gui/attempt/long_work.h"
-#include "gui/attempt/replay_transport.h"
+#include "analytics/checkpoints/checkpoint.h"
+#include "analytics/cohort/check.h"
+#include "analytics/report/grade_sheet.h"
+#include "gui/attempt/figure_text.h"
+#include "gui/attempt/replay_player.h"
 #include "gui/attempt/summary_panel.h"
-#include "gui/attempt/widget_parts.h"
-#include "gui/dashboard/attempt_banner.h"
 #include "gui/dashboard/figure_panel.h"
-#include "gui/dashboard/page_parts.h"
 #include "gui/dashboard/settings.h"
-#include "gui/dashboard/timeline_bar.h"
-#include "gui/dashboard/trace_chart.h"
-#include "gui/view/scene_picture_widget.h"
+#include "gui/render/renderer.h"
+#include "gui/report/pdf_report.h"
+#include "recorder/base/errors.h"
 
 namespace calot::gui {
 namespace {
 
 /// Figures that say what is better: only these have bad moments.
-RecordingReader::Figures judgedFigures(const std::vector<analytics::CheckpointValue>& values) {
-  RecordingReader::Figures figures;
+RecordingView::Figures judgedFigures(const std::vector<analytics::CheckpointValue>& values) {
+  RecordingView::Figures figures;
   for (const analytics::CheckpointValue& value : values) {
     const analytics::CheckpointDefinition* definition = analytics::findCheckpoint(value.name);
     if (value.value && definition != nullptr && definition->direction != analytics::Direction::none)
@@ -48,181 +47,254 @@ std::array<std::vector<double>, handCount> tracesOf(const AttemptTrack& track, s
 
 constexpr double millimetres = 1000.0;
 
+struct SheetRequest {
+  std::string database;
+  analytics::AttemptRow attempt;
+  analytics::AttemptSummary summary;
+  std::vector<TrackEvent> events;
+  std::vector<WorstMoment> moments;  ///< at most maxWorstMoments
+  std::filesystem::path recording;   ///< empty: no pictures
+  std::string norm;                  ///< name of the norm that the grade sheet is of
+  std::uint32_t normVersion = 0;
+  std::filesystem::path file;  ///< to be written; one that is there is replaced
+};
+
+constexpr int pictureWidth = 800, pictureHeight = 600;
+constexpr const char* sheetMaker = "calot " CALOT_VERSION;
+
+QString writeFile(const std::filesystem::path& file, const std::string& bytes) {
+  const QString name = QString::fromStdString(file.string());
+  QSaveFile out(name);
+  if (!out.open(QIODevice::WriteOnly) || out.write(bytes.data(), static_cast<qint64>(bytes.size())) < 0 ||
+      !out.commit())
+    throw Error(ErrorKind::failure, Where{file.string()}, "cannot be written: " + out.errorString().toStdString());
+  return "Written: " + name;
+}
+
+/// Waits for the moments that a player reaches, one after the other.
+class MomentCatcher {
+ public:
+  MomentCatcher(const std::filesystem::path& file, const std::string& attempt)
+      : player_(file, attempt,
+                {[this](auto view, const PlayerPosition& at) { take(std::move(view), at); },
+                 [this](const std::string& reason) { fail(reason); }}) {}
+  std::shared_ptr<const SceneView> at(double time, const LongWork::Control& control) {
+    {
+      const std::lock_guard lock(mutex_);
+      view_.reset();
+      wanted_ = time;
+    }
+    player_.ask({.time = time});
+    std::unique_lock lock(mutex_);
+    while (!view_) {
+      wake_.wait_for(lock, std::chrono::milliseconds(50));
+      if (control.broken()) throw LongWork::Broken{};
+      if (!fault_.empty()) throw Error(ErrorKind::failure, fault_);
+    }
+    return view_;
+  }
+
+ private:
+  void take(std::shared_ptr<const SceneView> view, const PlayerPosition& at) {
+    const std::lock_guard lock(mutex_);
+    const double wanted = std::min(wanted_, at.seconds);
+    constexpr double step = 0.021;  // s
+    if (!at.settled || std::abs(at.time - wanted) > step) return;
+    view_ = std::move(view);
+    wake_.notify_one();
+  }
+  void fail(const std::string& reason) {
+    const std::lock_guard lock(mutex_);
+    fault_ = reason;
+    wake_.notify_one();
+  }
+
+  std::mutex mutex_;
+  std::condition_variable wake_;
+  double wanted_ = -1.0;
+  std::shared_ptr<const SceneView> view_;
+  std::string fault_;
+  ReplayPlayer player_;  // last: its thread uses what is above
+};
+
+/// The attempt on one page: verdict, critical view, errors, key figures, what went wrong and when.
+analytics::ReportDocument attemptDocument(const SheetRequest& request) {
+  const analytics::AttemptRow& attempt = request.attempt;
+  analytics::ReportDocument document;
+  document.title =
+      (operatorText(attempt) + ", ").toStdString() + attempt.scene + ", " + startText(attempt.startUtc).toStdString();
+  document.synthetic = attempt.synthetic;
+  document.add(request.summary.verdict);
+  if (!request.summary.criticalView.empty()) document.add(request.summary.criticalView);
+  document.add(request.summary.errors);
+  std::vector<std::string> figures;
+  for (const analytics::KeyFigure& figure : request.summary.figures)
+    figures.push_back(keyFigureText(figure).toStdString());
+  document.addList(figures);
+  analytics::ReportTable table = analytics::tableOf("What went wrong", {"time", "=event"});
+  constexpr std::size_t maxRows = 24;
+  std::size_t errors = 0;
+  for (const TrackEvent& event : request.events) {
+    if (event.error && ++errors <= maxRows) table.rows.push_back({timeText(event.time), event.text});
+  }
+  if (errors > maxRows) table.rows.push_back({"", "and " + std::to_string(errors - maxRows) + " more"});
+  if (!table.rows.empty()) document.parts.emplace_back(std::move(table));
+  document.add("Attempt " + attempt.uuid + ", " + badgeText(attempt.verification.verdict).toStdString() + ". " +
+               analytics::comparabilityWords(attempt.comparabilityKey) + ".");
+  return document;
+}
+
+/// Pictures of the scene at the worst moments. @throws Error, LongWork::Broken
+std::vector<CaptionedPicture> picturesOf(const SheetRequest& request, LongWork::Control& control) {
+  std::vector<CaptionedPicture> pictures;
+  if (request.recording.empty() || request.moments.empty()) return pictures;
+  MomentCatcher catcher(request.recording, request.attempt.uuid);
+  Renderer renderer;
+  for (const WorstMoment& moment : request.moments) {
+    const std::size_t done = pictures.size(), all = request.moments.size();
+    control.progress(0.1 + 0.8 * static_cast<double>(done) / static_cast<double>(all),
+                     QString("Picture %1 of %2").arg(done + 1).arg(all));
+    pictures.push_back(
+        {renderer.render(*catcher.at(moment.time, control), pictureWidth, pictureHeight, Quality::interactive),
+         timeText(moment.time) + "  " + moment.caption});
+  }
+  return pictures;
+}
+
+/// Work for LongWork: one page with pictures, as PDF.
+QString writeOnePage(const SheetRequest& request, LongWork::Control& control) {
+  control.progress(0.0, "Opening the recording");
+  const std::vector<CaptionedPicture> pictures = picturesOf(request, control);
+  control.progress(0.9, "Laying out the page");
+  const std::string bytes = onePagePdf(attemptDocument(request), pictures, sheetMaker);
+  control.progress(1.0, "Writing the page");
+  return writeFile(request.file, bytes);
+}
+
+/// The attempt against the norm, as `calot grade --pdf` writes it.
+QString writeGradeSheet(const SheetRequest& request, LongWork::Control& control) {
+  control.progress(0.0, "Checking the cohort");
+  analytics::refuseUnsound(request.database);
+  control.progress(0.05, "Reading the cohort");
+  const analytics::CohortDatabase cohort(request.database, analytics::CohortDatabase::Access::read);
+  const analytics::Norm norm = analytics::AssessmentDatabase(request.database, analytics::CohortDatabase::Access::read)
+                                   .norm(request.norm, request.normVersion);
+  analytics::Grade grade = analytics::gradeAttempt(request.attempt, cohort.listAttempts(), cohort.allValues(), norm,
+                                                   false, request.database);
+  const auto weak = analytics::weakFigures(grade);
+  if (request.recording.empty()) {
+    grade.momentsMissing = "the recording " + request.attempt.fileName + " was not found";
+  } else if (!weak.empty()) {
+    recorder::Recording recording = openRecording(request.recording, request.attempt.uuid);
+    analytics::addMoments(grade, analytics::findMoments(recording, weak, [&](std::uint64_t done, std::uint64_t of) {
+                            control.progress(0.1 + 0.8 * static_cast<double>(done) / static_cast<double>(of),
+                                             "Looking for moments");
+                          }));
+  }
+  control.progress(0.9, "Laying out the sheet");
+  const std::string bytes =
+      pdfReport(analytics::gradeDocument(grade, request.recording.filename().string(), {}), sheetMaker);
+  control.progress(1.0, "Writing the sheet");
+  return writeFile(request.file, bytes);
+}
+
 }  // namespace
 
-AttemptPage::AttemptPage(QWidget* parent) : QWidget(parent) {
-  figures_ = new FigurePanel;
-  picture_ = new ScenePictureWidget;
-  replay_ = std::make_unique<Replay>(
-      [picture = picture_](std::shared_ptr<const SceneView> view) { picture->showView(std::move(view)); });
-  reader_ = std::make_unique<RecordingReader>();
-
-  auto* layout = new QVBoxLayout(this);
-  banner_ = new AttemptBanner;
-  layout->addWidget(banner_);
-  summary_ = new SummaryPanel;
-  layout->addWidget(summary_);
-  auto* upper = new QSplitter(Qt::Horizontal);
-  upper->addWidget(figures_);
-  upper->addWidget(buildReplay());
-  upper->setSizes({720, 520});
-  upper->setStretchFactor(0, 3);
-  upper->setStretchFactor(1, 2);
-  upper->setChildrenCollapsible(false);
-  timeline_ = new TimelineBar;
-  force_ = new TraceChart("force-trace", "Force on the hand (N): left solid, right dashed");
-  speed_ = new TraceChart("speed-trace", "Speed of the tip (mm/s)");
+AttemptPage::AttemptPage(QWidget* parent)
+    : CohortPage(parent),
+      strip_(new WorkStrip(work_)),
+      banner_(new AttemptBanner),
+      summary_(new SummaryPanel),
+      figures_(new FigurePanel),
+      recording_(new RecordingView({})),
+      find_(parts::named("find-recording", new QPushButton("Find the &recording …"))),
+      force_(new TraceChart("force-trace", "Force on the hand (N): left solid, right dashed")),
+      speed_(new TraceChart("speed-trace", "Speed of the tip (mm/s)")) {
+  static_cast<QBoxLayout*>(recording_->layout())->insertWidget(1, find_, 0, Qt::AlignHCenter);
   auto* traces = new QWidget;
   auto* traceLayout = parts::bare<QVBoxLayout>(traces);
   traceLayout->setSpacing(2);
-  for (QWidget* row : {static_cast<QWidget*>(timeline_), static_cast<QWidget*>(force_), static_cast<QWidget*>(speed_)})
+  for (QWidget* row : std::initializer_list<QWidget*>{&recording_->timeline(), force_, speed_})
     traceLayout->addWidget(row);
-  auto* parts = new QSplitter(Qt::Vertical);
-  parts->addWidget(upper);
-  parts->addWidget(traces);
-  parts->setStretchFactor(0, 1);
-  parts->setChildrenCollapsible(false);
-  layout->addWidget(parts, 1);
-  setProperty(beginProperty, QVariant::fromValue<QObject*>(figures_->findChild<QWidget*>("attempt-checkpoints")));
-  strip_ = new WorkStrip(work_);
+  QSplitter* upper = makeSplitter(Qt::Horizontal, {{figures_, 3}, {recording_, 2}});
+  upper->setSizes({720, 520});
+  auto* layout = new QVBoxLayout(this);
+  layout->addWidget(banner_);
+  layout->addWidget(summary_);
+  layout->addWidget(makeSplitter(Qt::Vertical, {{upper, 1}, {traces, 0}}), 1);
   layout->addWidget(strip_);
+  begin_ = figures_->findChild<QWidget*>("attempt-checkpoints");
   connectParts();
   clear();
-}
-
-AttemptPage::~AttemptPage() {
-  // Their threads use the picture and this page.
-  reader_.reset();
-  replay_.reset();
-}
-
-QWidget* AttemptPage::buildReplay() {
-  find_ = parts::named("find-recording", new QPushButton("Find the &recording …"));
-  auto* made = new QWidget;
-  auto* layout = parts::bare<QVBoxLayout>(made);
-  layout->addWidget(picture_, 1);
-  layout->addWidget(find_, 0, Qt::AlignHCenter);
-  layout->addWidget(new TransportBar(*replay_));
-  return made;
 }
 
 void AttemptPage::connectParts() {
   connect(find_, &QPushButton::clicked, this, &AttemptPage::askForRecording);
   connect(figures_, &FigurePanel::summaryChanged, this, [this] { summary_->showSummary(figures_->summary()); });
-  connect(figures_, &FigurePanel::sheetRequested, this, [this] { askForSheet(false); });
-  connect(figures_, &FigurePanel::onePageRequested, this, [this] { askForSheet(true); });
+  connect(figures_, &FigurePanel::sheetRequested, this, &AttemptPage::askForSheet);
   connect(&work_, &LongWork::done, this, &AttemptPage::sheetWritten);
   connect(&work_, &LongWork::failed, this, &AttemptPage::problem);
   connect(figures_, &FigurePanel::problem, this, &AttemptPage::problem);
-  connect(figures_, &FigurePanel::timeChosen, replay_.get(), &Replay::seek);
-  connect(figures_, &FigurePanel::windowsChosen, timeline_, &TimelineBar::setMarked);
-  connect(timeline_, &TimelineBar::timeChosen, replay_.get(), &Replay::seek);
-  connect(force_, &TraceChart::timeChosen, replay_.get(), &Replay::seek);
-  connect(speed_, &TraceChart::timeChosen, replay_.get(), &Replay::seek);
-
-  connect(replay_.get(), &Replay::opened, this, [this] {
-    figures_->setMomentsText("looking …");
-    reader_->read(file_, judgedFigures(figures_->values()));
-  });
-  connect(replay_.get(), &Replay::positionChanged, this, [this] { showPosition(); });
-  connect(replay_.get(), &Replay::failed, this, [this](const QString& reason) {
-    reading_ = false;
-    picture_->showText(reason);
-    timeline_->setText("No timeline: the recording cannot be shown.");
+  connect(figures_, &FigurePanel::windowsChosen, &recording_->timeline(), &TimelineBar::setMarked);
+  Replay* const replay = &recording_->replay();
+  connect(figures_, &FigurePanel::timeChosen, replay, &Replay::seek);
+  connect(&recording_->timeline(), &TimelineBar::timeChosen, replay, &Replay::seek);
+  for (TraceChart* chart : {force_, speed_}) {
+    connect(chart, &TraceChart::timeChosen, replay, &Replay::seek);
+    connect(replay, &Replay::positionChanged, chart, [chart, replay] { chart->setPosition(replay->position().time); });
+  }
+  connect(recording_, &RecordingView::opened, this, [this] { figures_->setMomentsText("looking …"); });
+  connect(recording_, &RecordingView::momentsFound, figures_, &FigurePanel::setMoments);
+  connect(recording_, &RecordingView::failed, this, [this] {
     figures_->setMomentsText({});
-    find_->show();
+    find_->setVisible(!recording_->isOpen());
   });
-  connect(reader_.get(), &RecordingReader::progress, this, [this](int percent) {
-    if (percent < 50) timeline_->setText(QString("Reading the recording … %1 %").arg(2 * percent));
+  connect(recording_, &RecordingView::trackRead, this, [this](const AttemptTrack& track) {
+    figures_->setEvents(track.events);
+    force_->setTraces(track.seconds, track.bin, tracesOf(track, &HandTrace::force, 1.0));
+    speed_->setTraces(track.seconds, track.bin, tracesOf(track, &HandTrace::speed, millimetres));
   });
-  connect(reader_.get(), &RecordingReader::trackRead, this, &AttemptPage::takeTrack);
-  connect(reader_.get(), &RecordingReader::momentsFound, this, &AttemptPage::takeMoments);
-  connect(reader_.get(), &RecordingReader::failed, this, [this](const QString& reason) {
-    reading_ = false;
-    timeline_->setText(reason);
-    figures_->setMomentsText({});
-  });
-
-  const auto key = [this](const QKeySequence& keys, auto action) {
-    connect(new QShortcut(keys, this, nullptr, nullptr, Qt::WidgetWithChildrenShortcut), &QShortcut::activated, this,
-            action);
-  };
-  key(Qt::Key_Space, [this] { replay_->togglePlaying(); });
-  key(Qt::Key_Comma, [this] { replay_->stepBy(-1); });
-  key(Qt::Key_Period, [this] { replay_->stepBy(1); });
+  onKey(*this, Qt::Key_Space, [replay] { replay->togglePlaying(); });
+  onKey(*this, Qt::Key_Comma, [replay] { replay->stepBy(-1); });
+  onKey(*this, Qt::Key_Period, [replay] { replay->stepBy(1); });
 }
 
 void AttemptPage::setAttempt(std::shared_ptr<const CohortDocument> document, const analytics::AttemptRow& attempt) {
   document_ = std::move(document);
   // The same one after a reload, as it was: the replay goes on.
-  const bool same = loaded_ && attempt_->uuid == attempt.uuid && attempt_->verifiedUtc == attempt.verifiedUtc &&
+  const bool same = attempt_ && attempt_->uuid == attempt.uuid && attempt_->verifiedUtc == attempt.verifiedUtc &&
                     attempt_->chainHead == attempt.chainHead && attempt_->exclusionReason == attempt.exclusionReason;
   attempt_ = attempt;
-  if (same) return;
-  loaded_ = false;
-  if (isVisible()) load();
+  if (!same) outdate();
 }
 
 void AttemptPage::clear() {
   document_.reset();
   attempt_.reset();
-  loaded_ = false;
-  reader_->stop();
-  replay_->close();
+  recording_->close("No attempt is chosen.", "No attempt is chosen.");
   banner_->showText("Choose an attempt on the page Attempts: double-click it, or press Enter.");
-  summary_->clear();
+  summary_->hide();
   figures_->clear();
-  picture_->showText("No attempt is chosen.");
   find_->hide();
-  timeline_->setText("No attempt is chosen.");
   force_->clear();
   speed_->clear();
 }
 
-void AttemptPage::showEvent(QShowEvent* event) {
-  QWidget::showEvent(event);
-  if (!loaded_ && attempt_) load();
-}
-
-void AttemptPage::hideEvent(QHideEvent* event) {
-  QWidget::hideEvent(event);
-  replay_->pause();
-}
-
-void AttemptPage::load() {
-  loaded_ = true;
-  reading_ = false;
-  reader_->stop();
-  replay_->close();
+void AttemptPage::read() {
   banner_->showAttempt(*attempt_);
   force_->clear();
   speed_->clear();
   figures_->setAttempt(document_, *attempt_);
-  const std::filesystem::path file = findRecording(*attempt_, document_->path(), settings::recordingPlaces());
-  if (file.empty())
-    showMissingRecording();
-  else
-    openRecording(file);
-}
-
-void AttemptPage::openRecording(const std::filesystem::path& file) {
-  file_ = file;
-  reading_ = true;
-  find_->hide();
-  picture_->showText("Opening " + QString::fromStdString(file.filename().string()) + " …");
-  timeline_->setText("Checking the recording …");
-  replay_->open(file, attempt_->uuid);
-}
-
-void AttemptPage::showMissingRecording() {
+  const bool found = recording_->open(*attempt_, *document_, judgedFigures(figures_->values()));
+  find_->setVisible(!found);
+  if (found) return;
   const QString name = QString::fromStdString(attempt_->fileName);
-  picture_->showText(
+  recording_->close(
       (name.isEmpty()
            ? QString("The database names no file for this attempt.")
            : QString("%1 is not beside the database, nor in a folder where recordings were found before.").arg(name)) +
-      "\nThe checkpoints stand; replay and timeline need the recording.");
-  timeline_->setText("No timeline without the recording.");
-  find_->show();
+          "\nThe checkpoints stand; replay and timeline need the recording.",
+      "No timeline without the recording.");
 }
 
 void AttemptPage::askForRecording() {
@@ -232,7 +304,8 @@ void AttemptPage::askForRecording() {
                                                     "Recordings (*.h5);;All files (*)");
   if (file.isEmpty()) return;
   settings::rememberRecordingFolder(QFileInfo(file).absolutePath());
-  openRecording(file.toStdString());
+  find_->hide();
+  recording_->openFile(file.toStdString(), attempt_->uuid, judgedFigures(figures_->values()));
 }
 
 void AttemptPage::askForSheet(bool onePage) {
@@ -245,46 +318,20 @@ void AttemptPage::askForSheet(bool onePage) {
 }
 
 void AttemptPage::writeSheet(const std::filesystem::path& file, bool onePage) {
-  SheetRequest request;
-  request.database = document_->path();
-  request.attempt = *attempt_;
-  request.summary = figures_->summary();
-  request.events = figures_->events();
-  request.moments = figures_->worstMoments();
-  if (replay_->isOpen()) request.recording = file_;
-  request.file = file;
-  if (const analytics::Norm* norm = figures_->norm()) {
-    request.norm = norm->name;
-    request.normVersion = norm->version;
-  }
+  const analytics::Norm* const norm = figures_->norm();
+  const SheetRequest request{document_->path(),
+                             *attempt_,
+                             figures_->summary(),
+                             figures_->events(),
+                             figures_->worstMoments(),
+                             recording_->isOpen() ? recording_->file() : std::filesystem::path(),
+                             norm != nullptr ? norm->name : std::string(),
+                             norm != nullptr ? norm->version : 0,
+                             file};
   strip_->begin("Writing " + QString::fromStdString(file.filename().string()));
   work_.start([request, onePage](LongWork::Control& control) {
     return onePage ? writeOnePage(request, control) : writeGradeSheet(request, control);
   });
-}
-
-void AttemptPage::showPosition() {
-  const double time = replay_->position().time;
-  timeline_->setPosition(time);
-  force_->setPosition(time);
-  speed_->setPosition(time);
-}
-
-void AttemptPage::takeTrack(const AttemptTrack& track) {
-  timeline_->setTrack(track);
-  figures_->setEvents(track.events);
-  force_->setTraces(track.seconds, track.bin, tracesOf(track, &HandTrace::force, 1.0));
-  speed_->setTraces(track.seconds, track.bin, tracesOf(track, &HandTrace::speed, millimetres));
-  showPosition();
-}
-
-bool AttemptPage::settled() const {
-  return !reading_ && (!replay_->isOpen() || (replay_->position().settled && picture_->shown() > 0));
-}
-
-void AttemptPage::takeMoments(const std::vector<analytics::FigureMoments>& moments) {
-  reading_ = false;
-  figures_->setMoments(moments);
 }
 
 }  // namespace calot::gui

@@ -3,27 +3,84 @@
 
 #include <algorithm>
 #include <array>
-#include <QBoxLayout>
-#include <QComboBox>
-#include <QHeaderView>
+#include <QFont>
 #include <QItemSelectionModel>
-#include <QLabel>
-#include <QLineEdit>
 #include <QMenu>
-#include <QPushButton>
-#include <QSignalBlocker>
-#include <QSplitter>
-#include <QTableView>
 
 #include "gui/attempt/figure_text.h"
-#include "gui/attempt/widget_parts.h"
-#include "gui/dashboard/attempt_banner.h"
-#include "gui/dashboard/page_parts.h"
 #include "gui/dashboard/settings.h"
-#include "gui/words/problem_words.h"
-#include "recorder/base/errors.h"
 
 namespace calot::gui {
+
+void AttemptTableModel::setLines(std::shared_ptr<const AttemptLines> lines) {
+  beginResetModel();
+  lines_ = std::move(lines);
+  endResetModel();
+}
+
+int AttemptTableModel::rowCount(const QModelIndex& parent) const {
+  return parent.isValid() || !lines_ ? 0 : static_cast<int>(lines_->attempts().size());
+}
+int AttemptTableModel::columnCount(const QModelIndex& parent) const { return parent.isValid() ? 0 : columnTotal; }
+
+QVariant AttemptTableModel::data(const QModelIndex& index, int role) const {
+  if (!index.isValid() || index.row() >= rowCount() || index.column() >= columnTotal) return {};
+  const analytics::AttemptRow& row = attempt(index.row());
+  switch (role) {
+    case Qt::DisplayRole:
+      return lines_->cell(index.row(), index.column());
+    case sortRole:
+      return lines_->rank(index.row(), index.column());
+    case uuidRole:
+      return QString::fromStdString(row.uuid);
+    case Qt::ForegroundRole:
+      if (index.column() == verificationColumn) return badgeOf(row).colour;
+      return {};
+    case Qt::FontRole: {
+      QFont font;
+      if (index.column() == verificationColumn) font.setBold(true);
+      if (index.column() == syntheticColumn) font.setItalic(true);
+      return font;
+    }
+    case Qt::ToolTipRole:
+      if (index.column() == attemptColumn) return QString::fromStdString(row.uuid);
+      if (index.column() == verificationColumn) return badgeOf(row).explanation;
+      if (index.column() == syntheticColumn && row.synthetic) return "Made by a performer, not by a person.";
+      if (index.column() == outcomeColumn && row.excluded) return QString::fromStdString(row.exclusionReason);
+      if (index.column() == tagsColumn) return lines_->cell(index.row(), tagsColumn);
+      return {};
+    default:
+      return {};
+  }
+}
+
+QVariant AttemptTableModel::headerData(int section, Qt::Orientation orientation, int role) const {
+  if (orientation != Qt::Horizontal || role != Qt::DisplayRole || section < 0 || section >= columnTotal) return {};
+  return AttemptLines::title(section);
+}
+
+AttemptFilter::AttemptFilter(QObject* parent) : QSortFilterProxyModel(parent) {
+  setSortRole(AttemptTableModel::sortRole);
+}
+
+void AttemptFilter::set(const Criteria& wanted) {
+  if (wanted == wanted_) return;
+  wanted_ = wanted;
+  words_ = wanted.search.toLower().split(' ', Qt::SkipEmptyParts);
+  invalidate();
+}
+
+bool AttemptFilter::filterAcceptsRow(int sourceRow, const QModelIndex&) const {
+  const auto& model = static_cast<const AttemptTableModel&>(*sourceModel());
+  const analytics::AttemptRow& attempt = model.attempt(sourceRow);
+  if (!wanted_.tag.empty() && std::find(attempt.tags.begin(), attempt.tags.end(), wanted_.tag) == attempt.tags.end())
+    return false;
+  if (wanted_.verdict && attempt.verification.verdict != *wanted_.verdict) return false;
+  if (wanted_.synthetic && attempt.synthetic != *wanted_.synthetic) return false;
+  const QString& text = model.search(sourceRow);
+  return std::all_of(words_.begin(), words_.end(), [&](const QString& word) { return text.contains(word); });
+}
+
 namespace {
 
 using analytics::Verdict;
@@ -32,126 +89,89 @@ constexpr std::array verdicts{Verdict::verified, Verdict::diverged, Verdict::dam
 
 }  // namespace
 
-AttemptsPage::AttemptsPage(QWidget* parent) : QWidget(parent) {
+AttemptsPage::AttemptsPage(QWidget* parent) : CohortPage(parent) {
   filter_.setSourceModel(&attempts_);
-  auto* upper = new QWidget;
-  auto* upperLayout = parts::bare<QVBoxLayout>(upper);
-  buildFilters(*upperLayout);
-  table_ = makeTable(filter_, "attempts", "Attempts");
+  begin_ = table_ = makeTable(filter_, "attempts", "Attempts");
   table_->setSelectionMode(QAbstractItemView::ExtendedSelection);
   table_->setSortingEnabled(true);
   table_->sortByColumn(AttemptTableModel::startColumn, Qt::DescendingOrder);
-  const QStringList hidden = settings::hiddenColumns();
-  for (int column = AttemptTableModel::operatorColumn; column < AttemptTableModel::columnTotal; ++column)
-    table_->setColumnHidden(column,
-                            hidden.contains(attempts_.headerData(column, Qt::Horizontal, Qt::DisplayRole).toString()));
   setWidths(*table_, {90, 180, 110, 130, 95, 130, 150, 150, 90});
+  auto* upper = new QWidget;
+  auto* upperLayout = parts::bare<QVBoxLayout>(upper);
+  upperLayout->addLayout(buildFilters());
   upperLayout->addWidget(table_);
-  setProperty(beginProperty, QVariant::fromValue<QObject*>(table_));
 
-  auto* lower = new QWidget;
-  auto* lowerLayout = parts::bare<QVBoxLayout>(lower);
-  buildDetails(*lowerLayout);
-
-  auto* splitter = new QSplitter(Qt::Vertical);
-  splitter->addWidget(upper);
-  splitter->addWidget(lower);
-  splitter->setStretchFactor(0, 3);
-  splitter->setStretchFactor(1, 2);
-  splitter->setChildrenCollapsible(false);
-  auto* layout = new QVBoxLayout(this);
-  layout->addWidget(splitter);
-
-  connect(table_->selectionModel(), &QItemSelectionModel::currentRowChanged, this, [this] { showSelected(); });
-  connect(table_->selectionModel(), &QItemSelectionModel::selectionChanged, this, [this] { showCount(); });
-  connect(table_, &QTableView::activated, this, &AttemptsPage::attemptActivated);
-}
-
-void AttemptsPage::buildFilters(QBoxLayout& layout) {
-  auto* row = new QHBoxLayout;
-  search_ = parts::named("search", new QLineEdit);
-  search_->setAccessibleName("Search attempts");
-  search_->setPlaceholderText("Search (Ctrl+F): participant, profile, group, scene, date …");
-  search_->setClearButtonEnabled(true);
-  verdict_ = parts::named("verdict", new QComboBox);
-  verdict_->addItem("All verdicts");
-  for (const Verdict verdict : verdicts) verdict_->addItem(badgeText(verdict), static_cast<int>(verdict));
-  operators_ = parts::named("operators", new QComboBox);
-  operators_->addItem("People and synthetic");
-  operators_->addItem("Not synthetic");
-  operators_->addItem("Synthetic only");
-  tag_ = parts::choice("tag", 8);
-  tag_->setToolTip("Tags are put on attempts by the menu Edit, or by calot attempt tag");
-  count_ = parts::named("count", new QLabel);
-  const auto add = [&](const char* text, QWidget* field, int stretch) { parts::labelled(*row, text, field, stretch); };
-  add("&Search", search_, 1);
-  add("Verifi&cation", verdict_, 0);
-  add("&Made by", operators_, 0);
-  add("&Tag", tag_, 0);
-  row->addWidget(count_);
-  buildColumns(*row);
-  layout.addLayout(row);
-
-  connect(search_, &QLineEdit::textChanged, this, [this](const QString& text) {
-    filter_.setSearch(text);
-    afterFilter();
-  });
-  connect(verdict_, &QComboBox::currentIndexChanged, this, [this](int index) {
-    filter_.setVerdict(index <= 0 ? std::nullopt : std::optional(verdicts[static_cast<std::size_t>(index - 1)]));
-    afterFilter();
-  });
-  connect(operators_, &QComboBox::currentIndexChanged, this, [this](int index) {
-    filter_.setOperators(static_cast<AttemptFilter::Operators>(index));
-    afterFilter();
-  });
-  connect(tag_, &QComboBox::currentIndexChanged, this, [this](int index) {
-    filter_.setTag(index <= 0 ? QString() : tag_->itemText(index));
-    afterFilter();
-  });
-}
-
-void AttemptsPage::buildColumns(QBoxLayout& layout) {
-  auto* button = parts::named("columns", new QPushButton("Co&lumns"));
-  auto* menu = new QMenu(button);
-  // The table is made after its filters.
-  connect(menu, &QMenu::aboutToShow, this, [this, menu] {
-    menu->clear();
-    for (int column = AttemptTableModel::operatorColumn; column < AttemptTableModel::columnTotal; ++column) {
-      QAction* action = menu->addAction(attempts_.headerData(column, Qt::Horizontal, Qt::DisplayRole).toString());
-      action->setCheckable(true);
-      action->setChecked(!table_->isColumnHidden(column));
-      connect(action, &QAction::toggled, this, [this, column](bool shown) {
-        table_->setColumnHidden(column, !shown);
-        QStringList hidden;
-        for (int c = 0; c < AttemptTableModel::columnTotal; ++c) {
-          if (table_->isColumnHidden(c)) hidden += attempts_.headerData(c, Qt::Horizontal, Qt::DisplayRole).toString();
-        }
-        settings::setHiddenColumns(hidden);
-      });
-    }
-  });
-  button->setMenu(menu);
-  layout.addWidget(button);
-}
-
-void AttemptsPage::buildDetails(QBoxLayout& layout) {
   banner_ = new AttemptBanner;
-  layout.addWidget(banner_);
   details_ = makeTable(checkpoints_, "checkpoints", "Checkpoints of the selected attempt");
   setWidths(*details_, {330, 110, 170, 150, 0, 0, 140, 150, 110, 70});
-  details_->hideColumn(CheckpointTableModel::intervalColumn);
-  details_->hideColumn(CheckpointTableModel::normColumn);
-  details_->hideColumn(CheckpointTableModel::momentColumn);
+  for (const int column :
+       {CheckpointTableModel::intervalColumn, CheckpointTableModel::normColumn, CheckpointTableModel::momentColumn})
+    details_->hideColumn(column);
   // The longest words are a window's.
   details_->horizontalHeader()->setStretchLastSection(false);
   details_->horizontalHeader()->setSectionResizeMode(CheckpointTableModel::windowColumn, QHeaderView::Stretch);
   wrapWords(*details_);
   details_->setToolTip("Double-click, or press Enter, to see when a figure came about");
-  layout.addWidget(details_);
+  auto* lower = new QWidget;
+  auto* lowerLayout = parts::bare<QVBoxLayout>(lower);
+  lowerLayout->addWidget(banner_);
+  lowerLayout->addWidget(details_);
+
+  auto* layout = new QVBoxLayout(this);
+  layout->addWidget(makeSplitter(Qt::Vertical, {{upper, 3}, {lower, 2}}));
+
+  connect(table_->selectionModel(), &QItemSelectionModel::currentRowChanged, this, [this] { showSelected(); });
+  connect(table_->selectionModel(), &QItemSelectionModel::selectionChanged, this, [this] { showCount(); });
+  connect(table_, &QTableView::activated, this,
+          [this](const QModelIndex& at) { emit attemptActivated(at.data(AttemptTableModel::uuidRole).toString()); });
   connect(details_, &QTableView::activated, this, [this](const QModelIndex& at) {
     const analytics::CheckpointValue& value = checkpoints_.value(at.row());
     emit figureActivated(QString::fromStdString(value.name), QString::fromStdString(value.subject));
   });
+}
+
+QLayout* AttemptsPage::buildFilters() {
+  auto* row = new QHBoxLayout;
+  search_ = parts::labelled(*row, "&Search", parts::named("search", new QLineEdit), 1);
+  search_->setAccessibleName("Search attempts");
+  search_->setPlaceholderText("Search (Ctrl+F): participant, profile, group, scene, date …");
+  search_->setClearButtonEnabled(true);
+  verdict_ = parts::labelled(*row, "Verifi&cation", parts::named("verdict", new QComboBox));
+  verdict_->addItem("All verdicts");
+  for (const Verdict verdict : verdicts) verdict_->addItem(badgeText(verdict));
+  operators_ = parts::labelled(*row, "&Made by", parts::named("operators", new QComboBox));
+  operators_->addItems({"People and synthetic", "Not synthetic", "Synthetic only"});
+  tag_ = parts::labelled(*row, "&Tag", parts::choice("tag", 8));
+  tag_->setToolTip("Tags are put on attempts by the menu Edit, or by calot attempt tag");
+  count_ = parts::named("count", new QLabel);
+  row->addWidget(count_);
+  row->addWidget(buildColumns());
+  connect(search_, &QLineEdit::textChanged, this, [this] { filter(); });
+  for (QComboBox* choice : {verdict_, operators_, tag_})
+    connect(choice, &QComboBox::currentIndexChanged, this, [this] { filter(); });
+  return row;
+}
+
+QWidget* AttemptsPage::buildColumns() {
+  auto* button = parts::named("columns", new QPushButton("Co&lumns"));
+  auto* menu = new QMenu(button);
+  const QStringList hidden = settings::hiddenColumns();
+  for (int column = AttemptTableModel::operatorColumn; column < AttemptTableModel::columnTotal; ++column) {
+    QAction* action = menu->addAction(AttemptLines::title(column));
+    action->setCheckable(true);
+    action->setChecked(!hidden.contains(action->text()));
+    table_->setColumnHidden(column, !action->isChecked());
+    connect(action, &QAction::toggled, this, [this, menu, column](bool shown) {
+      table_->setColumnHidden(column, !shown);
+      QStringList titles;
+      for (const QAction* other : menu->actions()) {
+        if (!other->isChecked()) titles += other->text();
+      }
+      settings::setHiddenColumns(titles);
+    });
+  }
+  button->setMenu(menu);
+  return button;
 }
 
 void AttemptsPage::setDocument(std::shared_ptr<const CohortDocument> document) {
@@ -178,6 +198,7 @@ int AttemptsPage::rowOf(const QString& uuid) const {
 }
 
 void AttemptsPage::select(const QString& uuid) {
+  if (selected() != nullptr && selected()->uuid == uuid.toStdString()) return;
   if (rowOf(uuid) < 0) {
     search_->clear();
     verdict_->setCurrentIndex(0);
@@ -197,16 +218,20 @@ void AttemptsPage::focusSearch() {
 
 void AttemptsPage::showCount() {
   QString text = QString("%1 of %2 attempts").arg(filter_.rowCount()).arg(attempts_.rowCount());
-  if (table_ != nullptr) {
-    const qsizetype chosen = table_->selectionModel()->selectedRows().size();
-    if (chosen > 1) text += QString(", %1 selected").arg(chosen);
-  }
+  const qsizetype chosen = table_->selectionModel()->selectedRows().size();
+  if (chosen > 1) text += QString(", %1 selected").arg(chosen);
   count_->setText(text);
 }
 
-/// What was current may be hidden now: then it is the first of what is left.
-void AttemptsPage::afterFilter() {
+void AttemptsPage::filter() {
+  AttemptFilter::Criteria wanted;
+  wanted.search = search_->text();
+  if (const int at = verdict_->currentIndex(); at > 0) wanted.verdict = verdicts[static_cast<std::size_t>(at - 1)];
+  if (operators_->currentIndex() > 0) wanted.synthetic = operators_->currentIndex() == 2;
+  if (tag_->currentIndex() > 0) wanted.tag = tag_->currentText().toStdString();
+  filter_.set(wanted);
   showCount();
+  // If the current attempt is hidden now, the first of the remaining ones becomes current.
   if (table_->currentIndex().isValid()) return;
   if (filter_.rowCount() > 0)
     table_->selectRow(0);
@@ -222,7 +247,7 @@ void AttemptsPage::fillTags() {
   tag_->addItems(document_->lines()->tags());
   tag_->setCurrentIndex(before.isEmpty() ? 0 : std::max(0, tag_->findText(before)));
   tag_->setEnabled(tag_->count() > 1);
-  if (tag_->currentIndex() == 0) filter_.setTag({});
+  if (!before.isEmpty() && tag_->currentIndex() == 0) filter();
 }
 
 void AttemptsPage::selectNext() {
@@ -244,21 +269,20 @@ const analytics::AttemptRow* AttemptsPage::selected() const {
 }
 
 void AttemptsPage::showSelected() {
-  const analytics::AttemptRow* attempt = selected();
-  if (attempt == nullptr) {
+  const analytics::AttemptRow* row = selected();
+  std::vector<analytics::CheckpointValue> values;
+  std::vector<analytics::ValueInterval> intervals;
+  if (row == nullptr) {
     banner_->showText("Select an attempt to see its checkpoints.");
-    checkpoints_.setValues({});
-    emit selectionChanged();
-    return;
+  } else {
+    banner_->showAttempt(*row);
+    tryTo([&] {
+      values = document_->values(row->uuid);
+      intervals = document_->intervals(row->uuid);
+    });
   }
-  banner_->showAttempt(*attempt);
-  try {
-    checkpoints_.setValues(document_->values(attempt->uuid), document_->intervals(attempt->uuid));
-    details_->setColumnHidden(CheckpointTableModel::intervalColumn, !checkpoints_.hasIntervals());
-  } catch (const Error& error) {
-    checkpoints_.setValues({});
-    emit problem(QString::fromStdString(problemText(error)));
-  }
+  details_->setColumnHidden(CheckpointTableModel::intervalColumn, intervals.empty());
+  checkpoints_.setValues(std::move(values), std::move(intervals));
   emit selectionChanged();
 }
 

@@ -1,31 +1,76 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <memory>
-#include <QWidget>
-#include <vector>
+#include <optional>
+#include <QAbstractTableModel>
+#include <QSortFilterProxyModel>
 
-#include "gui/dashboard/attempt_table_model.h"
 #include "gui/dashboard/checkpoint_table_model.h"
-#include "gui/dashboard/cohort_document.h"
-
-class QBoxLayout;
-class QComboBox;
-class QLabel;
-class QLineEdit;
-class QTableView;
+#include "gui/dashboard/page_parts.h"
 
 namespace calot::gui {
 
-class AttemptBanner;
+/// The attempts of a cohort as a table, one row each.
+class AttemptTableModel : public QAbstractTableModel {
+  Q_OBJECT
+ public:
+  using enum AttemptLines::Column;
+  enum Role {
+    sortRole = Qt::UserRole,  ///< int: what a column is ordered by
+    uuidRole,                 ///< QString
+  };
+
+  using QAbstractTableModel::QAbstractTableModel;
+  /// @pre not null
+  void setLines(std::shared_ptr<const AttemptLines> lines);
+  /// @pre 0 <= row < rowCount()
+  [[nodiscard]] const analytics::AttemptRow& attempt(int row) const {
+    return lines_->attempts()[static_cast<std::size_t>(row)];
+  }
+  /// All that the search box looks through, in small letters.
+  [[nodiscard]] const QString& search(int row) const { return lines_->search(row); }
+
+  [[nodiscard]] int rowCount(const QModelIndex& parent = {}) const override;
+  [[nodiscard]] int columnCount(const QModelIndex& parent = {}) const override;
+  [[nodiscard]] QVariant data(const QModelIndex& index, int role) const override;
+  [[nodiscard]] QVariant headerData(int section, Qt::Orientation orientation, int role) const override;
+
+ private:
+  std::shared_ptr<const AttemptLines> lines_;
+};
+
+/// Filter and order of the attempts in the table.
+class AttemptFilter : public QSortFilterProxyModel {
+  Q_OBJECT
+ public:
+  struct Criteria {
+    QString search = {};   ///< every word of it must be found somewhere in the row; case does not matter
+    std::string tag = {};  ///< empty: any, or none
+    std::optional<analytics::Verdict> verdict = {};
+    std::optional<bool> synthetic = {};
+    bool operator==(const Criteria&) const = default;
+  };
+
+  explicit AttemptFilter(QObject* parent = nullptr);
+  /// Lays the whole table out again: rows that go one by one, as invalidateFilter() has them, take seconds of
+  /// thousands.
+  void set(const Criteria& wanted);
+
+ protected:
+  [[nodiscard]] bool filterAcceptsRow(int sourceRow, const QModelIndex& sourceParent) const override;
+
+ private:
+  Criteria wanted_;
+  QStringList words_;  ///< of the search
+};
 
 /// The attempts of a cohort with search and filters, and the checkpoints of the selected one.
-class AttemptsPage : public QWidget {
+class AttemptsPage : public CohortPage {
   Q_OBJECT
  public:
   explicit AttemptsPage(QWidget* parent = nullptr);
-  /// Shows a document; the first attempt is selected. @pre not null
-  void setDocument(std::shared_ptr<const CohortDocument> document);
+  /// Shows a document at once; the first attempt is selected.
+  void setDocument(std::shared_ptr<const CohortDocument> document) override;
   void focusSearch();
   void selectNext();  ///< the row below
   /// All that are selected, in the table's order.
@@ -35,25 +80,20 @@ class AttemptsPage : public QWidget {
   void select(const QString& uuid);
 
  signals:
-  /// Something could not be read: one line for the user.
-  void problem(const QString& message);
   void selectionChanged();
-  /// The selected attempt is to be opened.
-  void attemptActivated();
-  /// So is one of its figures.
+  /// A figure of the selected attempt is to be shown.
   void figureActivated(const QString& checkpoint, const QString& subject);
 
  private:
-  void buildFilters(QBoxLayout& layout);
-  void buildDetails(QBoxLayout& layout);
-  void buildColumns(QBoxLayout& layout);
+  void read() override {}
+  QLayout* buildFilters();
+  QWidget* buildColumns();
+  void filter();
   void showCount();
-  void afterFilter();
   void fillTags();
   void showSelected();
   [[nodiscard]] int rowOf(const QString& uuid) const;  ///< in the filtered table; -1: not there
 
-  std::shared_ptr<const CohortDocument> document_;
   AttemptTableModel attempts_;
   AttemptFilter filter_;
   CheckpointTableModel checkpoints_;

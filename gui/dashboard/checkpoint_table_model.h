@@ -1,16 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <QAbstractItemModel>
 #include <QAbstractTableModel>
+#include <QStandardItemModel>
 #include <QStyledItemDelegate>
 #include <vector>
 
 #include "analytics/assessment/moments.h"
 #include "analytics/checkpoints/checkpoint.h"
 #include "analytics/uncertainty/value_interval.h"
+#include "gui/attempt/attempt_recording.h"
 #include "gui/attempt/figure_standing.h"
 
 namespace calot::gui {
+
+/// The moment that made most of a figure. @pre there is one
+const analytics::Moment& worstOf(const std::vector<analytics::Moment>& moments);
 
 /// The checkpoints of one attempt, with where they stand in a norm and when they came about. A value that is missing
 /// says why; what a value declares stands beside it.
@@ -38,7 +44,6 @@ class CheckpointTableModel : public QAbstractTableModel {
   using QAbstractTableModel::QAbstractTableModel;
   /// Standings and moments of former values are gone.
   void setValues(std::vector<analytics::CheckpointValue> values, std::vector<analytics::ValueInterval> intervals = {});
-  [[nodiscard]] bool hasIntervals() const { return !intervals_.empty(); }
   void setStandings(std::vector<FigureStanding> standings);
   void setMoments(std::vector<analytics::FigureMoments> moments);
   /// Text of momentColumn while moments are searched for, or the reason why there are none.
@@ -77,6 +82,53 @@ class BandDelegate : public QStyledItemDelegate {
  public:
   using QStyledItemDelegate::QStyledItemDelegate;
   void paint(QPainter* painter, const QStyleOptionViewItem& option, const QModelIndex& index) const override;
+};
+
+/// The events of an attempt in groups of what happened, errors first; each says when, to what and by which hand.
+class EventTreeModel : public QStandardItemModel {
+  Q_OBJECT
+ public:
+  enum Column { whatColumn, timeColumn, columnTotal };
+  enum Role { secondsRole = Qt::UserRole };  ///< double; of a group its first event's
+
+  explicit EventTreeModel(QObject* parent = nullptr);
+  void setEvents(const std::vector<TrackEvent>& events);
+};
+
+/// The checkpoints of a table, folded by family and sorted within one. Leaves out what the scene has nothing for.
+class FamilyTreeModel : public QStandardItemModel {
+  Q_OBJECT
+ public:
+  /// @param source outlives this
+  explicit FamilyTreeModel(const CheckpointTableModel& source, QObject* parent = nullptr);
+
+  /// The source's row, or -1 of a family.
+  [[nodiscard]] int sourceRow(const QModelIndex& index) const;
+  /// Position of a row of the source; invalid if it is left out.
+  [[nodiscard]] QModelIndex indexOf(int sourceRow, int column = 0) const;
+  [[nodiscard]] int leftOut() const { return leftOut_; }  ///< checkpoints that the scene has nothing for
+
+  [[nodiscard]] QVariant data(const QModelIndex& index, int role) const override;
+  void multiData(const QModelIndex& index, QModelRoleDataSpan roles) const override {
+    QAbstractItemModel::multiData(index, roles);  // by data(): items hold no cells
+  }
+  [[nodiscard]] QVariant headerData(int section, Qt::Orientation orientation, int role) const override;
+  [[nodiscard]] Qt::ItemFlags flags(const QModelIndex&) const override {
+    return Qt::ItemIsEnabled | Qt::ItemIsSelectable;
+  }
+  /// Families keep their order. Values go by size within one figure's kind, missing ones last. @param column -1: as in
+  /// the source
+  void sort(int column, Qt::SortOrder order) override;
+
+ private:
+  class Entry;
+  void fill();
+  [[nodiscard]] bool isBefore(int a, int b) const;  ///< rows of the source
+
+  const CheckpointTableModel& source_;
+  int leftOut_ = 0;
+  int sortColumn_ = -1;
+  Qt::SortOrder sortOrder_ = Qt::AscendingOrder;
 };
 
 }  // namespace calot::gui

@@ -2,49 +2,55 @@
 #include "gui/dashboard/cohort_document.h"
 
 #include <algorithm>
+#include <atomic>
+#include <exception>
 #include <map>
 #include <numeric>
+#include <QMetaObject>
 #include <set>
-#include <string>
 #include <utility>
 
 #include "gui/attempt/figure_text.h"
+#include "gui/words/problem_words.h"
 
 namespace calot::gui {
-namespace {
 
-QString tagsText(const std::vector<std::string>& tags) {
-  QStringList words;
-  for (const std::string& tag : tags) words += QString::fromStdString(tag);
-  return words.join(", ");
+QStringList textsOf(const std::vector<std::string>& texts) {
+  QStringList made;
+  for (const std::string& text : texts) made += QString::fromStdString(text);
+  return made;
 }
 
-QString cellText(const analytics::AttemptRow& attempt, int column) {
-  switch (column) {
-    case AttemptLines::attemptColumn:
-      return QString::fromStdString(attempt.uuid).left(8);
-    case AttemptLines::operatorColumn:
-      return operatorText(attempt);
-    case AttemptLines::groupColumn:
-      return QString::fromStdString(attempt.group);
-    case AttemptLines::sceneColumn:
-      return QString::fromStdString(attempt.scene);
-    case AttemptLines::modeColumn:
-      return modeText(attempt.mode);
-    case AttemptLines::outcomeColumn:
-      return outcomeText(attempt.outcome) + (attempt.excluded ? ", excluded" : "");
-    case AttemptLines::startColumn:
-      return startText(attempt.startUtc);
-    case AttemptLines::verificationColumn:
-      return badgeText(attempt.verification.verdict);
-    case AttemptLines::syntheticColumn:
-      return attempt.synthetic ? QStringLiteral("synthetic") : QString();
-    case AttemptLines::tagsColumn:
-      return tagsText(attempt.tags);
-    default:
-      return {};
+QString faultOf(const std::function<void()>& call) {
+  try {
+    call();
+    return {};
+  } catch (const std::exception& error) {
+    return QString::fromStdString(problemText(error));
   }
 }
+
+namespace {
+
+struct ColumnText {
+  const char* title;
+  QString (*of)(const analytics::AttemptRow&);
+};
+
+using Row = analytics::AttemptRow;
+/// In the order of AttemptLines::Column.
+constexpr std::array<ColumnText, AttemptLines::columnTotal> columns{{
+    {"Attempt", [](const Row& a) { return QString::fromStdString(a.uuid).left(8); }},
+    {"Participant or profile", [](const Row& a) { return operatorText(a); }},
+    {"Group", [](const Row& a) { return QString::fromStdString(a.group); }},
+    {"Scene", [](const Row& a) { return QString::fromStdString(a.scene); }},
+    {"Mode", [](const Row& a) { return modeText(a.mode); }},
+    {"Outcome", [](const Row& a) { return outcomeText(a.outcome) + (a.excluded ? ", excluded" : ""); }},
+    {"Start", [](const Row& a) { return startText(a.startUtc); }},
+    {"Verification", [](const Row& a) { return badgeText(a.verification.verdict); }},
+    {"Synthetic", [](const Row& a) { return QString(a.synthetic ? "synthetic" : ""); }},
+    {"Tags", [](const Row& a) { return textsOf(a.tags).join(", "); }},
+}};
 
 }  // namespace
 
@@ -56,13 +62,13 @@ AttemptLines::AttemptLines(std::vector<analytics::AttemptRow> attempts) : attemp
     QString text = QString::fromStdString(attempt.uuid) + '\n' + QString::fromStdString(attempt.profile) + '\n' +
                    QString::fromStdString(attempt.fileName);
     for (int column = 0; column < columnTotal; ++column) {
-      line.cells[at(column)] = cellText(attempt, column);
+      line.cells[at(column)] = columns[at(column)].of(attempt);
       text += '\n' + line.cells[at(column)];
     }
     line.search = text.toLower();
     tags.insert(attempt.tags.begin(), attempt.tags.end());
   }
-  for (const std::string& tag : tags) tags_ += QString::fromStdString(tag);
+  tags_ = textsOf({tags.begin(), tags.end()});
   std::vector<int> order(attempts_.size());
   for (int column = 0; column < columnTotal; ++column) {
     // A start is stored to the second and shown to the minute.
@@ -81,43 +87,41 @@ AttemptLines::AttemptLines(std::vector<analytics::AttemptRow> attempts) : attemp
   }
 }
 
+QString AttemptLines::title(int column) { return columns[at(column)].title; }
+
 FigureValues::FigureValues(const std::function<void(const Take&)>& each) {
   std::map<std::pair<std::string, std::string>, std::size_t> index;
-  std::vector<Figure> figures;
-  std::vector<std::vector<analytics::AttemptValue>> values;
-  std::vector<bool> hasValue;
   each([&](const analytics::AttemptValue& value) {
-    const auto [at, isNew] = index.try_emplace({value.value.name, value.value.subject}, figures.size());
+    const auto [at, isNew] = index.try_emplace({value.value.name, value.value.subject}, figures_.size());
     if (isNew) {
-      figures.push_back({value.value.name, value.value.subject});
-      values.emplace_back();
-      hasValue.push_back(false);
+      figures_.push_back({value.value.name, value.value.subject});
+      values_.emplace_back();
     }
-    values[at->second].push_back(value);
-    if (value.value.value) hasValue[at->second] = true;
+    values_[at->second].push_back(value);
   });
-  for (std::size_t i = 0; i < figures.size(); ++i) {
-    if (!hasValue[i]) continue;
-    figures_.push_back(std::move(figures[i]));
-    values_.push_back(std::move(values[i]));
+  // Without any value there is nothing to look at.
+  const auto isMissing = [](const analytics::AttemptValue& value) { return !value.value.value; };
+  for (std::size_t i = figures_.size(); i-- > 0;) {
+    if (!std::ranges::all_of(values_[i], isMissing)) continue;
+    figures_.erase(figures_.begin() + static_cast<std::ptrdiff_t>(i));
+    values_.erase(values_.begin() + static_cast<std::ptrdiff_t>(i));
   }
 }
 
-using Access = analytics::CohortDatabase::Access;
-
 CohortDocument::CohortDocument(const std::string& path)
-    : database_(path, Access::read), lines_(std::make_shared<const AttemptLines>(database_.listAttempts())) {}
+    : database_(path, analytics::CohortDatabase::Access::read),
+      lines_(std::make_shared<const AttemptLines>(database_.listAttempts())) {}
 
 const analytics::AttemptRow* CohortDocument::attempt(const std::string& uuid) const {
-  const auto at = std::find_if(attempts().begin(), attempts().end(),
-                               [&](const analytics::AttemptRow& attempt) { return attempt.uuid == uuid; });
+  const auto at = std::ranges::find(attempts(), uuid, &analytics::AttemptRow::uuid);
   return at == attempts().end() ? nullptr : &*at;
 }
 
 std::shared_ptr<const FigureValues> CohortDocument::figureValues() const {
   const std::lock_guard lock(valuesMutex_);
   if (!values_) {
-    const analytics::CohortDatabase database(path(), Access::read);  // a connection is of one thread
+    const analytics::CohortDatabase database(path(),
+                                             analytics::CohortDatabase::Access::read);  // a connection is of one thread
     values_ =
         std::make_shared<const FigureValues>([&](const FigureValues::Take& take) { database.eachValue({}, take); });
   }
@@ -125,22 +129,33 @@ std::shared_ptr<const FigureValues> CohortDocument::figureValues() const {
 }
 
 const std::vector<analytics::Norm>& CohortDocument::norms() const {
-  if (!norms_) norms_ = analytics::AssessmentDatabase(path(), Access::read).norms();
+  if (!norms_) norms_ = assessment().norms();
   return *norms_;
 }
 
-std::vector<analytics::RegisteredProtocol> CohortDocument::protocols() const {
-  return analytics::AssessmentDatabase(path(), Access::read).protocols();
+CohortWriter::CohortWriter(QObject* parent) : QObject(parent), back_(std::make_shared<Link<CohortWriter>>(*this)) {
+  thread_.setMaxThreadCount(1);
 }
 
-std::vector<std::string> CohortDocument::participants() const {
-  std::vector<std::string> names;
-  for (const analytics::Participant& participant : database_.participants()) names.push_back(participant.pseudonym);
-  return names;
+CohortWriter::~CohortWriter() {
+  back_->cut();
+  thread_.waitForDone();
 }
 
-std::vector<analytics::Rating> CohortDocument::ratings() const {
-  return analytics::AssessmentDatabase(path(), Access::read).ratings();
+void CohortWriter::write(const std::string& database, Change change, std::function<void()> undone) {
+  thread_.start([back = back_, database, change = std::move(change), undone = std::move(undone)] {
+    const QString fault = faultOf([&] {
+      analytics::CohortDatabase cohort(database, analytics::CohortDatabase::Access::write);
+      change(cohort);
+    });
+    if (!fault.isEmpty()) undone();
+    Link<CohortWriter>::post(back, [fault](CohortWriter& writer) {
+      if (fault.isEmpty())
+        emit writer.written();
+      else
+        emit writer.failed(fault);
+    });
+  });
 }
 
 }  // namespace calot::gui

@@ -6,16 +6,23 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <QObject>
 #include <QString>
 #include <QStringList>
+#include <QThreadPool>
 #include <string>
 #include <vector>
 
 #include "analytics/cohort/assessment_database.h"
 #include "analytics/cohort/cohort_database.h"
+#include "gui/attempt/long_work.h"
 #include "gui/dashboard/comparison.h"
 
 namespace calot::gui {
+
+[[nodiscard]] QStringList textsOf(const std::vector<std::string>& texts);
+/// Calls. @return one line for the user where it threw, or empty
+[[nodiscard]] QString faultOf(const std::function<void()>& call);
 
 /// The attempts of a cohort with what a table shows of them. Made where the cohort is read: to put ten thousand rows
 /// into words and in order takes longer than an interface may be kept waiting. Never changes.
@@ -35,6 +42,7 @@ class AttemptLines {
     columnTotal
   };
 
+  static QString title(int column);
   explicit AttemptLines(std::vector<analytics::AttemptRow> attempts);
 
   [[nodiscard]] const std::vector<analytics::AttemptRow>& attempts() const { return attempts_; }
@@ -97,10 +105,11 @@ class CohortDocument {
   [[nodiscard]] const analytics::AttemptRow* attempt(const std::string& uuid) const;  ///< or null
   /// Read when they are first asked for. @throws calot::Error
   [[nodiscard]] const std::vector<analytics::Norm>& norms() const;
-  /// Registered, as they are now. @throws calot::Error
-  [[nodiscard]] std::vector<analytics::RegisteredProtocol> protocols() const;
-  [[nodiscard]] std::vector<std::string> participants() const;   ///< pseudonyms, by name. @throws calot::Error
-  [[nodiscard]] std::vector<analytics::Rating> ratings() const;  ///< as they are now. @throws calot::Error
+  /// Protocols, participants and ratings as they are now. @throws calot::Error
+  [[nodiscard]] analytics::AssessmentDatabase assessment() const {
+    return {path(), analytics::CohortDatabase::Access::read};
+  }
+  [[nodiscard]] std::vector<analytics::Participant> participants() const { return database_.participants(); }
 
  private:
   analytics::CohortDatabase database_;
@@ -108,6 +117,29 @@ class CohortDocument {
   mutable std::optional<std::vector<analytics::Norm>> norms_;
   mutable std::mutex valuesMutex_;
   mutable std::shared_ptr<const FigureValues> values_;
+};
+
+/// Writes what people decide into a cohort, one decision after the other, on a thread of its own: a disk may take its
+/// time, and another program may be writing.
+class CohortWriter : public QObject {
+  Q_OBJECT
+ public:
+  using Change = std::function<void(analytics::CohortDatabase&)>;
+
+  explicit CohortWriter(QObject* parent = nullptr);
+  /// Waits until all is written.
+  ~CohortWriter() override;
+  /// Ends with written() or failed(). @param change throws calot::Error where it cannot be
+  /// @param undone called on the writer's thread where nothing was written, before failed()
+  void write(const std::string& database, Change change, std::function<void()> undone);
+
+ signals:
+  void written();
+  void failed(const QString& reason);
+
+ private:
+  std::shared_ptr<Link<CohortWriter>> back_;
+  QThreadPool thread_;  // last: it uses what is above
 };
 
 }  // namespace calot::gui

@@ -2,11 +2,14 @@
 #include "gui/dashboard/comparison.h"
 
 #include <algorithm>
+#include <functional>
 #include <map>
+#include <set>
 #include <string_view>
 #include <tuple>
 #include <unordered_map>
 
+#include "analytics/checkpoints/checkpoint.h"
 #include "analytics/report/plots.h"
 #include "gui/attempt/figure_text.h"
 
@@ -23,8 +26,7 @@ std::vector<std::string> comparabilityKeysOf(const std::vector<AttemptRow>& atte
   std::vector<std::string> keys;
   keys.reserve(count.size());
   for (const auto& entry : count) keys.push_back(entry.first);
-  std::stable_sort(keys.begin(), keys.end(),
-                   [&](const std::string& a, const std::string& b) { return count[a] > count[b]; });
+  std::ranges::stable_sort(keys, std::greater(), [&](const std::string& key) { return count[key]; });
   return keys;
 }
 
@@ -37,21 +39,33 @@ std::string groupName(const AttemptRow& attempt, GroupBy by) {
   return name.empty() ? "(none)" : name;
 }
 
+using Values = std::unordered_map<std::string_view, const CheckpointValue*>;  // by attempt
+
+Values valuesOf(const std::vector<AttemptValue>& values, const Figure& figure) {
+  Values found;
+  found.reserve(values.size());
+  for (const AttemptValue& v : values) {
+    if (v.value.name == figure.name && v.value.subject == figure.subject) found[v.attempt] = &v.value;
+  }
+  return found;
+}
+
+/// Unit in which such values are shown, and the factor to it.
+DisplayedValue scaleOf(CheckpointValue value) {
+  value.value = 1.0;
+  return displayedValue(value);
+}
+
 }  // namespace
 
 Comparison compare(const std::vector<AttemptRow>& attempts, const std::vector<AttemptValue>& values,
                    const ComparisonRequest& request) {
   Comparison result;
-  std::unordered_map<std::string_view, const CheckpointValue*> found;
-  found.reserve(values.size());
+  const Values found = valuesOf(values, request.figure);
   std::uint32_t newest = 0;
-  for (const AttemptValue& v : values) {
-    if (v.value.name != request.figure.name || v.value.subject != request.figure.subject) continue;
-    found[v.attempt] = &v.value;
-    newest = std::max(newest, v.value.version);
-  }
+  for (const auto& entry : found) newest = std::max(newest, entry.second->version);
   std::map<std::string, ComparisonGroup> groups;
-  // What a value is shown in depends on its definition and unit alone, which are looked up where the unit changes.
+  // The display unit depends on definition and unit alone, which are looked up when the unit changes.
   const std::string* unit = nullptr;
   double factor = 1.0;
   for (const AttemptRow& attempt : attempts) {
@@ -72,9 +86,7 @@ Comparison compare(const std::vector<AttemptRow>& attempts, const std::vector<At
       ++result.withoutValue;
     } else {
       if (unit == nullptr || *unit != value->unit) {
-        CheckpointValue one = *value;
-        one.value = 1.0;
-        const DisplayedValue shown = displayedValue(one);
+        const DisplayedValue shown = scaleOf(*value);
         result.unit = shown.unit.toStdString();
         factor = shown.number;
         unit = &value->unit;
@@ -88,10 +100,7 @@ Comparison compare(const std::vector<AttemptRow>& attempts, const std::vector<At
     }
   }
   for (auto& entry : groups) {
-    std::sort(entry.second.point.begin(), entry.second.point.end(),
-              [](const ComparisonPoint& p, const ComparisonPoint& q) {
-                return std::tie(p.value, p.attempt) < std::tie(q.value, q.attempt);
-              });
+    std::ranges::sort(entry.second.point, {}, [](const ComparisonPoint& p) { return std::tie(p.value, p.attempt); });
     result.group.push_back(std::move(entry.second));
   }
   return result;
@@ -137,6 +146,125 @@ std::optional<analytics::Drawing> drawComparison(const Comparison& comparison, c
         p.synthetic};
   };
   return analytics::drawBoxPlot(plot);
+}
+
+namespace {
+
+bool isOf(const AttemptRow& attempt, const Trainee& trainee) {
+  if (trainee.synthetic) return attempt.participant.empty() && attempt.profile == trainee.name;
+  return attempt.participant == trainee.name;
+}
+
+std::string whyNotShown(const AttemptRow& attempt) {
+  if (attempt.verification.verdict == analytics::Verdict::diverged) return "diverged";
+  if (attempt.verification.verdict == analytics::Verdict::damaged) return "damaged";
+  return attempt.complete ? "" : "incomplete";
+}
+
+}  // namespace
+
+std::vector<Trainee> traineesOf(const std::vector<AttemptRow>& attempts) {
+  std::set<std::string> people, profiles;
+  for (const AttemptRow& attempt : attempts) {
+    if (!attempt.participant.empty())
+      people.insert(attempt.participant);
+    else if (!attempt.profile.empty())
+      profiles.insert(attempt.profile);
+  }
+  std::vector<Trainee> trainees;
+  trainees.reserve(people.size() + profiles.size());
+  for (const std::string& name : people) trainees.push_back({name, false});
+  for (const std::string& name : profiles) trainees.push_back({name, true});
+  return trainees;
+}
+
+std::vector<std::string> keysOf(const std::vector<AttemptRow>& attempts, const Trainee& trainee) {
+  std::vector<AttemptRow> own;
+  for (const AttemptRow& attempt : attempts) {
+    if (isOf(attempt, trainee)) own.push_back(attempt);
+  }
+  return comparabilityKeysOf(own);
+}
+
+TraineeHistory historyOf(const std::vector<AttemptRow>& attempts, const std::vector<AttemptValue>& values,
+                         const std::vector<analytics::Norm>& norms, const Trainee& trainee, const Figure& figure,
+                         const std::string& key) {
+  TraineeHistory history;
+  for (const AttemptRow& attempt : attempts) {
+    if (!isOf(attempt, trainee)) continue;
+    if (attempt.comparabilityKey == key)
+      history.attempts.push_back({&attempt, std::nullopt, "no such figure"});
+    else
+      ++history.otherKeys;
+  }
+  std::ranges::sort(history.attempts, {},
+                    [](const HistoryAttempt& a) { return std::tie(a.attempt->startUtc, a.attempt->uuid); });
+  const Values found = valuesOf(values, figure);
+  std::uint32_t newest = 0;
+  DisplayedValue scale{1.0, {}};
+  for (const HistoryAttempt& entry : history.attempts) {
+    const auto at = found.find(entry.attempt->uuid);
+    if (at == found.end() || at->second->version < newest) continue;
+    newest = at->second->version;
+    scale = scaleOf(*at->second);
+  }
+  history.unit = scale.unit.toStdString();
+  std::vector<double> x, y;
+  for (std::size_t i = 0; i < history.attempts.size(); ++i) {
+    HistoryAttempt& entry = history.attempts[i];
+    const auto at = found.find(entry.attempt->uuid);
+    if (at == found.end()) continue;
+    const CheckpointValue& value = *at->second;
+    entry.why = value.reason;
+    if (!value.value) continue;
+    if (value.version != newest) {
+      entry.why = "of an older version of the checkpoint";
+      continue;
+    }
+    entry.why = whyNotShown(*entry.attempt);
+    entry.value = scale.number * *value.value;
+    if (!entry.why.empty()) continue;
+    x.push_back(static_cast<double>(i + 1));
+    y.push_back(*entry.value);
+  }
+  history.curve =
+      trainee.synthetic ? analytics::NoResult{"a performer does not learn"} : analytics::fitLearningCurve(x, y);
+  std::uint32_t version = 0;
+  for (const analytics::Norm& norm : norms) {
+    if (norm.comparabilityKey != key || norm.synthetic != trainee.synthetic) continue;
+    for (const analytics::NormCheckpoint& mark : norm.checkpoints) {
+      if (mark.checkpoint != figure.name || mark.subject != figure.subject || mark.version != newest || !mark.cut ||
+          norm.version < version)
+        continue;
+      history.cut = scale.number * *mark.cut;
+      version = norm.version;
+    }
+  }
+  return history;
+}
+
+std::optional<analytics::Drawing> drawTraineeHistory(const TraineeHistory& history, const std::string& title,
+                                                     const analytics::PlotFrame& frame) {
+  analytics::HistoryPlot plot;
+  plot.title = title;
+  plot.axis = history.unit;
+  plot.mark = history.cut;
+  plot.frame = frame;
+  plot.frame.legend = true;
+  plot.attempts = static_cast<double>(history.attempts.size());
+  if (history.curve) plot.curve = &*history.curve;
+  for (std::size_t i = 0; i < history.attempts.size(); ++i) {
+    const HistoryAttempt& entry = history.attempts[i];
+    plot.synthetic = plot.synthetic || entry.attempt->synthetic;
+    if (!entry.value) continue;
+    const QString text =
+        QString("Attempt %1, %2: %3 %4")
+            .arg(i + 1)
+            .arg(startText(entry.attempt->startUtc), numberText(*entry.value), QString::fromStdString(history.unit));
+    plot.values.push_back(
+        {static_cast<double>(i + 1), *entry.value, !entry.why.empty(), entry.attempt->uuid, text.toStdString()});
+  }
+  return analytics::drawHistory(plot);
 }
 
 }  // namespace calot::gui

@@ -2,13 +2,10 @@
 #include "gui/dashboard/dashboard_window.h"
 
 #include <algorithm>
-#include <exception>
-#include <QBoxLayout>
 #include <QDockWidget>
 #include <QDragEnterEvent>
 #include <QDropEvent>
 #include <QFileInfo>
-#include <QLabel>
 #include <QMenuBar>
 #include <QMessageBox>
 #include <QMimeData>
@@ -20,25 +17,17 @@
 #include <QTimer>
 #include <QUndoStack>
 #include <QUrl>
-#include <utility>
 
 #include "gui/attempt/attempt_recording.h"
-#include "gui/attempt/theme.h"
-#include "gui/attempt/widget_parts.h"
 #include "gui/dashboard/attempt_page.h"
 #include "gui/dashboard/attempts_page.h"
+#include "gui/dashboard/dialogs.h"
 #include "gui/dashboard/figure_panel.h"
 #include "gui/dashboard/figures_page.h"
-#include "gui/dashboard/greeting_page.h"
-#include "gui/dashboard/import_panel.h"
-#include "gui/dashboard/keys_dialog.h"
-#include "gui/dashboard/page_parts.h"
 #include "gui/dashboard/pair_page.h"
 #include "gui/dashboard/ratings_page.h"
 #include "gui/dashboard/settings.h"
 #include "gui/dashboard/study_page.h"
-#include "gui/dashboard/trainee_page.h"
-#include "gui/words/problem_words.h"
 #include "recorder/base/errors.h"
 
 namespace calot::gui {
@@ -46,23 +35,6 @@ namespace {
 
 constexpr int noticeFor = 8000;     // ms
 constexpr int refreshEvery = 3000;  // ms, while an import runs
-
-struct Opened {
-  std::shared_ptr<const CohortDocument> document;
-  bool upgraded = false;  ///< it was of an older schema
-};
-
-/// Any thread. @throws Error as CohortDocument
-Opened openOrUpgrade(const std::string& path) {
-  try {
-    return {std::make_shared<const CohortDocument>(path)};
-  } catch (const Error& error) {
-    const std::vector<Remedy>& remedies = error.remedies();
-    if (std::find(remedies.begin(), remedies.end(), Remedy::upgradeCohort) == remedies.end()) throw;
-  }
-  const analytics::CohortDatabase upgraded(path, analytics::CohortDatabase::Access::write);
-  return {std::make_shared<const CohortDocument>(path), true};
-}
 
 QStringList localFiles(const QMimeData& data) {
   QStringList files;
@@ -73,6 +45,27 @@ QStringList localFiles(const QMimeData& data) {
 }
 
 }  // namespace
+
+struct DashboardWindow::Opened {
+  std::shared_ptr<const CohortDocument> document;
+  bool upgraded = false;  ///< it was of an older schema
+  QString fault;          ///< why there is no document
+};
+
+DashboardWindow::Opened DashboardWindow::openOrUpgrade(const std::string& path) {
+  Opened opened;
+  opened.fault = faultOf([&] {
+    try {
+      opened.document = std::make_shared<const CohortDocument>(path);
+    } catch (const Error& error) {
+      const std::vector<Remedy>& remedies = error.remedies();
+      if (std::find(remedies.begin(), remedies.end(), Remedy::upgradeCohort) == remedies.end()) throw;
+      const analytics::CohortDatabase upgraded(path, analytics::CohortDatabase::Access::write);
+      opened = {std::make_shared<const CohortDocument>(path), true, {}};
+    }
+  });
+  return opened;
+}
 
 DashboardWindow::DashboardWindow(const AssessProgram& program, const std::vector<std::filesystem::path>& assetFolders,
                                  QWidget* parent)
@@ -96,13 +89,17 @@ DashboardWindow::DashboardWindow(const AssessProgram& program, const std::vector
   problem_->setTextInteractionFlags(Qt::TextSelectableByMouse | Qt::TextSelectableByKeyboard);
   theme::setGround(*problem_, QColor(0xfb, 0xe3, 0xd6), QColor(0x5a, 0x1e, 0x00));
   problem_->hide();
-  tabs_->addTab(attempts_, "Attempts");
-  tabs_->addTab(attempt_, "Attempt");
-  tabs_->addTab(compare_, "Compare");
-  tabs_->addTab(study_, "Study");
-  tabs_->addTab(trainee_, "Trainee");
-  tabs_->addTab(pair_, "Side by side");
-  tabs_->addTab(rating_, "Ratings");
+  for (const auto& [page, title] : std::initializer_list<std::pair<CohortPage*, const char*>>{{attempts_, "Attempts"},
+                                                                                              {attempt_, "Attempt"},
+                                                                                              {compare_, "Compare"},
+                                                                                              {study_, "Study"},
+                                                                                              {trainee_, "Trainee"},
+                                                                                              {pair_, "Side by side"},
+                                                                                              {rating_, "Ratings"}}) {
+    tabs_->addTab(page, title);
+    connect(page, &CohortPage::problem, this, &DashboardWindow::showProblem);
+    connect(page, &CohortPage::attemptActivated, this, &DashboardWindow::openAttempt);
+  }
   stack_->addWidget(greeting_);
   stack_->addWidget(tabs_);
   auto* centre = new QWidget;
@@ -110,7 +107,7 @@ DashboardWindow::DashboardWindow(const AssessProgram& program, const std::vector
   layout->addWidget(problem_);
   layout->addWidget(stack_, 1);
   setCentralWidget(centre);
-  rating_->setForms(readForms(assetFolders));
+  rating_->readForms(assetFolders);
   buildImport();
   buildMenus();
   connectPages();
@@ -137,41 +134,43 @@ void DashboardWindow::buildImport() {
 }
 
 void DashboardWindow::buildMenus() {
+  using Do = std::function<void()>;
+  const auto add = [this](QMenu* menu, const char* text, const QKeySequence& key, Do action) {
+    return menu->addAction(text, key, this, std::move(action));
+  };
   QMenu* const file = menuBar()->addMenu("&File");
-  file->addAction("&Open …", QKeySequence(QKeySequence::Open), this, [this] { askForDatabase(); });
-  file->addAction("&New cohort …", QKeySequence(QKeySequence::New), this, [this] { askForNewDatabase(); });
-  file->addAction("&Import recordings …", QKeySequence(Qt::CTRL | Qt::Key_I), this, [this] { askForRecordings(); });
-  file->addAction("&Settings …", QKeySequence(Qt::CTRL | Qt::Key_Comma), this, [this] { showSettings(); });
-  file->addAction("&Quit", QKeySequence(Qt::CTRL | Qt::Key_Q), this, [this] { close(); });
+  add(file, "&Open …", QKeySequence::Open, [this] { askForDatabase(); });
+  add(file, "&New cohort …", QKeySequence::New, [this] { askForNewDatabase(); });
+  add(file, "&Import recordings …", Qt::CTRL | Qt::Key_I, [this] { askForRecordings(); });
+  add(file, "&Settings …", Qt::CTRL | Qt::Key_Comma, [this] { SettingsDialog(this).exec(); });
+  add(file, "&Quit", Qt::CTRL | Qt::Key_Q, [this] { close(); });
   QMenu* const edit = menuBar()->addMenu("&Edit");
   QAction* const undo = undo_->createUndoAction(this, "&Undo");
   undo->setShortcut(QKeySequence::Undo);
   QAction* const redo = undo_->createRedoAction(this, "&Redo");
   redo->setShortcut(QKeySequence::Redo);
   edit->addActions({undo, redo});
-  exclude_ = edit->addAction("&Exclude from studies …", QKeySequence(Qt::CTRL | Qt::Key_E), this,
-                             [this] { askForExclusion(); });
+  exclude_ = add(edit, "&Exclude from studies …", Qt::CTRL | Qt::Key_E, [this] { askForExclusion(); });
   exclude_->setEnabled(false);
-  edit->addAction("Add &tag …", QKeySequence(Qt::CTRL | Qt::Key_T), this, [this] { askForTag(true); });
-  edit->addAction("Remove ta&g …", QKeySequence(Qt::CTRL | Qt::SHIFT | Qt::Key_T), this, [this] { askForTag(false); });
-  edit->addAction("Make a &norm …", QKeySequence(Qt::CTRL | Qt::Key_M), this, [this] { askForNorm(); });
-  edit->addAction("&Verify again", QKeySequence(Qt::CTRL | Qt::SHIFT | Qt::Key_V), this, [this] { verifySelected(); });
-  edit->addAction("&Side by side", QKeySequence(Qt::CTRL | Qt::Key_B), this, [this] { pairSelected(); });
+  add(edit, "Add &tag …", Qt::CTRL | Qt::Key_T, [this] { askForTag(true); });
+  add(edit, "Remove ta&g …", Qt::CTRL | Qt::SHIFT | Qt::Key_T, [this] { askForTag(false); });
+  add(edit, "Make a &norm …", Qt::CTRL | Qt::Key_M, [this] { askForNorm(); });
+  add(edit, "&Verify again", Qt::CTRL | Qt::SHIFT | Qt::Key_V, [this] { verifySelected(); });
+  add(edit, "&Side by side", Qt::CTRL | Qt::Key_B, [this] { pairSelected(); });
   QMenu* const view = menuBar()->addMenu("&View");
   for (int page = 0; page < tabs_->count(); ++page)
     view->addAction(QString("&%1 ").arg(page + 1) + tabs_->tabText(page),
                     QKeySequence(Qt::CTRL | static_cast<Qt::Key>(Qt::Key_1 + page)), this,
                     [this, page] { tabs_->setCurrentIndex(page); });
-  view->addAction("&Search", QKeySequence(QKeySequence::Find), this, [this] {
+  add(view, "&Search", QKeySequence::Find, [this] {
     tabs_->setCurrentWidget(attempts_);
     attempts_->focusSearch();
   });
-  view->addAction("&Reload", QKeySequence(Qt::Key_F5), this, [this] { reload(); });
+  add(view, "&Reload", Qt::Key_F5, [this] { reload(); });
   view->addAction(importDock_->toggleViewAction());
   QMenu* const help = menuBar()->addMenu("&Help");
-  help->addAction("&Keys …", QKeySequence(QKeySequence::HelpContents), this,
-                  [this] { KeysDialog(keysOf(*menuBar()), this).exec(); });
-  help->addAction("&About Calot …", this, [this] {
+  add(help, "&Keys …", QKeySequence::HelpContents, [this] { showKeys(keysOf(*menuBar()), this); });
+  add(help, "&About Calot …", {}, [this] {
     QMessageBox::about(this, "Calot",
                        "Calot " CALOT_VERSION
                        "\nTraining of laparoscopic cholecystectomy: recorded, "
@@ -183,17 +182,11 @@ void DashboardWindow::connectPages() {
   connect(&writer_, &CohortWriter::written, this, &DashboardWindow::reload);
   connect(&writer_, &CohortWriter::failed, this, &DashboardWindow::showProblem);
   connect(greeting_, &GreetingPage::openRequested, this, &DashboardWindow::askForDatabase);
-  connect(greeting_, &GreetingPage::newRequested, this, [this] { askForNewDatabase(); });
-  connect(greeting_, &GreetingPage::importRequested, this, [this] { askForRecordings(); });
-  connect(attempts_, &AttemptsPage::problem, this, &DashboardWindow::showProblem);
-  connect(attempt_, &AttemptPage::problem, this, &DashboardWindow::showProblem);
+  connect(greeting_, &GreetingPage::newRequested, this, &DashboardWindow::askForNewDatabase);
+  connect(greeting_, &GreetingPage::importRequested, this, &DashboardWindow::askForRecordings);
   connect(attempt_, &AttemptPage::sheetWritten, this,
           [this](const QString& text) { statusBar()->showMessage(text, noticeFor); });
-  connect(compare_, &ComparePage::problem, this, &DashboardWindow::showProblem);
-  connect(study_, &StudyPage::problem, this, &DashboardWindow::showProblem);
-  connect(trainee_, &TraineePage::problem, this, &DashboardWindow::showProblem);
   connect(rating_, &RatingPage::nextWanted, attempts_, &AttemptsPage::selectNext);
-  connect(rating_, &RatingPage::problem, this, &DashboardWindow::showProblem);
   connect(attempts_, &AttemptsPage::selectionChanged, this, [this] {
     const analytics::AttemptRow* attempt = attempts_->selected();
     exclude_->setEnabled(attempt != nullptr && !attempt->withdrawn);
@@ -206,18 +199,17 @@ void DashboardWindow::connectPages() {
     pair_->setAttempt(1, attempt->uuid);
     rating_->setAttempt(*attempt);
   });
-  connect(attempts_, &AttemptsPage::attemptActivated, this, [this] { tabs_->setCurrentWidget(attempt_); });
   connect(attempts_, &AttemptsPage::figureActivated, this, [this](const QString& checkpoint, const QString& subject) {
     tabs_->setCurrentWidget(attempt_);
     attempt_->figures().goToFigure(checkpoint.toStdString(), subject.toStdString());
   });
-  connect(trainee_, &TraineePage::attemptActivated, this, &DashboardWindow::openAttempt);
-  connect(compare_, &ComparePage::attemptActivated, this, &DashboardWindow::openAttempt);
   // One begins where a page begins; who is going along the tabs stays there.
   connect(tabs_, &QTabWidget::currentChanged, this, [this] {
-    if (!tabs_->tabBar()->hasFocus()) focusBegin(*tabs_->currentWidget());
+    if (!tabs_->tabBar()->hasFocus()) focusPage();
   });
 }
+
+void DashboardWindow::focusPage() { static_cast<CohortPage*>(tabs_->currentWidget())->focusBegin(); }
 
 void DashboardWindow::openAttempt(const QString& uuid) {
   attempts_->select(uuid);
@@ -231,80 +223,68 @@ void DashboardWindow::setDocument(std::shared_ptr<const CohortDocument> document
   problem_->hide();
   const QString name = QFileInfo(QString::fromStdString(document_->path())).fileName();
   setWindowTitle(name + " – Calot");
-  study_->setDocument(document_);
-  trainee_->setDocument(document_);
-  pair_->setDocument(document_);
-  rating_->setDocument(document_);
-  compare_->setDocument(document_);
-  attempts_->setDocument(document_);
+  // The list is last: its selection goes to the others.
+  for (CohortPage* page : std::initializer_list<CohortPage*>{study_, trainee_, pair_, rating_, compare_, attempts_})
+    page->setDocument(document_);
   if (document_->attempts().empty()) {
     greeting_->explainEmptyDatabase(name);
     stack_->setCurrentWidget(greeting_);
   } else {
     const bool first = stack_->currentWidget() != tabs_;
     stack_->setCurrentWidget(tabs_);
-    if (first) focusBegin(*tabs_->currentWidget());
+    if (first) focusPage();
   }
   if (!awaited_.isEmpty() && document_->attempt(awaited_.toStdString()) != nullptr)
     openAttempt(std::exchange(awaited_, QString()));
   emit documentShown();
 }
 
-void DashboardWindow::takeOpened(const std::shared_ptr<const CohortDocument>& document, bool upgraded) {
+bool DashboardWindow::takeOpened(const Opened& opened) {
+  if (!opened.document) {
+    showProblem(opened.fault);
+    return false;
+  }
   loader_.forget();  // the former one, read again
-  setDocument(document);
-  if (upgraded)
+  setDocument(opened.document);
+  if (opened.upgraded)
     showProblem("This cohort was of an older Calot and has been brought up to date. A copy as it was is beside it.");
+  return true;
 }
 
 bool DashboardWindow::openDatabase(const QString& path) {
   opener_.forget();
-  try {
-    const Opened opened = openOrUpgrade(path.toStdString());
-    takeOpened(opened.document, opened.upgraded);
-    return true;
-  } catch (const Error& error) {
-    showProblem(QString::fromStdString(problemText(error)));
-    return false;
-  }
+  return takeOpened(openOrUpgrade(path.toStdString()));
 }
 
 void DashboardWindow::openLater(const QString& path) {
   statusBar()->showMessage("Opening " + QFileInfo(path).fileName() + " …");
-  opener_.run([this, path = path.toStdString()]() -> Background::Completion {
-    try {
-      return [this, opened = openOrUpgrade(path)] {
-        statusBar()->clearMessage();
-        takeOpened(opened.document, opened.upgraded);
-      };
-    } catch (const std::exception& error) {
-      return [this, text = QString::fromStdString(problemText(error))] {
-        statusBar()->clearMessage();
-        showProblem(text);
-      };
-    }
+  opener_.run([this, path = path.toStdString()] {
+    return [this, opened = openOrUpgrade(path)] {
+      statusBar()->clearMessage();
+      takeOpened(opened);
+    };
   });
 }
 
 bool DashboardWindow::createDatabase(const QString& path) {
-  try {
-    const analytics::CohortDatabase made(path.toStdString(), analytics::CohortDatabase::Access::create);
-  } catch (const Error& error) {
-    showProblem(QString::fromStdString(problemText(error)));
-    return false;
-  }
-  return openDatabase(path);
+  const QString fault = faultOf(
+      [&] { const analytics::CohortDatabase made(path.toStdString(), analytics::CohortDatabase::Access::create); });
+  if (fault.isEmpty()) return openDatabase(path);
+  showProblem(fault);
+  return false;
 }
 
 void DashboardWindow::reload() {
   if (!document_) return;
-  loader_.run([this, path = document_->path()]() -> Background::Completion {
-    try {
-      auto document = std::make_shared<const CohortDocument>(path);
-      return [this, document] { setDocument(document); };
-    } catch (const std::exception& error) {
-      return [this, text = QString::fromStdString(problemText(error))] { showProblem(text); };
-    }
+  loader_.run([this, path = document_->path()] {
+    std::shared_ptr<const CohortDocument> document;
+    const QString fault = faultOf([&] { document = std::make_shared<const CohortDocument>(path); });
+    return [this, document, fault] {
+      if (document)
+        setDocument(document);
+      else
+        showProblem(fault);
+    };
   });
 }
 
@@ -316,7 +296,7 @@ void DashboardWindow::importRecordings(const QStringList& paths) {
   }
   if (!imports_.busy())
     imports_.configure(settings::calotProgram(), QString::fromStdString(document_->path()), settings::importThreads());
-  // Where recordings come from is where their replays are looked for.
+  // Replays are looked for in the folders of the imported recordings.
   for (const QString& file : files) settings::rememberRecordingFolder(QFileInfo(file).absolutePath());
   importDock_->show();
   imports_.add(files);

@@ -6,9 +6,8 @@
 #include <QMainWindow>
 #include <vector>
 
-#include "gui/attempt/background.h"
+#include "gui/attempt/long_work.h"
 #include "gui/dashboard/cohort_document.h"
-#include "gui/dashboard/cohort_writer.h"
 #include "gui/dashboard/import_queue.h"
 
 class QAction;
@@ -88,16 +87,17 @@ class DashboardWindow : public QMainWindow {
   void buildMenus();
   void buildImport();
   void connectPages();
+  void focusPage();  ///< puts the keyboard where the page begins
   void openAttempt(const QString& uuid);
-  void takeOpened(const std::shared_ptr<const CohortDocument>& document, bool upgraded);
+  struct Opened;
+  static Opened openOrUpgrade(const std::string& path);  ///< any thread
+  bool takeOpened(const Opened& opened);                 ///< @return true if there is a document
   void askForNewDatabase();
   void askForRecordings();
   void askForExclusion();
   void askForTag(bool add);
   void askForNorm();
   [[nodiscard]] std::vector<analytics::AttemptRow> chosenAttempts() const;  ///< selected, or the current one
-  void showSettings();
-  void savePicture(QWidget& page, const QString& file);
 
   std::shared_ptr<const CohortDocument> document_;
   QString awaited_;  ///< uuid of the attempt to show when the database has it

@@ -3,27 +3,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <QBoxLayout>
-#include <QComboBox>
-#include <QHeaderView>
-#include <QLabel>
-#include <QPushButton>
-#include <QShortcut>
-#include <QSignalBlocker>
 #include <QTabWidget>
-#include <QTreeView>
-#include <utility>
 
 #include "analytics/assessment/norm_rule.h"
 #include "gui/attempt/figure_standing.h"
 #include "gui/attempt/figure_text.h"
-#include "gui/attempt/widget_parts.h"
-#include "gui/dashboard/checkpoint_table_model.h"
 #include "gui/dashboard/page_parts.h"
-#include "gui/words/problem_words.h"
-#include "recorder/base/errors.h"
 
 namespace calot::gui {
+namespace {
+
+bool isWeak(const FigureStanding* standing) { return standing != nullptr && !standing->passed.value_or(true); }
+
+}  // namespace
 
 std::optional<double> MomentCycle::next(const analytics::FigureMoments& figure) {
   const std::vector<analytics::Moment>& moments = figure.moments;
@@ -32,9 +24,7 @@ std::optional<double> MomentCycle::next(const analytics::FigureMoments& figure) 
   if (name == figure_) {
     at_ = (at_ + 1) % moments.size();
   } else {
-    const auto most = std::max_element(moments.begin(), moments.end(),
-                                       [](const auto& a, const auto& b) { return a.share < b.share; });
-    at_ = static_cast<std::size_t>(most - moments.begin());
+    at_ = static_cast<std::size_t>(&worstOf(moments) - moments.data());
     figure_ = name;
   }
   return std::max(0.0, moments[at_].begin - leadIn);
@@ -60,16 +50,13 @@ FigurePanel::FigurePanel(QWidget* parent)
   layout->addWidget(buildNormRow());
   layout->addWidget(tabs, 1);
 
-  connect(&families_, &QAbstractItemModel::modelReset, figureTable_, &QTreeView::expandAll);
   connect(norm_, &QComboBox::currentIndexChanged, this, [this] { showStanding(); });
   const auto figureAt = [this](const QModelIndex& at) {
     if (const int row = families_.sourceRow(at); row >= 0) showFigure(row);
   };
   connect(figureTable_, &QTreeView::clicked, this, figureAt);
-  for (const Qt::Key key : {Qt::Key_Return, Qt::Key_Enter}) {
-    connect(new QShortcut(key, figureTable_, nullptr, nullptr, Qt::WidgetShortcut), &QShortcut::activated, this,
-            [this, figureAt] { figureAt(figureTable_->currentIndex()); });
-  }
+  for (const Qt::Key key : {Qt::Key_Return, Qt::Key_Enter})
+    onKey(*figureTable_, key, [this, figureAt] { figureAt(figureTable_->currentIndex()); });
   const auto showEvent = [this](const QModelIndex& at) {
     emit timeChosen(at.data(EventTreeModel::secondsRole).toDouble());
   };
@@ -79,21 +66,18 @@ FigurePanel::FigurePanel(QWidget* parent)
 
 QWidget* FigurePanel::buildNormRow() {
   norm_->setAccessibleName("Norm that the attempt is held against");
-  auto* label = new QLabel("&Norm");
-  label->setBuddy(norm_);
   sheet_ = parts::named("grade-sheet", new QPushButton("Gr&ade sheet …"));
   sheet_->setToolTip("Write the attempt against this norm as a PDF");
   onePage_ = parts::named("one-page", new QPushButton("&One page …"));
   onePage_->setToolTip("Write the attempt on one page, with pictures of its worst moments, as a PDF");
   auto* made = new QWidget;
   auto* row = parts::bare<QHBoxLayout>(made);
-  row->addWidget(label);
-  row->addWidget(norm_);
+  parts::labelled(*row, "&Norm", norm_);
   row->addWidget(verdict_, 1);
   row->addWidget(sheet_);
   row->addWidget(onePage_);
-  connect(sheet_, &QPushButton::clicked, this, &FigurePanel::sheetRequested);
-  connect(onePage_, &QPushButton::clicked, this, &FigurePanel::onePageRequested);
+  connect(sheet_, &QPushButton::clicked, this, [this] { emit sheetRequested(false); });
+  connect(onePage_, &QPushButton::clicked, this, [this] { emit sheetRequested(true); });
   return made;
 }
 
@@ -101,7 +85,6 @@ void FigurePanel::setEvents(const std::vector<TrackEvent>& events) {
   trackEvents_ = events;
   events_.setEvents(events);
   eventTable_->expandAll();
-  setWidths(*eventTable_, {360});
 }
 
 analytics::AttemptSummary FigurePanel::summary() const {
@@ -116,13 +99,11 @@ std::vector<WorstMoment> FigurePanel::worstMoments() const {
     for (int row = 0; row < figures_.rowCount() && worst.size() < maxWorstMoments; ++row) {
       const analytics::FigureMoments* found = figures_.moments(row);
       const analytics::CheckpointValue& value = figures_.value(row);
-      const FigureStanding* standing = figures_.standing(row);
-      const bool isWeak = standing != nullptr && standing->passed && !*standing->passed;
-      if (found == nullptr || found->moments.empty() || (tier == Tier::weak && !isWeak)) continue;
+      if (found == nullptr || found->moments.empty()) continue;
+      if (tier == Tier::weak && !isWeak(figures_.standing(row))) continue;
       if (tier == Tier::counts && !analytics::countsByDefault(value.name)) continue;
-      const auto most = std::max_element(found->moments.begin(), found->moments.end(),
-                                         [](const auto& a, const auto& b) { return a.share < b.share; });
-      const double time = 0.5 * (most->begin + most->end);
+      const analytics::Moment& most = worstOf(found->moments);
+      const double time = 0.5 * (most.begin + most.end);
       if (std::any_of(worst.begin(), worst.end(),
                       [&](const WorstMoment& w) { return std::abs(w.time - time) < apart; }))
         continue;
@@ -138,25 +119,19 @@ const analytics::Norm* FigurePanel::norm() const {
 }
 
 void FigurePanel::setAttempt(std::shared_ptr<const CohortDocument> document, const analytics::AttemptRow& attempt) {
+  clear();
   document_ = std::move(document);
   attempt_ = attempt;
-  wanted_.reset();
-  cycle_.forget();
-  trackEvents_.clear();
-  events_.setEvents({});
-  try {
-    values_ = document_->values(attempt.uuid);
+  const QString fault = faultOf([&] {
     intervals_ = document_->intervals(attempt.uuid);
-  } catch (const Error& error) {
-    values_.clear();
-    intervals_.clear();
-    emit problem(QString::fromStdString(problemText(error)));
-  }
+    values_ = document_->values(attempt.uuid);
+  });
+  if (!fault.isEmpty()) emit problem(fault);
   figures_.setValues(values_, intervals_);
-  figureTable_->setColumnHidden(CheckpointTableModel::intervalColumn, !figures_.hasIntervals());
+  figureTable_->expandAll();
+  figureTable_->setColumnHidden(CheckpointTableModel::intervalColumn, intervals_.empty());
   {
     const QSignalBlocker quiet(norm_);
-    norm_->clear();
     for (const analytics::Norm* norm : normsFor(attempt, document_->norms()))
       norm_->addItem(QString("%1, version %2").arg(QString::fromStdString(norm->name)).arg(norm->version));
   }
@@ -168,11 +143,11 @@ void FigurePanel::clear() {
   document_.reset();
   attempt_.reset();
   wanted_.reset();
+  cycle_.forget();
   values_.clear();
   intervals_.clear();
   figures_.setValues({});
-  trackEvents_.clear();
-  events_.setEvents({});
+  setEvents({});
   {
     const QSignalBlocker quiet(norm_);
     norm_->clear();
@@ -242,8 +217,7 @@ void FigurePanel::showWorst() {
   for (int row = 0; row < figures_.rowCount(); ++row) {
     const analytics::FigureMoments* found = figures_.moments(row);
     if (found == nullptr || found->moments.empty()) continue;
-    const FigureStanding* standing = figures_.standing(row);
-    const bool weak = standing != nullptr && standing->passed && !*standing->passed;
+    const bool weak = isWeak(figures_.standing(row));
     if (chosen < 0 || weak) chosen = row;
     if (weak) break;
   }

@@ -7,12 +7,22 @@
 #include <string>
 
 #include "analytics/assessment/grade.h"
-#include "gui/dashboard/attempt_sheet.h"
 #include "gui/dashboard/checkpoint_table_model.h"
 #include "gui/dashboard/cohort_document.h"
-#include "gui/dashboard/tree_models.h"
+
+class QComboBox;
+class QLabel;
+class QPushButton;
+class QTreeView;
 
 namespace calot::gui {
+
+/// A moment that is worth a picture.
+struct WorstMoment {
+  double time = 0.0;  ///< s
+  std::string caption;
+};
+inline constexpr std::size_t maxWorstMoments = 3;
 
 /// Clicks on figures to moments of the replay: a figure's first click goes to the moment that made most of it, each
 /// further one to the next in time, around.
@@ -29,15 +39,6 @@ class MomentCycle {
   std::string figure_;  ///< checkpoint and subject of the last click
   std::size_t at_ = 0;  ///< its moment
 };
-
-}  // namespace calot::gui
-
-class QComboBox;
-class QLabel;
-class QPushButton;
-class QTreeView;
-
-namespace calot::gui {
 
 /// The checkpoints of one attempt, held against a norm and folded by family, and its events, in groups: choosing a row
 /// asks for its moment.
@@ -71,9 +72,9 @@ class FigurePanel : public QWidget {
   void problem(const QString& message);
   void timeChosen(double seconds);
   void summaryChanged();
-  void sheetRequested();    ///< the attempt against the norm that is chosen
-  void onePageRequested();  ///< the attempt on one page
-  /// Where a figure arose: beginnings and ends (s).
+  /// The attempt is to be written: on one page, or against the norm that is chosen.
+  void sheetRequested(bool onePage);
+  /// Intervals in which a figure arose: beginnings and ends (s).
   void windowsChosen(const std::vector<std::pair<double, double>>& windows);
 
  private:

@@ -2,137 +2,255 @@
 #include "gui/dashboard/figures_page.h"
 
 #include <algorithm>
-#include <exception>
-#include <QBoxLayout>
-#include <QCheckBox>
-#include <QComboBox>
-#include <QLabel>
-#include <QSignalBlocker>
 
+#include "analytics/assessment/grade.h"
+#include "gui/attempt/figure_standing.h"
 #include "gui/attempt/figure_text.h"
-#include "gui/attempt/widget_parts.h"
-#include "gui/dashboard/page_parts.h"
 #include "gui/dashboard/plot_view.h"
-#include "gui/words/problem_words.h"
 
 namespace calot::gui {
 
-FiguresPage::FiguresPage(const char* captionName, QWidget* parent) : QWidget(parent), caption_(new QLabel(this)) {
-  caption_->setObjectName(captionName);
-  caption_->setTextFormat(Qt::PlainText);
-  caption_->setWordWrap(true);
+FiguresPage::FiguresPage(const std::string& prefix, PlotView* chart, QWidget* parent)
+    : CohortPage(parent),
+      figure_(parts::choice((prefix + "figure").c_str(), 13)),
+      key_(parts::choice((prefix + "key").c_str(), 13)),
+      chart_(chart),
+      caption_(parts::plainLabel((prefix + "caption").c_str())) {
+  for (QComboBox* choice : {figure_, key_})
+    connect(choice, &QComboBox::currentIndexChanged, this, [this] { redraw(); });
+  connect(chart_, &PlotView::attemptChosen, this, &CohortPage::attemptActivated);
 }
 
-void FiguresPage::setDocument(std::shared_ptr<const CohortDocument> document) {
-  document_ = std::move(document);
-  read_ = ready_ = false;
-  if (isVisible()) readValues();
-}
-
-void FiguresPage::showEvent(QShowEvent* event) {
-  QWidget::showEvent(event);
-  readValues();
-}
-
-void FiguresPage::readValues() {
-  if (read_ || !document_) return;
-  read_ = true;
+void FiguresPage::read() {
   ready_ = false;
   caption_->setText("Reading the values …");
   background_.run([this, document = document_]() -> Background::Completion {
     std::shared_ptr<const FigureValues> values;
-    QString fault;
-    try {
-      values = document->figureValues();
-    } catch (const std::exception& error) {
-      fault = QString::fromStdString(problemText(error));
-    }
+    const QString fault = faultOf([&] { values = document->figureValues(); });
     return [this, values, fault] {
       if (!fault.isEmpty()) emit problem(fault);
       values_ = values;
       ready_ = true;
-      takeValues();
+      QStringList titles;
+      if (values_) {
+        for (const Figure& f : values_->figures()) titles += figureTitle(f.name, f.subject);
+      }
+      refill(*figure_, titles);
+      fillChoices();
+      redraw();
     };
   });
 }
 
-void FiguresPage::fillFigures(QComboBox* box) const {
-  const QString chosen = box->currentText();
-  box->clear();
-  if (values_) {
-    for (const Figure& f : values_->figures()) box->addItem(figureTitle(f.name, f.subject));
-  }
-  box->setCurrentIndex(std::max(0, box->findText(chosen)));
-}
-
-QComboBox* FiguresPage::addChoice(QHBoxLayout* row, const char* name, const char* text, int stretch) {
-  auto* const box = parts::choice(name, 13);
-  parts::labelled(*row, text, box, stretch);
-  return box;
-}
-
-ComparePage::ComparePage(QWidget* parent) : FiguresPage("caption", parent) {
-  auto* layout = new QVBoxLayout(this);
+ComparePage::ComparePage(QWidget* parent)
+    : FiguresPage("", new PlotView("comparison-chart", "Attempts by group"), parent),
+      groupBy_(parts::choice("group-by", 13)),
+      synthetic_(parts::named("synthetic", new QCheckBox("&Synthetic attempts"))) {
   auto* upper = new QHBoxLayout;
   auto* lower = new QHBoxLayout;  // keys are long: they have a line of their own
-  figure_ = addChoice(upper, "figure", "&Checkpoint", 3);
-  groupBy_ = addChoice(upper, "group-by", "&By", 1);
-  key_ = addChoice(lower, "key", "Comparable &within", 3);
-  groupBy_->addItems({"group", "performer's profile", "participant"});
-  for (QComboBox* const box : {figure_, groupBy_, key_})
-    connect(box, &QComboBox::currentIndexChanged, this, [this] { redraw(); });
-  synthetic_ = parts::named("synthetic", new QCheckBox("&Synthetic attempts"));
-  synthetic_->setChecked(true);
-  connect(synthetic_, &QCheckBox::toggled, this, [this] { redraw(); });
+  parts::labelled(*upper, "&Checkpoint", figure_, 3);
+  parts::labelled(*upper, "&By", groupBy_, 1);
+  parts::labelled(*lower, "Comparable &within", key_, 3);
   lower->addWidget(synthetic_);
+  auto* layout = new QVBoxLayout(this);
   layout->addLayout(upper);
   layout->addLayout(lower);
-  chart_ = new PlotView("comparison-chart", "Attempts by group");
-  connect(chart_, &PlotView::attemptChosen, this, &ComparePage::attemptActivated);
   layout->addWidget(chart_, 1);
-  setProperty(beginProperty, QVariant::fromValue<QObject*>(figure_));
-  layout->addWidget(caption());
+  layout->addWidget(caption_);
+  groupBy_->addItems({"group", "performer's profile", "participant"});
+  synthetic_->setChecked(true);
+  connect(groupBy_, &QComboBox::currentIndexChanged, this, [this] { redraw(); });
+  connect(synthetic_, &QCheckBox::toggled, this, [this] { redraw(); });
+  begin_ = figure_;
 }
 
-void ComparePage::takeValues() {
-  keys_ = comparabilityKeysOf(document().attempts());
-  {
-    const QSignalBlocker quietFigure(figure_), quietKey(key_), quietGroup(groupBy_);
-    fillFigures(figure_);
-    const QString key = key_->currentText();
-    key_->clear();
-    for (const std::string& k : keys_) key_->addItem(QString::fromStdString(k));
-    key_->setCurrentIndex(std::max(0, key_->findText(key)));
-    // Nobody has a study group: then profiles tell more.
-    bool grouped = false;
-    for (const analytics::AttemptRow& attempt : document().attempts()) grouped = grouped || !attempt.group.empty();
-    groupBy_->setCurrentIndex(static_cast<int>(grouped ? GroupBy::group : GroupBy::profile));
-  }
-  redraw();
+void ComparePage::fillChoices() {
+  const std::vector<analytics::AttemptRow>& attempts = document_->attempts();
+  refill(*key_, textsOf(comparabilityKeysOf(attempts)));
+  // Nobody has a study group: then profiles tell more.
+  const bool grouped = std::any_of(attempts.begin(), attempts.end(), [](const auto& a) { return !a.group.empty(); });
+  const QSignalBlocker quiet(groupBy_);
+  groupBy_->setCurrentIndex(static_cast<int>(grouped ? GroupBy::group : GroupBy::profile));
 }
 
 void ComparePage::redraw() {
   if (!ready()) return;
-  ComparisonRequest request;
-  request.groupBy = static_cast<GroupBy>(groupBy_->currentIndex());
-  request.includeSynthetic = synthetic_->isChecked();
-  const int figure = figure_->currentIndex(), key = key_->currentIndex();
-  if (figure < 0 || key < 0) {
+  const int figure = figure_->currentIndex();
+  if (figure < 0 || key_->currentIndex() < 0) {
     chart_->clear("No checkpoint has a value yet");
-    caption()->clear();
+    caption_->clear();
     return;
   }
-  request.figure = values()->figures()[static_cast<std::size_t>(figure)];
-  request.comparabilityKey = keys_[static_cast<std::size_t>(key)];
-  const Comparison comparison = compare(document().attempts(), values()->of(static_cast<std::size_t>(figure)), request);
-  const QString title = figureTitle(request.figure.name, request.figure.subject);
+  const auto index = static_cast<std::size_t>(figure);
+  const ComparisonRequest request{values_->figures()[index], static_cast<GroupBy>(groupBy_->currentIndex()),
+                                  key_->currentText().toStdString(), synthetic_->isChecked()};
+  const Comparison comparison = compare(document_->attempts(), values_->of(index), request);
+  const QString title = figure_->currentText();
   chart_->show(
       comparison.group.empty() ? title + ": nothing to show" : title,
       [comparison, name = title.toStdString()](const analytics::PlotFrame& frame) {
         return drawComparison(comparison, name, frame);
       },
       comparison.synthetic);
-  caption()->setText(QString::fromStdString(captionOf(comparison)));
+  caption_->setText(QString::fromStdString(captionOf(comparison)));
+}
+
+namespace {
+
+QString curveText(const TraineeHistory& history) {
+  QString text;
+  if (history.curve)
+    text =
+        QString("Learning curve a - b / x over the attempt's number x: plateau a = %1 (standard error %2) %3, b = %4.")
+            .arg(numberText(history.curve->plateau), numberText(history.curve->plateauError),
+                 QString::fromStdString(history.unit), numberText(history.curve->gap));
+  else
+    text = "No learning curve: " + QString::fromStdString(history.curve.reason()) + '.';
+  if (history.otherKeys > 0)
+    text += QString(" %1 attempts of other comparability keys cannot stand beside these.").arg(history.otherKeys);
+  return text;
+}
+
+}  // namespace
+
+TraineePage::TraineePage(QWidget* parent)
+    : FiguresPage("trainee-", new PlotView("history-chart", "A figure over the attempts"), parent),
+      trainee_(parts::choice("trainee", 13)),
+      goal_(parts::plainLabel("trainee-goal")),
+      tasks_(makeTextTable({"Task", "Attempts", "First", "Last", "Last started"}, "trainee-tasks",
+                           "Tasks of the trainee")),
+      table_(makeTextTable({"No.", "Started", "Value", "Outcome", "Verification", "Remark"}, "trainee-attempts",
+                           "Attempts of the trainee")) {
+  auto* upper = new QHBoxLayout;
+  auto* lower = new QHBoxLayout;  // keys are long: they have a line of their own
+  parts::labelled(*upper, "T&rainee", trainee_, 1);
+  parts::labelled(*upper, "&Checkpoint", figure_, 3);
+  parts::labelled(*lower, "Comparable &within", key_, 3);
+  parts::embolden(goal_);
+  tasks_->setToolTip("Double-click, or press Enter, to see a task's history");
+  setWidths(*tasks_, {560});
+  table_->setToolTip("Double-click, or press Enter, to open an attempt");
+  setWidths(*table_, {50, 170, 130, 130, 170});
+  QSplitter* splitter = makeSplitter(Qt::Vertical, {{chart_, 3}, {tasks_, 2}, {table_, 0}});
+  splitter->setSizes({400, 110, 180});
+  auto* layout = new QVBoxLayout(this);
+  layout->addLayout(upper);
+  layout->addLayout(lower);
+  layout->addWidget(goal_);
+  layout->addWidget(splitter, 1);
+  layout->addWidget(caption_);
+  connect(trainee_, &QComboBox::currentIndexChanged, this, [this] {
+    fillKeys();
+    redraw();
+  });
+  const auto keyOf = [](const QTableWidgetItem* item) {
+    return item->tableWidget()->item(item->row(), 0)->data(Qt::UserRole).toString();
+  };
+  connect(tasks_, &QTableWidget::itemActivated, this,
+          [this, keyOf](const QTableWidgetItem* item) { key_->setCurrentText(keyOf(item)); });
+  connect(table_, &QTableWidget::itemActivated, this,
+          [this, keyOf](const QTableWidgetItem* item) { emit attemptActivated(keyOf(item)); });
+  begin_ = trainee_;
+}
+
+void TraineePage::fillChoices() {
+  trainees_ = traineesOf(document_->attempts());
+  QStringList names;
+  for (const Trainee& t : trainees_) names += QString::fromStdString(t.name) + (t.synthetic ? " (performer)" : "");
+  refill(*trainee_, names);
+  fillKeys();
+}
+
+void TraineePage::fillKeys() {
+  const int at = trainee_->currentIndex();
+  refill(*key_,
+         at < 0 ? QStringList() : textsOf(keysOf(document_->attempts(), trainees_[static_cast<std::size_t>(at)])));
+}
+
+void TraineePage::redraw() {
+  if (!ready()) return;
+  const int figure = figure_->currentIndex();
+  if (trainee_->currentIndex() < 0 || figure < 0 || key_->currentIndex() < 0) {
+    chart_->clear("No attempts: nothing to show");
+    caption_->setText("No attempt has a participant or a profile yet.");
+    table_->setRowCount(0);
+    tasks_->setRowCount(0);
+    goal_->clear();
+    return;
+  }
+  std::vector<analytics::Norm> norms;
+  tryTo([&] { norms = document_->norms(); });
+  const auto index = static_cast<std::size_t>(figure);
+  const Trainee& trainee = trainees_[static_cast<std::size_t>(trainee_->currentIndex())];
+  const TraineeHistory history = historyOf(document_->attempts(), values_->of(index), norms, trainee,
+                                           values_->figures()[index], key_->currentText().toStdString());
+  const QString title = trainee_->currentText() + ": " + figure_->currentText();
+  const auto& all = history.attempts;
+  const bool empty = std::none_of(all.begin(), all.end(), [](const HistoryAttempt& a) { return a.value.has_value(); });
+  chart_->show(
+      empty && !history.cut ? title + ": nothing to show" : title,
+      [history, name = title.toStdString(), source = document_](const analytics::PlotFrame& frame) {
+        return drawTraineeHistory(history, name, frame);
+      },
+      std::any_of(all.begin(), all.end(), [](const HistoryAttempt& a) { return a.attempt->synthetic; }));
+  caption_->setText(curveText(history));
+  fillTable(history);
+  fillTasks(trainee, index, norms);
+  showGoal(history, norms);
+}
+
+void TraineePage::fillTasks(const Trainee& trainee, std::size_t figure, const std::vector<analytics::Norm>& norms) {
+  const std::vector<std::string> keys = keysOf(document_->attempts(), trainee);
+  tasks_->setRowCount(static_cast<int>(keys.size()));
+  for (int row = 0; row < tasks_->rowCount(); ++row) {
+    const std::string& key = keys[static_cast<std::size_t>(row)];
+    const TraineeHistory history =
+        historyOf(document_->attempts(), values_->of(figure), norms, trainee, values_->figures()[figure], key);
+    QString first = "none", last = "none";
+    for (const HistoryAttempt& entry : history.attempts) {
+      if (!entry.value) continue;
+      const QString text = (numberText(*entry.value) + ' ' + QString::fromStdString(history.unit)).trimmed();
+      if (first == "none") first = text;
+      last = text;
+    }
+    const QStringList texts{
+        QString::fromStdString(analytics::comparabilityWords(key)), QString::number(history.attempts.size()), first,
+        last, history.attempts.empty() ? QString() : startText(history.attempts.back().attempt->startUtc)};
+    setTexts(*tasks_, row, texts, key);
+    tasks_->item(row, 0)->setToolTip(texts[0]);
+  }
+}
+
+void TraineePage::showGoal(const TraineeHistory& history, const std::vector<analytics::Norm>& norms) {
+  goal_->setText("No goal: there is no norm for this task yet.");
+  if (history.attempts.empty()) return;
+  const analytics::AttemptRow& newest = *history.attempts.back().attempt;
+  const std::vector<const analytics::Norm*> fitting = normsFor(newest, norms);
+  if (fitting.empty()) return;
+  std::vector<analytics::CheckpointValue> own;
+  tryTo([&] { own = document_->values(newest.uuid); });
+  const AttemptStanding standing = standingOf(newest, own, *fitting.front());
+  goal_->setText(standing.grade ? "Next goal: " + QString::fromStdString(analytics::nextGoal(*standing.grade).text)
+                                : "No goal: " + QString::fromStdString(standing.verdict));
+}
+
+void TraineePage::fillTable(const TraineeHistory& history) {
+  table_->setRowCount(static_cast<int>(history.attempts.size()));
+  for (int row = 0; row < table_->rowCount(); ++row) {
+    const HistoryAttempt& entry = history.attempts[static_cast<std::size_t>(row)];
+    const Badge badge = badgeOf(*entry.attempt);
+    const QString value = entry.value ? numberText(*entry.value) + ' ' + QString::fromStdString(history.unit) : "none";
+    const QStringList texts{
+        QString::number(row + 1),
+        startText(entry.attempt->startUtc),
+        value.trimmed(),
+        outcomeText(entry.attempt->outcome),
+        badge.text,
+        QString(QString::fromStdString(entry.why) + (entry.attempt->synthetic ? " synthetic" : "")).trimmed()};
+    setTexts(*table_, row, texts, entry.attempt->uuid);
+    table_->item(row, 4)->setForeground(badge.colour);
+    table_->item(row, 4)->setToolTip(badge.explanation);
+  }
 }
 
 }  // namespace calot::gui

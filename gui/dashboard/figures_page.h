@@ -2,84 +2,78 @@
 #pragma once
 
 #include <memory>
-#include <QWidget>
+#include <string>
 #include <vector>
-
-#include "gui/attempt/background.h"
+#include "gui/attempt/long_work.h"
 #include "gui/dashboard/cohort_document.h"
 #include "gui/dashboard/comparison.h"
-
-class QComboBox;
-class QHBoxLayout;
-class QLabel;
-
-namespace calot::gui {
-
-/// A page about the figures of all attempts. They are read in the background when it is first shown.
-class FiguresPage : public QWidget {
-  Q_OBJECT
- public:
-  /// @pre not null. The values are read when the page is first shown.
-  void setDocument(std::shared_ptr<const CohortDocument> document);
-  [[nodiscard]] bool ready() const { return ready_; }  ///< the values were read
-
- signals:
-  void problem(const QString& message);
-  void attemptActivated(const QString& uuid);
-
- protected:
-  /// @param captionName of the caption, which the page puts into its layout
-  FiguresPage(const char* captionName, QWidget* parent);
-  void showEvent(QShowEvent* event) override;
-
-  [[nodiscard]] const CohortDocument& document() const { return *document_; }  ///< @pre ready()
-  [[nodiscard]] const FigureValues* values() const { return values_.get(); }   ///< null: they could not be read
-  [[nodiscard]] QLabel* caption() const { return caption_; }
-
-  /// The document's values were read, or could not be: the page fills its choices and is drawn.
-  virtual void takeValues() = 0;
-  /// Figures to choose from; the one that was chosen stays so, where it is still there.
-  void fillFigures(QComboBox* box) const;
-  /// A choice with its label in a row.
-  static QComboBox* addChoice(QHBoxLayout* row, const char* name, const char* text, int stretch);
-
- private:
-  void readValues();
-
-  std::shared_ptr<const CohortDocument> document_;
-  std::shared_ptr<const FigureValues> values_;
-  bool read_ = false, ready_ = false;
-  QLabel* caption_;
-  Background background_;
-};
-
-}  // namespace calot::gui
-
-class QCheckBox;
-class QComboBox;
+#include "gui/dashboard/page_parts.h"
 
 namespace calot::gui {
 
 class PlotView;
 
-/// One checkpoint over attempts by group, within one comparability key.
+/// A page about one figure of all attempts of a comparability key. Figures are read in the background when it is first
+/// shown.
+class FiguresPage : public CohortPage {
+  Q_OBJECT
+ public:
+  [[nodiscard]] bool ready() const { return ready_; }  ///< the values were read
+
+ protected:
+  /// Makes its widgets, which the page puts into its layout. @param prefix of their names
+  FiguresPage(const std::string& prefix, PlotView* chart, QWidget* parent);
+
+  /// The document's values were read, or could not be: fills the choices other than the figure's, quietly.
+  virtual void fillChoices() = 0;
+  virtual void redraw() = 0;  ///< @pre ready()
+
+  std::shared_ptr<const FigureValues> values_;  ///< null: they could not be read
+  QComboBox* figure_;
+  QComboBox* key_;
+  PlotView* chart_;
+  QLabel* caption_;
+
+ private:
+  void read() override;
+
+  bool ready_ = false;
+  Background background_;
+};
+
+/// One checkpoint over attempts by group.
 class ComparePage : public FiguresPage {
   Q_OBJECT
  public:
   explicit ComparePage(QWidget* parent = nullptr);
 
- protected:
-  void takeValues() override;
+ private:
+  void fillChoices() override;
+  void redraw() override;
+
+  QComboBox* groupBy_;
+  QCheckBox* synthetic_;
+};
+
+/// One person's attempts over time: a figure's learning curve, and every attempt with its badge.
+class TraineePage : public FiguresPage {
+  Q_OBJECT
+ public:
+  explicit TraineePage(QWidget* parent = nullptr);
 
  private:
-  void redraw();
+  void fillChoices() override;
+  void fillKeys();
+  void redraw() override;
+  void fillTable(const TraineeHistory& history);
+  void fillTasks(const Trainee& trainee, std::size_t figure, const std::vector<analytics::Norm>& norms);
+  void showGoal(const TraineeHistory& history, const std::vector<analytics::Norm>& norms);
 
-  std::vector<std::string> keys_;
-  QComboBox* figure_ = nullptr;
-  QComboBox* groupBy_ = nullptr;
-  QComboBox* key_ = nullptr;
-  QCheckBox* synthetic_ = nullptr;
-  PlotView* chart_ = nullptr;
+  std::vector<Trainee> trainees_;
+  QComboBox* trainee_;
+  QLabel* goal_;
+  QTableWidget* tasks_;
+  QTableWidget* table_;
 };
 
 }  // namespace calot::gui

@@ -1,13 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "gui/dashboard/import_queue.h"
 
+#include <algorithm>
+#include <QBoxLayout>
 #include <QDir>
 #include <QFileInfo>
 #include <QJsonArray>
 #include <QJsonDocument>
 #include <QJsonObject>
+#include <QLabel>
+#include <QListWidget>
+#include <QProgressBar>
+#include <QPushButton>
+#include <QTimer>
 #include <utility>
 
+#include "gui/attempt/long_work.h"
+#include "gui/attempt/theme.h"
+#include "gui/attempt/widget_parts.h"
 #include "gui/view/thread_rank.h"
 
 namespace calot::gui {
@@ -147,12 +158,117 @@ void ImportQueue::finishCurrent(ImportResult result) {
   emit fileDone(result);
   emit progressed();
   // Not from within the process's own signal.
-  QMetaObject::invokeMethod(
-      this,
-      [this] {
-        if (current_.isEmpty()) startNext();
-      },
-      Qt::QueuedConnection);
+  QTimer::singleShot(0, this, [this] {
+    if (current_.isEmpty()) startNext();
+  });
+}
+
+ImportPanel::ImportPanel(ImportQueue& queue, QWidget* parent)
+    : QWidget(parent),
+      queue_(queue),
+      text_(parts::plainLabel("import-text", false)),
+      bar_(parts::named("import-progress", new QProgressBar)),
+      stop_(parts::named("import-stop", new QPushButton("Stop importin&g"))),
+      results_(parts::named("import-results", new QListWidget)),
+      tick_(new QTimer(this)) {
+  results_->setAccessibleName("Results of the import");
+  auto* row = new QHBoxLayout;
+  row->addWidget(bar_, 1);
+  row->addWidget(stop_);
+  auto* layout = new QVBoxLayout(this);
+  layout->addWidget(text_);
+  layout->addLayout(row);
+  layout->addWidget(results_, 1);
+  connect(stop_, &QPushButton::clicked, &queue_, &ImportQueue::cancel);
+  connect(&queue_, &ImportQueue::progressed, this, [this] { showProgress(); });
+  connect(&queue_, &ImportQueue::fileDone, this, &ImportPanel::addResult);
+  connect(&queue_, &ImportQueue::allDone, this, [this] { showProgress(); });
+  connect(tick_, &QTimer::timeout, this, [this] { showProgress(); });
+}
+
+void ImportPanel::showProgress() {
+  const bool busy = queue_.busy();
+  if (busy && !clock_.isValid()) clock_.start();
+  if (!busy) clock_.invalidate();
+  double left = -1.0;
+  if (busy && queue_.done() > 0)
+    left = 1e-3 * static_cast<double>(clock_.elapsed()) / queue_.done() * (queue_.total() - queue_.done());
+  stop_->setEnabled(busy);
+  bar_->setRange(0, std::max(1, queue_.total()));
+  bar_->setValue(queue_.done());
+  const QString count = QString("%1 of %2 recordings").arg(queue_.done()).arg(queue_.total());
+  if (!queue_.current().isEmpty())
+    text_->setText(QString("%1 done. Simulating %2 again, %3 s so far … %4")
+                       .arg(count, QFileInfo(queue_.current()).fileName())
+                       .arg(queue_.seconds())
+                       .arg(leftText(left)));
+  else
+    text_->setText(count + " done.");
+  if (busy)
+    tick_->start(1000);
+  else
+    tick_->stop();
+}
+
+void ImportPanel::addResult(const ImportResult& result) {
+  auto* item = new QListWidgetItem(QFileInfo(result.file).fileName() + ": " + result.text);
+  item->setToolTip(result.file);
+  if (result.kind != ImportResult::Kind::stored) item->setForeground(theme::trouble());
+  results_->addItem(item);
+  results_->scrollToItem(item);
+}
+
+GreetingPage::GreetingPage(AssessProgram program, QWidget* parent)
+    : QWidget(parent),
+      program_(std::move(program)),
+      title_(parts::plainLabel("greeting-title", false)),
+      text_(parts::plainLabel("greeting")) {
+  QFont large = font();
+  large.setPointSizeF(1.8 * large.pointSizeF());
+  title_->setFont(large);
+  title_->setAlignment(Qt::AlignHCenter);
+  text_->setAlignment(Qt::AlignHCenter);
+  text_->setTextInteractionFlags(Qt::TextSelectableByMouse | Qt::TextSelectableByKeyboard);
+  auto* buttons = new QHBoxLayout;
+  buttons->addStretch(1);
+  const auto add = [&](const char* name, const char* text, auto wish) {
+    auto* button = parts::named(name, new QPushButton(text));
+    connect(button, &QPushButton::clicked, this, wish);
+    buttons->addWidget(button);
+    return button;
+  };
+  import_ = add("import-recordings", "&Import recordings …", &GreetingPage::importRequested);
+  add("open", "&Open a cohort database …", &GreetingPage::openRequested);
+  add("new", "&Make a new one …", &GreetingPage::newRequested);
+  buttons->addStretch(1);
+  auto* layout = new QVBoxLayout(this);
+  layout->addStretch(1);
+  layout->addWidget(title_);
+  layout->addSpacing(12);
+  layout->addWidget(text_);
+  layout->addSpacing(18);
+  layout->addLayout(buttons);
+  layout->addStretch(2);
+  explainNoDatabase();
+}
+
+void GreetingPage::explainNoDatabase() {
+  title_->setText("Welcome to Calot");
+  text_->setText(
+      "A cohort database holds attempts and their checkpoints.\nOpen one, make a new one, or drop one here. On the "
+      "command line:\n\n" +
+      program_.typed("cohort.db"));
+  import_->hide();
+}
+
+void GreetingPage::explainEmptyDatabase(const QString& fileName) {
+  title_->setText("This cohort is still empty");
+  text_->setText(
+      fileName +
+      " is a cohort database without attempts.\nImport recordings, or drop them here: each is simulated again, "
+      "verified and measured. On the command line:\n\n" +
+      program_.typed(fileName));
+  import_->show();
 }
 
 }  // namespace calot::gui

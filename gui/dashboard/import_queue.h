@@ -1,14 +1,31 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <functional>
 #include <QElapsedTimer>
 #include <QObject>
 #include <QProcess>
+#include <QString>
 #include <QStringList>
+#include <QWidget>
 
-#include "gui/dashboard/assess_program.h"
+class QLabel;
+class QListWidget;
+class QProgressBar;
+class QPushButton;
+class QTimer;
 
 namespace calot::gui {
+
+/// How the program that assesses recordings is called, and how it answers. The application knows its command line.
+struct AssessProgram {
+  /// Arguments for one recording, with its report as JSON. @param file an absolute path
+  std::function<QStringList(const QString& file, const QString& database, int threads)> arguments;
+  /// True if an exit code blames the recording: damaged, or in conflict with the cohort.
+  std::function<bool(int exitCode)> refused;
+  /// Command line that assesses a recording into this database.
+  std::function<QString(const QString& database)> typed;
+};
 
 /// Result for one recording.
 struct ImportResult {
@@ -71,6 +88,46 @@ class ImportQueue : public QObject {
   QByteArray output_, errors_;
   QElapsedTimer clock_;
   QProcess process_;
+};
+
+/// How an import goes: progress, a line for each recording, and a button that stops it.
+class ImportPanel : public QWidget {
+  Q_OBJECT
+ public:
+  /// @param queue outlives the panel
+  explicit ImportPanel(ImportQueue& queue, QWidget* parent = nullptr);
+
+ private:
+  void showProgress();
+  void addResult(const ImportResult& result);
+
+  ImportQueue& queue_;
+  QLabel* text_;
+  QProgressBar* bar_;
+  QPushButton* stop_;
+  QListWidget* results_;
+  QTimer* tick_;
+  QElapsedTimer clock_;  ///< since the queue last began
+};
+
+/// Page shown without a database, or with an empty one. Greets and says what to do.
+class GreetingPage : public QWidget {
+  Q_OBJECT
+ public:
+  explicit GreetingPage(AssessProgram program, QWidget* parent = nullptr);
+  void explainNoDatabase();
+  void explainEmptyDatabase(const QString& fileName);
+
+ signals:
+  void openRequested();
+  void newRequested();
+  void importRequested();
+
+ private:
+  AssessProgram program_;
+  QLabel* title_;
+  QLabel* text_;
+  QPushButton* import_;
 };
 
 }  // namespace calot::gui

@@ -3,25 +3,114 @@
 
 #include <algorithm>
 #include <cmath>
-#include <QBoxLayout>
-#include <QComboBox>
-#include <QLabel>
 #include <QLocale>
-#include <QShortcut>
-#include <QSignalBlocker>
 #include <QSlider>
 #include <QStyle>
 #include <QTimer>
 #include <QToolButton>
-#include <utility>
 
-#include "gui/attempt/theme.h"
-#include "gui/attempt/widget_parts.h"
-#include "gui/dashboard/page_parts.h"
-#include "gui/dashboard/trace_chart.h"
+#include "gui/attempt/figure_text.h"
 #include "gui/words/event_words.h"
 
 namespace calot::gui {
+namespace {
+
+constexpr int mostListed = 2000;  // attempts in a choice: a longer list is no choice
+
+QString attemptText(const AttemptLines& lines, int row) {
+  return QString("%1 · %2 · %3 · %4")
+      .arg(lines.cell(row, AttemptLines::operatorColumn), lines.cell(row, AttemptLines::sceneColumn),
+           lines.cell(row, AttemptLines::startColumn), lines.cell(row, AttemptLines::verificationColumn));
+}
+
+}  // namespace
+
+PairSide::PairSide(const QString& name, QWidget* parent)
+    : RecordingView({.transport = false}, parent), choice_(parts::choice("", 20)), banner_(new AttemptBanner) {
+  choice_->setObjectName(name + "-attempt");
+  choice_->setAccessibleName("Attempt on the " + name);
+  banner_->makeNarrow();
+  auto* rows = static_cast<QBoxLayout*>(layout());
+  rows->insertWidget(0, choice_);
+  rows->insertWidget(1, banner_);
+  setTabOrder(choice_, &timeline());
+  connect(choice_, &QComboBox::currentIndexChanged, this, [this] { openChosen(); });
+}
+
+void PairSide::setDocument(std::shared_ptr<const CohortDocument> document) {
+  document_ = std::move(document);
+  {
+    const QSignalBlocker quiet(choice_);
+    choice_->clear();
+    choice_->addItem("Choose an attempt …", QString());
+    const auto& attempts = document_->attempts();
+    for (std::size_t i = attempts.size(); i-- > 0 && choice_->count() <= mostListed;)
+      choice_->addItem(attemptText(*document_->lines(), static_cast<int>(i)), QString::fromStdString(attempts[i].uuid));
+    if (!wanted_.empty()) uuid_ = std::exchange(wanted_, {});
+    const int at = uuid_.empty() ? 0 : choice_->findData(QString::fromStdString(uuid_));
+    choice_->setCurrentIndex(std::max(0, at));
+  }
+  openChosen();
+}
+
+void PairSide::choose(const std::string& uuid) {
+  if (!isVisible()) {
+    wanted_ = uuid;
+    return;
+  }
+  const int at = choice_->findData(QString::fromStdString(uuid));
+  if (at >= 0) choice_->setCurrentIndex(at);
+}
+
+void PairSide::chooseAnother(int n) {
+  if (uuid_.empty() && choice_->count() > n) choice_->setCurrentIndex(n);
+}
+
+void PairSide::openChosen() {
+  const std::string uuid = choice_->currentData().toString().toStdString();
+  const analytics::AttemptRow* attempt = uuid.empty() ? nullptr : document_->attempt(uuid);
+  if (attempt != nullptr && opened_ == uuid && isOpen()) return;
+  uuid_ = opened_ = uuid;
+  emit changing();
+  if (attempt == nullptr) {
+    banner_->showText(" ");
+    close("No attempt is chosen.");
+  } else {
+    banner_->showAttempt(*attempt);
+    open(*attempt, *document_);
+  }
+}
+
+PairAlignment::PairAlignment(std::array<double, 2> seconds, std::array<double, 2> offsets)
+    : seconds_(seconds),
+      offsets_(offsets),
+      begin_(std::min(-offsets[0], -offsets[1])),
+      end_(std::max(seconds[0] - offsets[0], seconds[1] - offsets[1])) {}
+
+double PairAlignment::own(std::size_t which, double common) const {
+  return std::clamp(common + offsets_[which], 0.0, seconds_[which]);
+}
+
+bool PairAlignment::runs(std::size_t which, double common) const {
+  const double time = common + offsets_[which];
+  return time >= 0.0 && time < seconds_[which];
+}
+
+std::optional<double> firstOf(const AttemptTrack& track, Phase phase) {
+  const auto at =
+      std::find_if(track.phases.begin(), track.phases.end(), [&](const TrackPhase& p) { return p.phase == phase; });
+  if (at == track.phases.end()) return std::nullopt;
+  return at->begin;
+}
+
+std::vector<Phase> commonPhases(const AttemptTrack& a, const AttemptTrack& b) {
+  std::vector<Phase> phases;
+  for (const Phase phase : {Phase::identification, Phase::clipping, Phase::cutting, Phase::dissection}) {
+    if (firstOf(a, phase) && firstOf(b, phase)) phases.push_back(phase);
+  }
+  return phases;
+}
+
 namespace {
 
 constexpr int scrubSteps = 10000;
@@ -30,7 +119,7 @@ constexpr double farAway = 0.25;  // s (times speed) that a side may be off befo
 
 }  // namespace
 
-PairPage::PairPage(QWidget* parent) : QWidget(parent), sides_{new PairSide("left"), new PairSide("right")} {
+PairPage::PairPage(QWidget* parent) : CohortPage(parent), sides_{new PairSide("left"), new PairSide("right")} {
   auto* layout = new QVBoxLayout(this);
   auto* row = new QHBoxLayout;
   for (PairSide* const side : sides_) row->addWidget(side, 1);
@@ -42,11 +131,10 @@ PairPage::PairPage(QWidget* parent) : QWidget(parent), sides_{new PairSide("left
     if (alignment_) goTo(alignment_->begin() + time);
   });
   layout->addWidget(buildTransport());
-  setProperty(beginProperty, QVariant::fromValue<QObject*>(sides_[0]->choiceBox()));
+  begin_ = sides_[0]->choiceBox();
   tick_ = new QTimer(this);
   connect(tick_, &QTimer::timeout, this, [this] { onTick(); });
-  connect(new QShortcut(Qt::Key_Space, this, nullptr, nullptr, Qt::WidgetWithChildrenShortcut), &QShortcut::activated,
-          this, [this] { play(!playing_); });
+  onKey(*this, Qt::Key_Space, [this] { play(!playing_); });
   for (std::size_t which = 0; which < 2; ++which) {
     connect(sides_[which], &PairSide::changing, this, [this] {
       play(false);
@@ -54,8 +142,9 @@ PairPage::PairPage(QWidget* parent) : QWidget(parent), sides_{new PairSide("left
       traces_->clear();
       showTime();
     });
-    connect(sides_[which], &PairSide::ready, this, [this] { fillAlignments(); });
-    connect(sides_[which], &PairSide::timeChosen, this, [this, which](double time) {
+    connect(sides_[which], &RecordingView::opened, this, [this] { fillAlignments(); });
+    connect(sides_[which], &RecordingView::trackRead, this, [this] { fillAlignments(); });
+    connect(&sides_[which]->timeline(), &TimelineBar::timeChosen, this, [this, which](double time) {
       if (alignment_) goTo(alignment_->common(which, time));
     });
   }
@@ -63,14 +152,14 @@ PairPage::PairPage(QWidget* parent) : QWidget(parent), sides_{new PairSide("left
 
 QWidget* PairPage::buildTransport() {
   auto* made = new QWidget;
-  auto* layout = parts::bare<QHBoxLayout>(made);
-  from_ = parts::choice("align", 13);
-  auto* label = new QLabel("In &step from");
-  label->setBuddy(from_);
+  auto* row = parts::bare<QHBoxLayout>(made);
+  trace_ = parts::labelled(*row, "&Trace", parts::choice("pair-trace", 10));
+  trace_->addItems(
+      {"force, left hand (N)", "force, right hand (N)", "speed, left tip (mm/s)", "speed, right tip (mm/s)"});
+  from_ = parts::labelled(*row, "In &step from", parts::choice("align", 13));
   play_ = parts::named("pair-play", new QToolButton);
   play_->setAccessibleName("Play or pause both");
   play_->setToolTip("Play or pause both (Space)");
-  play_->setIcon(theme::buttonIcon(QStyle::SP_MediaPlay));
   play_->setFocusPolicy(Qt::TabFocus);
   scrub_ = parts::named("pair-scrub", new QSlider(Qt::Horizontal));
   scrub_->setAccessibleName("Moment of both");
@@ -81,22 +170,11 @@ QWidget* PairPage::buildTransport() {
   for (const double speed : {0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0})
     speed_->addItem(QLocale().toString(speed, 'g', 3) + QString::fromUtf8(" ×"), speed);
   speed_->setCurrentIndex(3);
-  trace_ = parts::named("pair-trace", new QComboBox);
-  trace_->addItems(
-      {"force, left hand (N)", "force, right hand (N)", "speed, left tip (mm/s)", "speed, right tip (mm/s)"});
-  trace_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
-  trace_->setMinimumContentsLength(10);
-  auto* traceLabel = new QLabel("&Trace");
-  traceLabel->setBuddy(trace_);
+  row->addWidget(play_);
+  row->addWidget(scrub_, 1);
+  row->addWidget(time_);
+  row->addWidget(speed_);
   connect(trace_, &QComboBox::currentIndexChanged, this, [this] { showTraces(); });
-  layout->addWidget(traceLabel);
-  layout->addWidget(trace_);
-  layout->addWidget(label);
-  layout->addWidget(from_);
-  layout->addWidget(play_);
-  layout->addWidget(scrub_, 1);
-  layout->addWidget(time_);
-  layout->addWidget(speed_);
   connect(from_, &QComboBox::currentIndexChanged, this, [this] { align(); });
   connect(play_, &QToolButton::clicked, this, [this] { play(!playing_); });
   connect(speed_, &QComboBox::currentIndexChanged, this, [this] {
@@ -110,19 +188,7 @@ QWidget* PairPage::buildTransport() {
   return made;
 }
 
-void PairPage::setDocument(std::shared_ptr<const CohortDocument> document) {
-  document_ = std::move(document);
-  filled_ = false;
-  if (isVisible()) fillSides();
-}
-
-void PairPage::showEvent(QShowEvent* event) {
-  QWidget::showEvent(event);
-  if (!filled_ && document_) fillSides();
-}
-
-void PairPage::fillSides() {
-  filled_ = true;
+void PairPage::read() {
   for (PairSide* const side : sides_) side->setDocument(document_);
 }
 
@@ -133,7 +199,7 @@ void PairPage::hideEvent(QHideEvent* event) {
 
 void PairPage::setAttempt(std::size_t side, const std::string& uuid) {
   sides_[side]->choose(uuid);
-  if (!isVisible()) filled_ = false;  // it is opened when the page is shown
+  if (!isVisible()) outdate();  // it is opened when the page is shown
 }
 
 void PairPage::chooseTwo() {
@@ -171,7 +237,7 @@ void PairPage::align() {
     if (phase != Phase::none && sides_[which]->track())
       offsets[which] = firstOf(*sides_[which]->track(), phase).value_or(0.0);
   }
-  alignment_.emplace(std::array{sides_[0]->seconds(), sides_[1]->seconds()}, offsets);
+  alignment_.emplace(std::array{replay(0).position().seconds, replay(1).position().seconds}, offsets);
   showTraces();
   goTo(0.0);
 }
@@ -264,8 +330,7 @@ void PairPage::onTick() {
 
 void PairPage::showTime() {
   play_->setIcon(theme::buttonIcon(playing_ ? QStyle::SP_MediaPause : QStyle::SP_MediaPlay));
-  for (QWidget* widget : {static_cast<QWidget*>(play_), static_cast<QWidget*>(scrub_), static_cast<QWidget*>(from_),
-                          static_cast<QWidget*>(speed_)})
+  for (QWidget* widget : std::initializer_list<QWidget*>{play_, scrub_, from_, speed_})
     widget->setEnabled(alignment_.has_value());
   if (!alignment_) {
     time_->setText(QString::fromUtf8("–:––"));

@@ -2,32 +2,96 @@
 #include "gui/dashboard/ratings_page.h"
 
 #include <algorithm>
-#include <QBoxLayout>
 #include <QButtonGroup>
-#include <QCheckBox>
-#include <QComboBox>
+#include <QCryptographicHash>
 #include <QGroupBox>
-#include <QLabel>
-#include <QLineEdit>
-#include <QPushButton>
 #include <QRadioButton>
 #include <QScrollArea>
-#include <QShortcut>
-#include <QSignalBlocker>
-#include <QSplitter>
+#include <QSettings>
 
-#include "gui/attempt/attempt_recording.h"
-#include "gui/attempt/replay_transport.h"
-#include "gui/attempt/widget_parts.h"
-#include "gui/dashboard/attempt_banner.h"
-#include "gui/dashboard/page_parts.h"
 #include "gui/dashboard/settings.h"
-#include "gui/view/scene_picture_widget.h"
-#include "gui/words/problem_words.h"
 #include "recorder/base/errors.h"
 
 namespace calot::gui {
+
+/// Identity of a rating, and of its draft: attempt and rater of a form about attempts, the participant of the others.
+struct RatingPage::Subject {
+  std::string database, form;
+  std::uint32_t formVersion = 1;
+  std::string attempt, rater, participant;
+};
+
 namespace {
+
+namespace fs = std::filesystem;
+using Answers = std::map<std::string, std::optional<int>>;  // by item
+
+/// Drafts that are not stored yet are kept among the user's settings: a rater who is called away goes on where they
+/// were.
+QSettings drafts() { return {QSettings::IniFormat, QSettings::UserScope, "calot", "drafts"}; }
+
+/// A group of the settings: no name stands there.
+QString groupOf(const auto& subject) {
+  QCryptographicHash hash(QCryptographicHash::Sha256);
+  for (const std::string& part : {subject.database, subject.form, std::to_string(subject.formVersion), subject.attempt,
+                                  subject.rater, subject.participant}) {
+    hash.addData(QByteArray::fromStdString(part));
+    hash.addData(QByteArray(1, '\0'));
+  }
+  return QString::fromLatin1(hash.result().toHex());
+}
+
+std::string textOf(std::optional<int> score) { return score ? std::to_string(*score) : "-"; }
+
+void keepDraft(const QString& group, const Answers& answers) {
+  QSettings store = drafts();
+  store.beginGroup(group);
+  store.remove("");
+  for (const auto& [item, score] : answers)
+    store.setValue(QString::fromStdString(item), QString::fromStdString(textOf(score)));
+}
+
+/// Empty: there is none.
+Answers keptDraft(const QString& group) {
+  QSettings store = drafts();
+  store.beginGroup(group);
+  Answers answers;
+  for (const QString& item : store.childKeys()) {
+    const QString text = store.value(item).toString();
+    bool number = false;
+    const int score = text.toInt(&number);
+    if (number || text == "-") answers[item.toStdString()] = number ? std::optional(score) : std::nullopt;
+  }
+  return answers;
+}
+
+/// Stores a rating as `calot rate` does. @throws Error (invalid) for an item without answer, all blank, or a missing
+/// name; (refused) as AssessmentDatabase::storeRating
+void storeRating(const analytics::RatingForm& form, const auto& subject, const Answers& answers, bool replace) {
+  if (form.ofAttempts && subject.attempt.empty()) throw Error(ErrorKind::invalid, "Choose the attempt that is rated.");
+  if (form.ofAttempts && subject.rater.empty()) throw Error(ErrorKind::invalid, "Say who rates, by a pseudonym.");
+  if (!form.ofAttempts && subject.participant.empty())
+    throw Error(ErrorKind::invalid, "Choose the participant who fills in the form.");
+  std::vector<std::pair<std::string, std::string>> given;
+  for (const auto& [item, score] : answers) given.emplace_back(item, textOf(score));
+  analytics::Rating rating;
+  rating.attempt = subject.attempt;
+  rating.rater = subject.rater;
+  rating.participant = subject.participant;
+  rating.answers = analytics::answersOf(form, given);
+  analytics::AssessmentDatabase(subject.database, analytics::CohortDatabase::Access::write)
+      .storeRating({form.name, form.version, form.sha256, form.text}, rating, replace);
+}
+
+/// Earlier answers of this rater or participant, which are to be changed.
+std::optional<analytics::Rating> earlierRating(const std::vector<analytics::Rating>& ratings,
+                                               const analytics::RatingForm& form, const auto& subject) {
+  for (const analytics::Rating& r : ratings) {
+    if (r.form != form.name || r.formVersion != form.version || r.attempt != subject.attempt) continue;
+    if (form.ofAttempts ? r.rater == subject.rater : r.participant == subject.participant) return r;
+  }
+  return std::nullopt;
+}
 
 constexpr int blank = -1000;  // button of an item that is left blank: no form's score
 
@@ -40,66 +104,31 @@ QString scoreText(const analytics::RatingForm& form, int score) {
 
 }  // namespace
 
-RatingPage::RatingPage(QWidget* parent) : QWidget(parent) {
-  replayPart_ = buildReplay();
-  auto* parts = new QSplitter(Qt::Horizontal);
-  parts->addWidget(replayPart_);
-  parts->addWidget(buildForm());
-  parts->setStretchFactor(0, 1);
-  parts->setStretchFactor(1, 1);
-  parts->setChildrenCollapsible(false);
+RatingPage::RatingPage(QWidget* parent) : CohortPage(parent), replay_(new RecordingView({.timeline = false})) {
   auto* layout = new QVBoxLayout(this);
-  layout->addWidget(parts, 1);
+  layout->addWidget(makeSplitter(Qt::Horizontal, {{replay_, 1}, {buildForm(), 1}}), 1);
   connectParts();
-  setProperty(beginProperty, QVariant::fromValue<QObject*>(choice_));
-}
-
-RatingPage::~RatingPage() { replay_.reset(); }  // its thread uses the picture
-
-QWidget* RatingPage::buildReplay() {
-  picture_ = new ScenePictureWidget;
-  replay_ = std::make_unique<Replay>(
-      [picture = picture_](std::shared_ptr<const SceneView> view) { picture->showView(std::move(view)); });
-  auto* made = new QWidget;
-  auto* layout = parts::bare<QVBoxLayout>(made);
-  layout->addWidget(picture_, 1);
-  layout->addWidget(new TransportBar(*replay_));
-  connect(replay_.get(), &Replay::opened, this, [this] { opening_ = false; });
-  connect(replay_.get(), &Replay::failed, this, [this](const QString& reason) {
-    opening_ = false;
-    picture_->showText(reason);
-  });
-  return made;
+  begin_ = choice_;
 }
 
 QWidget* RatingPage::buildForm() {
   auto* made = new QWidget;
   auto* layout = parts::bare<QVBoxLayout>(made);
   auto* row = new QHBoxLayout;
-  const auto add = [&](QLabel* label, QWidget* field, int stretch) {
-    label->setBuddy(field);
-    row->addWidget(label);
-    row->addWidget(field, stretch);
-  };
-  choice_ = parts::choice("form", 12);
-  add(new QLabel("Fo&rm"), choice_, 2);
-  rater_ = parts::named("rater", new QLineEdit);
+  choice_ = parts::labelled(*row, "Fo&rm", parts::choice("form", 12), 2);
+  rater_ = parts::labelled(*row, "Rated b&y", parts::named("rater", new QLineEdit), 1);
+  raterLabel_ = row->itemAt(row->count() - 2)->widget();
   rater_->setMaxLength(64);
   rater_->setPlaceholderText("pseudonym");
-  raterLabel_ = new QLabel("Rated b&y");
-  add(raterLabel_, rater_, 1);
-  participant_ = parts::named("rating-participant", new QComboBox);
-  participantLabel_ = new QLabel("Part&icipant");
-  add(participantLabel_, participant_, 1);
+  participant_ = parts::labelled(*row, "Part&icipant", parts::named("rating-participant", new QComboBox), 1);
+  participantLabel_ = row->itemAt(row->count() - 2)->widget();
   layout->addLayout(row);
   reveal_ = parts::named("reveal", new QCheckBox("Sho&w who it was"));
   reveal_->setToolTip("Who rates blinded judges what was done, not who did it");
   layout->addWidget(reveal_);
   banner_ = new AttemptBanner;
   layout->addWidget(banner_);
-  source_ = new QLabel;
-  source_->setTextFormat(Qt::PlainText);
-  source_->setWordWrap(true);
+  source_ = parts::plainLabel("form-source");
   layout->addWidget(source_);
   area_ = parts::named("form-area", new QScrollArea);
   area_->setWidgetResizable(true);
@@ -129,64 +158,38 @@ void RatingPage::connectParts() {
   };
   connect(next_, &QPushButton::clicked, this, storeAndGo);
   connect(reveal_, &QCheckBox::toggled, this, [this] { showSubject(); });
-  const auto key = [this](const QKeySequence& keys, auto action) {
-    connect(new QShortcut(keys, this, nullptr, nullptr, Qt::WidgetWithChildrenShortcut), &QShortcut::activated, this,
-            action);
-  };
-  key(Qt::CTRL | Qt::Key_Return, storeAndGo);
-  key(Qt::Key_Comma, [this] { replay_->stepBy(-1); });
-  key(Qt::Key_Period, [this] { replay_->stepBy(1); });
+  onKey(*this, Qt::CTRL | Qt::Key_Return, storeAndGo);
+  onKey(*this, Qt::Key_Comma, [this] { replay_->replay().stepBy(-1); });
+  onKey(*this, Qt::Key_Period, [this] { replay_->replay().stepBy(1); });
 }
 
-void RatingPage::setForms(KnownForms forms) {
-  draft_.reset();  // it names a form of the former list
-  forms_ = std::move(forms);
-  {
-    const QSignalBlocker quiet(choice_);
-    choice_->clear();
-    for (const analytics::RatingForm& form : forms_.forms)
-      choice_->addItem(QString::fromStdString(form.name + ": " + form.title));
+void RatingPage::readForms(const std::vector<fs::path>& folders) {
+  std::map<std::string, fs::path> byName;
+  for (const fs::path& root : folders) {
+    std::error_code fault;
+    for (fs::directory_iterator it(root / "forms", fault), end; !fault && it != end; it.increment(fault)) {
+      if (it->path().extension() == ".json") byName.emplace(it->path().stem().string(), it->path());
+    }
   }
+  QStringList titles;
+  for (const auto& entry : byName) {
+    const QString fault = faultOf([&] {
+      const analytics::RatingForm& form = forms_.emplace_back(analytics::readRatingForm(entry.second));
+      titles += QString::fromStdString(form.name + ": " + form.title);
+    });
+    if (fault_.isEmpty()) fault_ = fault;
+  }
+  refill(*choice_, titles);
   showForm();
-}
-
-void RatingPage::setDocument(std::shared_ptr<const CohortDocument> document) {
-  document_ = std::move(document);
-  read_ = false;
-  if (isVisible()) readPeople();
-}
-
-void RatingPage::showEvent(QShowEvent* event) {
-  QWidget::showEvent(event);
-  if (!read_ && document_) readPeople();
-  openReplay();
-}
-
-void RatingPage::hideEvent(QHideEvent* event) {
-  QWidget::hideEvent(event);
-  replay_->pause();
-}
-
-quint64 RatingPage::replayShown() const { return picture_->shown(); }
-bool RatingPage::settled() const {
-  return !opening_ && (!replay_->isOpen() || (replay_->position().settled && !picture_->picture().isNull()));
 }
 
 void RatingPage::openReplay() {
   if (!document_ || !attempt_ || !isVisible() || shown_ == attempt_->uuid) return;
   shown_ = attempt_->uuid;
-  replay_->close();
-  const std::filesystem::path file = findRecording(*attempt_, document_->path(), settings::recordingPlaces());
-  if (file.empty()) {
-    picture_->showText("The recording was not found. Open the attempt on its own page to say where it is.");
-    return;
-  }
-  picture_->showText("Opening the recording …");
-  opening_ = true;
-  replay_->open(file, attempt_->uuid);
+  replay_->open(*attempt_, *document_);
 }
 
-DraftSubject RatingPage::draftSubject() const {
+RatingPage::Subject RatingPage::subject() const {
   const analytics::RatingForm& shown = *form();
   return {document_ ? document_->path() : std::string(),
           shown.name,
@@ -196,30 +199,23 @@ DraftSubject RatingPage::draftSubject() const {
           shown.ofAttempts ? std::string() : participant_->currentText().toStdString()};
 }
 
-void RatingPage::readPeople() {
-  read_ = true;
+void RatingPage::read() {
   if (rater_->text().isEmpty()) rater_->setText(settings::person());
-  {
-    const QSignalBlocker quiet(participant_);
-    const QString before = participant_->currentText();
-    participant_->clear();
-    try {
-      for (const std::string& name : document_->participants()) participant_->addItem(QString::fromStdString(name));
-    } catch (const Error& error) {
-      emit problem(QString::fromStdString(problemText(error)));
-    }
-    participant_->setCurrentIndex(std::max(0, participant_->findText(before)));
-  }
+  QStringList people;
+  tryTo([&] {
+    for (const analytics::Participant& person : document_->participants())
+      people += QString::fromStdString(person.pseudonym);
+  });
+  refill(*participant_, people);
   showEarlier();
+  openReplay();
 }
 
 void RatingPage::setAttempt(const analytics::AttemptRow& attempt) {
   const bool another = !attempt_ || attempt_->uuid != attempt.uuid;
   attempt_ = attempt;
   showSubject();
-  if (another && isVisible()) showEarlier();
-  openReplay();
-  if (another) read_ = read_ && isVisible();
+  if (another) outdate();
 }
 
 void RatingPage::chooseForm(const QString& name) {
@@ -228,17 +224,15 @@ void RatingPage::chooseForm(const QString& name) {
 
 const analytics::RatingForm* RatingPage::form() const {
   const int at = choice_->currentIndex();
-  return at < 0 ? nullptr : &forms_.forms[static_cast<std::size_t>(at)];
+  return at < 0 ? nullptr : &forms_[static_cast<std::size_t>(at)];
 }
 
 void RatingPage::showSubject() {
   const bool ofAttempts = form() == nullptr || form()->ofAttempts;
-  for (QWidget* widget :
-       {static_cast<QWidget*>(rater_), static_cast<QWidget*>(raterLabel_), static_cast<QWidget*>(reveal_), replayPart_})
+  for (QWidget* widget : std::initializer_list<QWidget*>{rater_, raterLabel_, reveal_, replay_})
     widget->setVisible(ofAttempts);
   banner_->setVisible(ofAttempts && (reveal_->isChecked() || !attempt_));
-  for (QWidget* widget : {static_cast<QWidget*>(participant_), static_cast<QWidget*>(participantLabel_)})
-    widget->setVisible(!ofAttempts);
+  for (QWidget* widget : {static_cast<QWidget*>(participant_), participantLabel_}) widget->setVisible(!ofAttempts);
   if (!attempt_)
     banner_->showText("Select the attempt that is rated on the page Attempts.");
   else
@@ -247,16 +241,13 @@ void RatingPage::showSubject() {
 
 void RatingPage::showForm() {
   groups_.clear();
-  draft_.reset();
   auto* content = new QWidget;
   auto* layout = new QVBoxLayout(content);
   const analytics::RatingForm* shown = form();
   if (shown == nullptr) {
-    source_->setText(forms_.faults.empty() ? QString("No forms were found (CALOT_ASSETS).")
-                                           : QString::fromStdString(forms_.faults.front()));
+    source_->setText(fault_.isEmpty() ? "No forms were found (CALOT_ASSETS)." : fault_);
   } else {
     source_->setText(QString("Version %1. %2").arg(shown->version).arg(QString::fromStdString(shown->source)));
-    draft_.emplace(*shown);
     for (const analytics::FormSection& section : shown->sections) {
       auto* box = new QGroupBox(QString::fromStdString(section.name));
       auto* boxLayout = new QVBoxLayout(box);
@@ -271,9 +262,8 @@ void RatingPage::showForm() {
 }
 
 void RatingPage::addItem(QVBoxLayout& layout, const analytics::FormItem& item) {
-  auto* text = new QLabel(QString::fromStdString(item.text));
-  text->setTextFormat(Qt::PlainText);
-  text->setWordWrap(true);
+  auto* text = parts::plainLabel("");
+  text->setText(QString::fromStdString(item.text));
   parts::embolden(text);
   layout.addWidget(text);
   auto* buttons = new QButtonGroup(text);
@@ -301,43 +291,34 @@ void RatingPage::addItem(QVBoxLayout& layout, const analytics::FormItem& item) {
       anchors += QString("%1: %2").arg(shown.least + static_cast<int>(i)).arg(QString::fromStdString(item.anchors[i]));
   }
   if (!anchors.isEmpty()) {
-    auto* words = new QLabel(anchors.join('\n'));
-    words->setObjectName(QString::fromStdString(item.key) + "-anchors");
-    words->setTextFormat(Qt::PlainText);
-    words->setWordWrap(true);
+    auto* words = parts::plainLabel((item.key + "-anchors").c_str());
+    words->setText(anchors.join('\n'));
     layout.addWidget(words);
   }
   layout.addSpacing(6);
   groups_.emplace_back(item.key, buttons);
   connect(buttons, &QButtonGroup::idClicked, this, [this, key = item.key](int id) {
-    draft_->answer(key, id == blank ? std::nullopt : std::optional(id));
-    keepDraft(draftSubject(), draft_->answers());
+    answers_[key] = id == blank ? std::nullopt : std::optional(id);
+    keepDraft(groupOf(subject()), answers_);
     showState();
   });
 }
 
 void RatingPage::showEarlier() {
   replaces_ = false;
-  if (!draft_) {
+  answers_.clear();
+  const analytics::RatingForm* const shown = form();
+  if (shown == nullptr) {
     showState();
     return;
   }
-  const analytics::RatingForm& shown = *form();
   std::optional<analytics::Rating> earlier;
-  if (document_) {
-    try {
-      earlier = earlierRating(document_->ratings(), shown, attempt_ ? attempt_->uuid : std::string(),
-                              rater_->text().toStdString(), participant_->currentText().toStdString());
-    } catch (const Error& error) {
-      emit problem(QString::fromStdString(problemText(error)));
-    }
-  }
+  if (document_) tryTo([&] { earlier = earlierRating(document_->assessment().ratings(), *shown, subject()); });
   replaces_ = earlier.has_value();
-  draft_.emplace(shown);
-  // What was begun and not stored is newer than what was stored.
-  DraftAnswers answers = keptDraft(draftSubject());
+  // Answers that were begun and not stored are newer than the stored ones.
+  Answers answers = keptDraft(groupOf(subject()));
   if (answers.empty() && earlier) {
-    for (const analytics::FormItem& item : shown.items()) {
+    for (const analytics::FormItem& item : shown->items()) {
       const auto at = earlier->answers.find(item.key);
       answers[item.key] = at == earlier->answers.end() ? std::nullopt : std::optional(at->second);
     }
@@ -352,37 +333,30 @@ void RatingPage::showEarlier() {
     QAbstractButton* button = buttons->button(at->second.value_or(blank));
     if (button == nullptr) continue;  // a score of another scale
     button->setChecked(true);
-    draft_->answer(key, at->second);
+    answers_[key] = at->second;
   }
   showState();
 }
 
 void RatingPage::showState() {
-  store_->setEnabled(draft_ && document_ && draft_->complete());
+  const std::size_t items = form() == nullptr ? 0 : form()->items().size();
+  store_->setEnabled(items > 0 && document_ && answers_.size() == items);
   next_->setEnabled(store_->isEnabled());
   store_->setText(replaces_ ? "Replace what was &stored" : "&Store");
-  if (!draft_) {
-    state_->clear();
-    return;
-  }
-  QString text = QString("%1 of %2 items are answered.").arg(draft_->answered()).arg(draft_->form().items().size());
+  QString text;
+  if (items > 0) text = QString("%1 of %2 items are answered.").arg(answers_.size()).arg(items);
   if (replaces_) text += " This form was filled in before; storing replaces it.";
   state_->setText(text);
 }
 
 bool RatingPage::store() {
-  try {
-    draft_->store(document_->path(), attempt_ ? attempt_->uuid : std::string(), rater_->text().toStdString(),
-                  participant_->currentText().toStdString(), replaces_);
-    dropDraft(draftSubject());
+  return tryTo([this] {
+    storeRating(*form(), subject(), answers_, replaces_);
+    drafts().remove(groupOf(subject()));
     replaces_ = true;
     showState();
     state_->setText("Stored. " + state_->text());
-    return true;
-  } catch (const Error& error) {
-    emit problem(QString::fromStdString(problemText(error)));
-    return false;
-  }
+  });
 }
 
 }  // namespace calot::gui

@@ -1,56 +1,41 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <memory>
+#include <filesystem>
+#include <map>
 #include <optional>
-#include <QWidget>
 
-#include "gui/attempt/replay_transport.h"
-#include "gui/dashboard/cohort_document.h"
-#include "gui/dashboard/rating_draft.h"
+#include "analytics/assessment/rating_form.h"
+#include "gui/dashboard/page_parts.h"
+#include "gui/dashboard/recording_view.h"
 
 class QButtonGroup;
-class QCheckBox;
-class QComboBox;
-class QLabel;
-class QLineEdit;
-class QPushButton;
 class QScrollArea;
-class QVBoxLayout;
 
 namespace calot::gui {
-
-class AttemptBanner;
-class ScenePictureWidget;
 
 /// Forms to be filled in: raters judge the attempt that is selected, beside its replay, participants what they took
 /// part in. Who acted is hidden unless it is asked for. What is not stored yet is kept as a draft. Nothing is stored
 /// before every item is answered or left blank on purpose.
-class RatingPage : public QWidget {
+class RatingPage : public CohortPage {
   Q_OBJECT
  public:
   explicit RatingPage(QWidget* parent = nullptr);
-  ~RatingPage() override;
-  [[nodiscard]] quint64 replayShown() const;  ///< pictures so far
-  [[nodiscard]] bool settled() const;         ///< the replay stands where it was sent to, or there is none
-  void setForms(KnownForms forms);
+  [[nodiscard]] quint64 replayShown() const { return replay_->picture().shown(); }  ///< pictures so far
+  /// True if the replay stands where it was sent to, or there is none.
+  [[nodiscard]] bool settled() const { return replay_->settled(); }
+  /// Offers the forms in `forms/` of these folders, best first (recorder::ProgramFiles).
+  void readForms(const std::vector<std::filesystem::path>& folders);
   void chooseForm(const QString& name);
-  /// @pre not null
-  void setDocument(std::shared_ptr<const CohortDocument> document);
   void setAttempt(const analytics::AttemptRow& attempt);
 
  signals:
-  void problem(const QString& message);
   /// The rating is stored: the next attempt is wanted.
   void nextWanted();
 
- protected:
-  void showEvent(QShowEvent* event) override;
-  void hideEvent(QHideEvent* event) override;
-
  private:
+  void read() override;
   void connectParts();
-  void readPeople();
   void showForm();
   void addItem(QVBoxLayout& layout, const analytics::FormItem& item);
   void showSubject();
@@ -58,24 +43,23 @@ class RatingPage : public QWidget {
   void showState();
   bool store();
   QWidget* buildForm();
-  QWidget* buildReplay();
   void openReplay();
-  [[nodiscard]] DraftSubject draftSubject() const;
+  struct Subject;
+  [[nodiscard]] Subject subject() const;  ///< @pre form() is not null
   [[nodiscard]] const analytics::RatingForm* form() const;
 
-  std::shared_ptr<const CohortDocument> document_;
   std::optional<analytics::AttemptRow> attempt_;
-  KnownForms forms_;
-  std::optional<RatingDraft> draft_;
-  bool read_ = false;      ///< who is in the cohort
-  bool replaces_ = false;  ///< who fills it in has filled it in before
+  std::vector<analytics::RatingForm> forms_;
+  QString fault_;                                      ///< why one of the forms cannot be read
+  std::map<std::string, std::optional<int>> answers_;  ///< so far; none: left blank
+  bool replaces_ = false;                              ///< who fills it in has filled it in before
 
   QComboBox* choice_ = nullptr;
   QLabel* source_ = nullptr;
   AttemptBanner* banner_ = nullptr;
-  QLabel* raterLabel_ = nullptr;
+  QWidget* raterLabel_ = nullptr;
   QLineEdit* rater_ = nullptr;
-  QLabel* participantLabel_ = nullptr;
+  QWidget* participantLabel_ = nullptr;
   QComboBox* participant_ = nullptr;
   QScrollArea* area_ = nullptr;
   std::vector<std::pair<std::string, QButtonGroup*>> groups_;
@@ -83,11 +67,8 @@ class RatingPage : public QWidget {
   QPushButton* store_ = nullptr;
   QPushButton* next_ = nullptr;
   QCheckBox* reveal_ = nullptr;
-  QWidget* replayPart_ = nullptr;
-  ScenePictureWidget* picture_ = nullptr;
-  bool opening_ = false;  ///< the replay
-  std::string shown_;     ///< uuid whose replay was opened
-  std::unique_ptr<Replay> replay_;
+  RecordingView* replay_;
+  std::string shown_;  ///< uuid whose replay was opened
 };
 
 }  // namespace calot::gui

@@ -18,7 +18,6 @@
 #include <QStandardPaths>
 #include <utility>
 
-#include "gui/attempt/theme.h"
 #include "gui/attempt/widget_parts.h"
 
 namespace calot::gui::settings {

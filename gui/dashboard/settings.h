@@ -38,7 +38,7 @@ void setType(int percent);
 [[nodiscard]] QStringList hiddenColumns();
 void setHiddenColumns(const QStringList& titles);
 
-/// Who rates, excludes and includes: a pseudonym, or empty.
+/// The person who rates, excludes and includes: a pseudonym, or empty.
 [[nodiscard]] QString person();
 void setPerson(const QString& name);
 
@@ -51,7 +51,7 @@ class QSpinBox;
 
 namespace calot::gui {
 
-/// Where recordings are looked for, which program imports them and with how many threads, who is at the desk,
+/// Folders of recordings, the program that imports them and its number of threads, the person at the desk,
 /// and how the dashboard looks.
 class SettingsDialog : public QDialog {
   Q_OBJECT

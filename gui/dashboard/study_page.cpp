@@ -3,24 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <initializer_list>
-#include <memory>
-#include <optional>
-#include <utility>
-
-#include <QBoxLayout>
-#include <QCheckBox>
-#include <QComboBox>
 #include <QCoreApplication>
 #include <QFileDialog>
 #include <QFont>
 #include <QImage>
-#include <QLabel>
 #include <QList>
 #include <QPainter>
-#include <QPushButton>
-#include <QSignalBlocker>
-#include <QSplitter>
 #include <QStandardItemModel>
 #include <QTextBrowser>
 #include <QTextDocument>
@@ -28,11 +16,8 @@
 #include <QTimer>
 #include <QUrl>
 
-#include "analytics/report/study_tables.h"
+#include "analytics/report/study_output.h"
 #include "gui/attempt/figure_text.h"
-#include "gui/attempt/long_work.h"
-#include "gui/attempt/widget_parts.h"
-#include "gui/dashboard/page_parts.h"
 #include "gui/dashboard/plot_view.h"
 #include "gui/report/drawing_painter.h"
 
@@ -53,7 +38,28 @@ QString effectText(const analytics::StudyRow& row) {
   return parts.join(QString::fromUtf8(" · "));
 }
 
-/// What a text shows under forestAddress; null where the study has none. Any thread.
+/// Values of a row, as Compare shows them.
+Comparison comparisonOf(const analytics::Study& study, const analytics::StudyRow& row,
+                        const std::vector<analytics::AttemptRow>& attempts) {
+  std::set<std::string> performers;  // as a row names them
+  for (const analytics::AttemptRow& a : attempts) {
+    if (a.synthetic) performers.insert(a.participant.empty() ? "attempt " + a.uuid : a.participant);
+  }
+  Comparison made;
+  made.unit = row.unit == "1" ? "" : row.unit;
+  made.synthetic = study.synthetic;
+  for (std::size_t g = 0; g < row.values.size(); ++g) {
+    ComparisonGroup& group = made.group.emplace_back();
+    group.name = study.groups[g];
+    for (std::size_t i = 0; i < row.values[g].size(); ++i) {
+      const std::string& who = row.participants[g][i];
+      group.point.push_back({who, row.values[g][i], performers.count(who) > 0});
+    }
+  }
+  return made;
+}
+
+/// The study's forest plot, shown under forestAddress; null where the study has none. Any thread.
 QImage forestPicture(const analytics::Study& study, const QFont& font, double ratio) {
   const std::optional<analytics::Drawing> forest = analytics::forestOf(study);
   if (!forest) return {};
@@ -107,95 +113,85 @@ struct StudyPage::Computed {
   WindowsText text;
 };
 
-StudyPage::StudyPage(QWidget* parent) : QWidget(parent) {
+StudyPage::StudyPage(QWidget* parent)
+    : CohortPage(parent),
+      fields_{parts::choice("study-group-by", 8),
+              parts::choice("study-first", 6),
+              parts::choice("study-second", 6),
+              parts::choice("study-key", 6),
+              parts::named("study-synthetic", new QCheckBox("S&ynthetic attempts")),
+              parts::named("study-practice", new QCheckBox("&Practice attempts"))},
+      rule_(parts::choice("study-rule", 6)),
+      protocol_(parts::choice("study-protocol", 8)),
+      state_(parts::plainLabel("study-state")),
+      strip_(new WorkStrip(work_)),
+      text_(parts::named("study-text", new QTextBrowser)),
+      row_(parts::named("study-row", new QComboBox)),
+      effect_(parts::named("study-effect", new QLabel)),
+      boxes_(new PlotView("study-boxes", "Values by group")),
+      roc_(new PlotView("roc-chart", "Receiver operating characteristic")),
+      csv_(parts::named("study-csv", new QPushButton("Export C&SV …"))),
+      html_(parts::named("study-html", new QPushButton("Export HTM&L …"))) {
   auto* layout = new QVBoxLayout(this);
-  buildChoices(*layout);
-  state_ = parts::plainLabel("study-state");
+  layout->addLayout(buildChoices());
   layout->addWidget(state_);
-  strip_ = new WorkStrip(work_);
   layout->addWidget(strip_);
-
-  text_ = parts::named("study-text", new QTextBrowser);
   text_->setAccessibleName("Tables of the study");
   text_->setOpenLinks(false);
   text_->setWordWrapMode(QTextOption::WordWrap);
-  row_ = parts::named("study-row", new QComboBox);
-  auto* rowLabel = new QLabel("&Checkpoint");
-  rowLabel->setBuddy(row_);
-  auto* rowLayout = new QHBoxLayout;
-  rowLayout->addWidget(rowLabel);
-  rowLayout->addWidget(row_, 1);
-  effect_ = parts::named("study-effect", new QLabel);
   effect_->setWordWrap(true);
-  boxes_ = new PlotView("study-boxes", "Values by group");
-  roc_ = new PlotView("roc-chart", "Receiver operating characteristic");
+  auto* rowLayout = new QHBoxLayout;
+  parts::labelled(*rowLayout, "&Checkpoint", row_, 1);
   auto* charts = new QWidget;
   auto* chartLayout = parts::bare<QVBoxLayout>(charts);
   chartLayout->addLayout(rowLayout);
   chartLayout->addWidget(effect_);
   chartLayout->addWidget(boxes_, 1);
   chartLayout->addWidget(roc_, 1);
-  auto* splitter = new QSplitter(Qt::Horizontal);
-  splitter->addWidget(text_);
-  splitter->addWidget(charts);
+  QSplitter* splitter = makeSplitter(Qt::Horizontal, {{text_, 3}, {charts, 2}});
   splitter->setSizes({830, 410});
-  splitter->setStretchFactor(0, 3);
-  splitter->setStretchFactor(1, 2);
-  splitter->setChildrenCollapsible(false);
   layout->addWidget(splitter, 1);
   connectParts();
-  setProperty(beginProperty, QVariant::fromValue<QObject*>(groupBy_));
+  begin_ = fields_.by;
 }
 
-void StudyPage::buildChoices(QBoxLayout& layout) {
-  const auto add = [](QHBoxLayout& row, const char* name, const char* text, int stretch) {
-    auto* box = parts::choice(name, 6);
-    parts::labelled(row, text, box, stretch);
-    return box;
-  };
-  auto* upper = new QHBoxLayout;
-  groupBy_ = add(*upper, "study-group-by", "&By", 0);
-  groupBy_->setMinimumContentsLength(8);
-  groupBy_->addItem("study group", static_cast<int>(GroupBy::group));
-  groupBy_->addItem("performer's profile", static_cast<int>(GroupBy::profile));
-  first_ = add(*upper, "study-first", "C&ompare", 0);
-  second_ = add(*upper, "study-second", "w&ith", 0);
-  rule_ = add(*upper, "study-rule", "Of several &attempts", 0);
+QLayout* StudyPage::buildChoices() {
   rule_->addItem("the first", static_cast<int>(analytics::AttemptRule::first));
   rule_->addItem("the mean", static_cast<int>(analytics::AttemptRule::mean));
+  protocol_->setToolTip("A protocol that is registered in this cohort makes the choices (calot protocol register)");
+  auto* upper = new QHBoxLayout;
+  parts::labelled(*upper, "&By", fields_.by);
+  parts::labelled(*upper, "C&ompare", fields_.first);
+  parts::labelled(*upper, "w&ith", fields_.second);
+  parts::labelled(*upper, "Of several &attempts", rule_);
   upper->addStretch(1);
-  csv_ = new QPushButton("Export C&SV …");
-  html_ = new QPushButton("Export HTM&L …");
-  csv_->setObjectName("study-csv");
-  html_->setObjectName("study-html");
   upper->addWidget(csv_);
   upper->addWidget(html_);
-  layout.addLayout(upper);
   auto* lower = new QHBoxLayout;
-  protocol_ = add(*lower, "study-protocol", "Pro&tocol", 0);
-  protocol_->setMinimumContentsLength(8);
-  protocol_->setToolTip("A protocol that is registered in this cohort makes the choices (calot protocol register)");
-  key_ = add(*lower, "study-key", "Comparable &within", 1);
-  synthetic_ = parts::named("study-synthetic", new QCheckBox("S&ynthetic attempts"));
-  practice_ = parts::named("study-practice", new QCheckBox("&Practice attempts"));
-  lower->addWidget(synthetic_);
-  lower->addWidget(practice_);
-  layout.addLayout(lower);
+  parts::labelled(*lower, "Pro&tocol", protocol_);
+  parts::labelled(*lower, "Comparable &within", fields_.key, 1);
+  lower->addWidget(fields_.synthetic);
+  lower->addWidget(fields_.practice);
+  auto* rows = new QVBoxLayout;
+  rows->addLayout(upper);
+  rows->addLayout(lower);
+  return rows;
 }
 
 void StudyPage::connectParts() {
-  connect(groupBy_, &QComboBox::currentIndexChanged, this, [this] {
-    fillGroups();
+  connect(fields_.by, &QComboBox::currentIndexChanged, this, [this] {
+    if (document_) fields_.offerGroups(document_->attempts());
     make();
   });
-  for (QComboBox* box : {first_, second_, rule_, key_})
+  for (QComboBox* box : {fields_.first, fields_.second, rule_, fields_.key})
     connect(box, &QComboBox::currentIndexChanged, this, [this] { make(); });
   connect(protocol_, &QComboBox::currentIndexChanged, this, [this] {
     allowChoices();
     make();
   });
-  connect(first_, &QComboBox::currentIndexChanged, this, [this] { allowChoices(); });
-  for (QCheckBox* box : {synthetic_, practice_}) connect(box, &QCheckBox::toggled, this, [this] { make(); });
+  connect(fields_.first, &QComboBox::currentIndexChanged, this, [this] { allowChoices(); });
+  for (QCheckBox* box : {fields_.synthetic, fields_.practice})
+    connect(box, &QCheckBox::toggled, this, [this] { make(); });
   connect(row_, &QComboBox::currentIndexChanged, this, [this] { showRow(); });
   connect(&work_, &LongWork::done, this, [this](const QString& text) {
     if (computed_) {
@@ -220,48 +216,13 @@ void StudyPage::connectParts() {
   connect(html_, &QPushButton::clicked, this, [this] { saveAs(true); });
 }
 
-void StudyPage::setDocument(std::shared_ptr<const CohortDocument> document) {
-  const bool another = !document_ || document_->path() != document->path();
-  document_ = std::move(document);
+void StudyPage::read() {
+  const bool another = std::exchange(path_, document_->path()) != document_->path();
   made_ = checked_ = false;
-  if (another) fillChoices();
+  if (another) fields_.offer(document_->attempts());
   fillProtocols();
   // While recordings are imported a cohort is read again and again: what is being computed is shown before the next.
-  if (isVisible() && (another || !computed_)) make();
-}
-
-void StudyPage::showEvent(QShowEvent* event) {
-  QWidget::showEvent(event);
-  if (!made_) make();
-}
-
-void StudyPage::fillChoices() {
-  const auto& attempts = document_->attempts();
-  const QSignalBlocker quietGroup(groupBy_), quietKey(key_), quietSynthetic(synthetic_), quietPractice(practice_);
-  // Nobody has a study group: then profiles tell more, and all is synthetic.
-  const bool people = !groupsOf(attempts, GroupBy::group).empty();
-  groupBy_->setCurrentIndex(people ? 0 : 1);
-  synthetic_->setChecked(!people);
-  bool assessment = false;
-  for (const analytics::AttemptRow& attempt : attempts)
-    assessment = assessment || attempt.mode == recorder::Mode::assessment;
-  practice_->setChecked(!assessment);
-  key_->clear();
-  for (const std::string& key : comparabilityKeysOf(attempts)) key_->addItem(QString::fromStdString(key));
-  fillGroups();
-}
-
-void StudyPage::fillGroups() {
-  if (!document_) return;
-  const QSignalBlocker quietFirst(first_), quietSecond(second_);
-  first_->clear();
-  second_->clear();
-  for (const std::string& name :
-       groupsOf(document_->attempts(), static_cast<GroupBy>(groupBy_->currentData().toInt()))) {
-    first_->addItem(QString::fromStdString(name));
-    second_->addItem(QString::fromStdString(name));
-  }
-  second_->setCurrentIndex(second_->count() > 1 ? 1 : -1);
+  if (another || !computed_) make();
 }
 
 void StudyPage::fillProtocols() {
@@ -269,7 +230,7 @@ void StudyPage::fillProtocols() {
   const QVariant before = protocol_->currentData();
   protocol_->clear();
   protocol_->addItem("none", QString());
-  for (const analytics::RegisteredProtocol& p : document_->protocols())
+  for (const analytics::RegisteredProtocol& p : document_->assessment().protocols())
     protocol_->addItem(QString("%1, version %2").arg(QString::fromStdString(p.name)).arg(p.version),
                        QString::fromStdString(p.sha256));
   protocol_->setCurrentIndex(std::max(0, protocol_->findData(before)));
@@ -280,13 +241,15 @@ void StudyPage::fillProtocols() {
 /// Only what can make a study: a protocol leaves the key alone, and a group is not compared with itself.
 void StudyPage::allowChoices() {
   const bool free = protocol_->currentData().toString().isEmpty();
-  for (QWidget* choice : std::initializer_list<QWidget*>{groupBy_, first_, second_, rule_, synthetic_, practice_})
+  QComboBox *const first = fields_.first, *const second = fields_.second;
+  for (QWidget* choice :
+       std::initializer_list<QWidget*>{fields_.by, first, second, rule_, fields_.synthetic, fields_.practice})
     choice->setEnabled(free);
-  auto* groups = qobject_cast<QStandardItemModel*>(second_->model());
+  auto* groups = qobject_cast<QStandardItemModel*>(second->model());
   for (int i = 0; groups != nullptr && i < groups->rowCount(); ++i)
-    groups->item(i)->setEnabled(i != first_->currentIndex());
-  if (second_->count() > 1 && second_->currentIndex() == first_->currentIndex())
-    second_->setCurrentIndex(first_->currentIndex() == 0 ? 1 : 0);
+    groups->item(i)->setEnabled(i != first->currentIndex());
+  if (second->count() > 1 && second->currentIndex() == first->currentIndex())
+    second->setCurrentIndex(first->currentIndex() == 0 ? 1 : 0);
 }
 
 void StudyPage::make() {
@@ -296,16 +259,8 @@ void StudyPage::make() {
   csv_->setEnabled(false);
   html_->setEnabled(false);
   state_->setText("Computing …");
-  StudyRequest request;
-  request.groupBy = static_cast<GroupBy>(groupBy_->currentData().toInt());
-  request.includeSynthetic = synthetic_->isChecked();
-  request.includePractice = practice_->isChecked();
-  request.key = key_->currentText().toStdString();
-  request.attemptRule = static_cast<analytics::AttemptRule>(rule_->currentData().toInt());
-  request.first = first_->currentText().toStdString();
-  request.second = second_->currentText().toStdString();
-  request.protocol = protocol_->currentData().toString().toStdString();
-  request.check = !checked_;
+  StudyRequest request{fields_.options(), protocol_->currentData().toString().toStdString(), !checked_};
+  request.options.attemptRule = static_cast<analytics::AttemptRule>(rule_->currentData().toInt());
   computed_ = std::make_shared<Computed>();
   strip_->begin("Computing the study", shownAfter);
   const TextLook look{text_->font(), text_->document()->defaultTextOption(),
@@ -359,7 +314,7 @@ void StudyPage::take(Computed& computed) {
   QTimer::singleShot(0, this, [this] {
     showRow();
     emit studyShown();
-    if (!made_) make();
+    if (!made_) outdate();
   });
 }
 
@@ -375,7 +330,8 @@ void StudyPage::showRow() {
   effect_->setText(effectText(row));
   boxes_->show(
       row_->currentText(),
-      [study = study_, &row](const analytics::PlotFrame& frame) { return analytics::boxPlotOf(*study, row, frame); },
+      [values = comparisonOf(*study_, row, document_->attempts()), name = row_->currentText().toStdString()](
+          const analytics::PlotFrame& frame) { return drawComparison(values, name, frame); },
       study_->synthetic);
   if (row.values[0].empty() || row.values[1].empty()) {
     roc_->clear("No ROC: a group has no values");
@@ -390,15 +346,11 @@ void StudyPage::showRow() {
   });
 }
 
-void StudyPage::exportCsv(const QString& folder) { write(folder, false); }
-void StudyPage::exportHtml(const QString& file) { write(file, true); }
-
 void StudyPage::write(const QString& target, bool html) {
   if (!study_ || busy()) return;
   state_->setText("Writing " + target + " …");  // short, and not to be broken off: half a file helps nobody
   work_.start([study = study_, database = document_->path(), target, html](LongWork::Control&) {
-    const std::string warning = html ? exportStudyHtml(*study, database, target.toStdString(), true)
-                                     : exportStudyCsv(*study, database, target.toStdString(), true);
+    const std::string warning = exportStudy(*study, database, target.toStdString(), html);
     return warning.empty() ? "Written: " + target : QString::fromStdString(warning);
   });
 }
@@ -408,11 +360,7 @@ void StudyPage::saveAs(bool html) {
   const QString target =
       html ? QFileDialog::getSaveFileName(this, "Write the study as a page", "study.html", "Pages (*.html)")
            : QFileDialog::getExistingDirectory(this, "Write study.csv, values.csv and flow.csv into");
-  if (target.isEmpty()) return;
-  if (html)
-    exportHtml(target);
-  else
-    exportCsv(target);
+  if (!target.isEmpty()) write(target, html);
 }
 
 }  // namespace calot::gui

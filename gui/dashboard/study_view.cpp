@@ -9,11 +9,9 @@
 #include "analytics/cohort/withdraw.h"
 #include "analytics/design/design_report.h"
 #include "analytics/report/masked_study.h"
-#include "analytics/report/page_html.h"
-#include "analytics/report/report_text.h"
-#include "analytics/report/study_coverage.h"
+#include "analytics/report/report_document.h"
 #include "analytics/report/study_output.h"
-#include "analytics/report/study_tables.h"
+#include "analytics/report/study_rows.h"
 #include "gui/words/problem_words.h"
 #include "recorder/base/errors.h"
 #include "recorder/base/text_output.h"
@@ -40,7 +38,7 @@ std::string tableText(const analytics::ReportTable& table) {
   std::string html = "<h3>" + analytics::escaped(table.title) +
                      "</h3><table cellspacing=\"0\" cellpadding=\"3\" border=\"0\">" + headRow;
   const auto right = [&](std::size_t column) {
-    return column < table.columns.size() && table.columns[column].second == analytics::TextTable::Align::right;
+    return column < table.columns.size() && table.columns[column].second == analytics::Align::right;
   };
   for (std::size_t c = 0; c < table.columns.size(); ++c) html += cell(table.columns[c].first, "th", right(c), true);
   html += "</tr>";
@@ -54,7 +52,7 @@ std::string tableText(const analytics::ReportTable& table) {
 
 std::string paragraph(const std::string& text) { return "<p>" + analytics::escaped(text) + "</p>"; }
 
-/// What of the database went out. @return a warning, or empty
+/// Registers the attempts that were exported. @return a warning, or empty
 std::string noteExport(const analytics::Study& study, const std::string& database, const std::string& kind,
                        const std::string& target) {
   try {
@@ -65,7 +63,7 @@ std::string noteExport(const analytics::Study& study, const std::string& databas
     analytics::recordExport(database, kind, target, attempts);
     return {};
   } catch (const Error& error) {
-    return "What was written is not noted for withdrawals: " + problemText(error);
+    return "The export could not be registered for later withdrawal: " + problemText(error);
   }
 }
 
@@ -78,24 +76,16 @@ StudyAnswer studyOf(const std::string& database, const StudyRequest& request,
       if (progress) progress(0.0, "checking the cohort");
       analytics::refuseUnsound(database);
     }
-    analytics::StudyOptions options;
-    options.grouping =
-        request.groupBy == GroupBy::profile ? analytics::Grouping::performer : analytics::Grouping::group;
-    options.includeSynthetic = request.includeSynthetic;
-    options.includePractice = request.includePractice;
-    options.key = request.key;
-    options.attemptRule = request.attemptRule;
+    analytics::StudyOptions options = request.options;
+    const bool chosen = std::count(options.groups.begin(), options.groups.end(), "") == 0;
+    if (!request.protocol.empty() || !chosen) options.groups.clear();
     const analytics::AssessmentDatabase assessment(database, Access::read);
-    if (!request.protocol.empty()) {
-      for (const analytics::RegisteredProtocol& p : assessment.protocols()) {
-        if (p.sha256 != request.protocol) continue;
-        const auto* bytes = reinterpret_cast<const std::byte*>(p.text.data());
-        analytics::ProtocolInUse use{
-            analytics::parseProtocol({bytes, p.text.size()}, p.name), assessment.protocols(p.name), {}};
-        options.protocol = std::move(use);
-      }
-    } else if (!request.first.empty() && !request.second.empty())
-      options.groups = {request.first, request.second};
+    for (const analytics::RegisteredProtocol& p : assessment.protocols()) {
+      if (p.sha256 != request.protocol) continue;
+      const auto* bytes = reinterpret_cast<const std::byte*>(p.text.data());
+      options.protocol = analytics::ProtocolInUse{
+          analytics::parseProtocol({bytes, p.text.size()}, p.name), assessment.protocols(p.name), {}};
+    }
     const analytics::CohortDatabase cohort(database, Access::read);
     if (options.protocol) return {analytics::makeProtocolStudy(cohort, assessment, options, false, progress), {}};
     analytics::Study study = analytics::makeStudy(cohort, options, progress);
@@ -106,10 +96,10 @@ StudyAnswer studyOf(const std::string& database, const StudyRequest& request,
   }
 }
 
-std::vector<std::string> groupsOf(const std::vector<analytics::AttemptRow>& attempts, GroupBy groupBy) {
+std::vector<std::string> groupsOf(const std::vector<analytics::AttemptRow>& attempts, analytics::Grouping grouping) {
   std::set<std::string> names;
   for (const analytics::AttemptRow& attempt : attempts) {
-    const std::string& name = groupBy == GroupBy::profile ? attempt.profile : attempt.group;
+    const std::string& name = grouping == analytics::Grouping::performer ? attempt.profile : attempt.group;
     if (!name.empty()) names.insert(name);
   }
   return {names.begin(), names.end()};
@@ -198,17 +188,13 @@ std::optional<analytics::Drawing> drawRoc(const RocCurve& curve, const std::stri
                                .frame = frame});
 }
 
-std::string exportStudyCsv(const analytics::Study& study, const std::string& database, const std::string& folder,
-                           bool force) {
-  analytics::writeStudyCsv(study, folder, force);
-  return noteExport(study, database, "study-csv", folder);
-}
-
-std::string exportStudyHtml(const analytics::Study& study, const std::string& database, const std::string& file,
-                            bool force) {
-  recorder::refuseOutput(file, force);
-  recorder::writeText(file, analytics::pageHtml(analytics::studyDocument(study)), force);
-  return noteExport(study, database, "study-html", file);
+std::string exportStudy(const analytics::Study& study, const std::string& database, const std::string& target,
+                        bool html) {
+  if (html)
+    recorder::writeText(target, analytics::pageHtml(analytics::studyDocument(study)), true);
+  else
+    analytics::writeStudyCsv(study, target, true);
+  return noteExport(study, database, html ? "study-html" : "study-csv", target);
 }
 
 }  // namespace calot::gui

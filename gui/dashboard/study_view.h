@@ -11,14 +11,8 @@
 
 namespace calot::gui {
 
-/// Choices made on the study page.
 struct StudyRequest {
-  GroupBy groupBy = GroupBy::group;  ///< group or profile
-  bool includeSynthetic = false;
-  bool includePractice = false;
-  std::string key;  ///< only attempts of this comparability key; empty: all, which must then have one
-  analytics::AttemptRule attemptRule = analytics::AttemptRule::first;
-  std::string first, second;  ///< groups to compare, or both empty: the only two that are there
+  analytics::StudyOptions options;  ///< groups: both empty for the only two that are there
   /// SHA-256 of a registered protocol, which makes all choices but the key; empty: none
   std::string protocol;
   bool check = true;  ///< the whole database first, as `calot cohort check`: a changed byte must not change a figure
@@ -35,7 +29,7 @@ StudyAnswer studyOf(const std::string& database, const StudyRequest& request,
                     const analytics::StudyProgress& progress = {});
 
 /// Groups that attempts have, by name, for the choice of two.
-std::vector<std::string> groupsOf(const std::vector<analytics::AttemptRow>& attempts, GroupBy groupBy);
+std::vector<std::string> groupsOf(const std::vector<analytics::AttemptRow>& attempts, analytics::Grouping grouping);
 
 /// Address under which a page shows the forest plot of studyText().
 inline constexpr const char* forestAddress = "study:forest";
@@ -66,12 +60,10 @@ RocCurve rocOf(const analytics::StudyRow& row);
 std::optional<analytics::Drawing> drawRoc(const RocCurve& curve, const std::string& title,
                                           const analytics::PlotFrame& frame);
 
-/// Writes as `calot study --csv` and `--html` do, and notes in the database whose attempts went out.
-/// @return a warning where that could not be noted, or empty
-/// @throws Error where a file cannot be written, or is there and `force` is not set.
-std::string exportStudyCsv(const analytics::Study& study, const std::string& database, const std::string& folder,
-                           bool force);
-std::string exportStudyHtml(const analytics::Study& study, const std::string& database, const std::string& file,
-                            bool force);
+/// Writes as `calot study --csv` (into a folder) or `--html` (a file) does, and notes in the database whose attempts
+/// went out. What is there is replaced. @return a warning where that could not be noted, or empty
+/// @throws Error where a file cannot be written
+std::string exportStudy(const analytics::Study& study, const std::string& database, const std::string& target,
+                        bool html);
 
 }  // namespace calot::gui

@@ -1,24 +1,122 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Actions on the selected attempts.
-// Dialogs of the dashboard.
-
+// Actions on the selected attempts, and pictures of the dashboard's pages for its documentation.
+#include <algorithm>
+#include <atomic>
 #include <filesystem>
+#include <map>
+#include <QCoreApplication>
+#include <QElapsedTimer>
+#include <QEventLoop>
 #include <QFileDialog>
 #include <QInputDialog>
+#include <QStackedWidget>
 #include <QTabWidget>
+#include <QUndoCommand>
 #include <QUndoStack>
 
 #include "gui/attempt/attempt_recording.h"
+#include "gui/dashboard/attempt_page.h"
 #include "gui/dashboard/attempts_page.h"
-#include "gui/dashboard/cohort_writer.h"
 #include "gui/dashboard/dashboard_window.h"
-#include "gui/dashboard/norm_dialog.h"
+#include "gui/dashboard/dialogs.h"
+#include "gui/dashboard/figure_panel.h"
+#include "gui/dashboard/figures_page.h"
+#include "gui/dashboard/import_queue.h"
 #include "gui/dashboard/pair_page.h"
+#include "gui/dashboard/ratings_page.h"
 #include "gui/dashboard/settings.h"
-#include "gui/words/problem_words.h"
+#include "gui/dashboard/study_page.h"
 #include "recorder/base/errors.h"
 
 namespace calot::gui {
+namespace {
+
+/// The person at the desk, who is asked for a pseudonym once; empty: cancelled.
+QString personWhoDecides(QWidget* window) {
+  const QString known = settings::person();
+  return known.isEmpty() ? QInputDialog::getText(window, "Who decides", "Your pseudonym:").trimmed() : known;
+}
+
+/// Decisions of a person about attempts, and their reversal; the database notes both.
+class DecisionCommand : public QUndoCommand {
+ public:
+  using Change = CohortWriter::Change;
+  /// @param writer outlives this
+  DecisionCommand(CohortWriter& writer, std::string database, const QString& text, Change redo, Change undo)
+      : QUndoCommand(text),
+        writer_(writer),
+        database_(std::move(database)),
+        redo_(std::move(redo)),
+        undo_(std::move(undo)) {}
+  void redo() override { write(redo_); }
+  void undo() override { write(undo_); }
+
+ private:
+  void write(const Change& change) {
+    if (*failed_) {
+      setObsolete(true);  // what could not be done leaves nothing to undo
+      return;
+    }
+    const auto apply = [failed = failed_, change](analytics::CohortDatabase& cohort) {
+      if (!*failed) change(cohort);
+    };
+    writer_.write(database_, apply, [failed = failed_] { *failed = true; });
+  }
+
+  CohortWriter& writer_;
+  std::string database_;
+  Change redo_, undo_;
+  std::shared_ptr<std::atomic<bool>> failed_ = std::make_shared<std::atomic<bool>>(false);  ///< by the writer's thread
+};
+
+/// The person who decides, the attempts and their database.
+struct Decision {
+  std::string database, by;
+  std::vector<analytics::AttemptRow> attempts;
+};
+
+/// Keeps the attempts out of studies, or takes that back.
+DecisionCommand* exclusionCommand(CohortWriter& writer, const Decision& decision, bool exclude,
+                                  const std::string& reason) {
+  std::vector<std::string> uuids;
+  for (const analytics::AttemptRow& attempt : decision.attempts) uuids.push_back(attempt.uuid);
+  const std::string by = decision.by;
+  if (exclude) {
+    return new DecisionCommand(
+        writer, decision.database, "exclusion",
+        [=](analytics::CohortDatabase& cohort) { cohort.excludeAttempts(uuids, reason, by); },
+        [=](analytics::CohortDatabase& cohort) { cohort.includeAttempts(uuids, "undone: " + reason, by); });
+  }
+  std::map<std::string, std::vector<std::string>> former;  // reason -> attempts
+  for (const analytics::AttemptRow& attempt : decision.attempts)
+    former[attempt.exclusionReason].push_back(attempt.uuid);
+  return new DecisionCommand(
+      writer, decision.database, "inclusion",
+      [=](analytics::CohortDatabase& cohort) { cohort.includeAttempts(uuids, reason, by); },
+      [=](analytics::CohortDatabase& cohort) {
+        for (const auto& [why, attempts] : former) cohort.excludeAttempts(attempts, why, by);
+      });
+}
+
+/// Puts a tag on those attempts that do not have it, or takes it off those that do.
+DecisionCommand* tagCommand(CohortWriter& writer, const Decision& decision, bool add, const std::string& tag) {
+  std::vector<std::string> uuids;
+  for (const analytics::AttemptRow& attempt : decision.attempts) {
+    const bool has = std::find(attempt.tags.begin(), attempt.tags.end(), tag) != attempt.tags.end();
+    if (has != add) uuids.push_back(attempt.uuid);
+  }
+  const auto change = [uuids, tag, by = decision.by](bool put) -> DecisionCommand::Change {
+    return [=](analytics::CohortDatabase& cohort) {
+      if (put)
+        cohort.tagAttempts(uuids, tag, by);
+      else
+        cohort.untagAttempts(uuids, tag, by);
+    };
+  };
+  return new DecisionCommand(writer, decision.database, add ? "tag" : "removal of a tag", change(add), change(!add));
+}
+
+}  // namespace
 
 std::vector<analytics::AttemptRow> DashboardWindow::chosenAttempts() const {
   std::vector<analytics::AttemptRow> chosen = attempts_->selectedAll();
@@ -34,13 +132,13 @@ void DashboardWindow::excludeOrInclude(const QString& reason, const QString& by)
   // Those that are so already stay as they are.
   std::erase_if(decision.attempts,
                 [&](const analytics::AttemptRow& a) { return a.withdrawn || a.excluded == exclude; });
-  undo_->push(exclusionCommand(writer_, decision, exclude, reason.toStdString()).release());
+  undo_->push(exclusionCommand(writer_, decision, exclude, reason.toStdString()));
 }
 
 void DashboardWindow::tagSelected(const QString& tag, bool add, const QString& by) {
   if (attempts_->selected() == nullptr) return;
   const Decision decision{document_->path(), by.toStdString(), chosenAttempts()};
-  undo_->push(tagCommand(writer_, decision, add, tag.toStdString()).release());
+  undo_->push(tagCommand(writer_, decision, add, tag.toStdString()));
 }
 
 void DashboardWindow::verifySelected() {
@@ -91,8 +189,7 @@ void DashboardWindow::askForRecordings() {
 void DashboardWindow::askForExclusion() {
   const analytics::AttemptRow* attempt = attempts_->selected();
   if (attempt == nullptr) return;
-  QString by = settings::person();
-  if (by.isEmpty()) by = QInputDialog::getText(this, "Who decides", "Your pseudonym:").trimmed();
+  const QString by = personWhoDecides(this);
   if (by.isEmpty()) return;
   const QString what = attempt->excluded ? "Include in studies again" : "Exclude from studies";
   const QString reason = QInputDialog::getText(this, what, "Reason, for the record:").trimmed();
@@ -108,9 +205,7 @@ void DashboardWindow::askForTag(bool add) {
   if (add) {
     words = document_->lines()->tags();
   } else {
-    for (const analytics::AttemptRow& attempt : chosen) {
-      for (const std::string& tag : attempt.tags) words += QString::fromStdString(tag);
-    }
+    for (const analytics::AttemptRow& attempt : chosen) words += textsOf(attempt.tags);
     words.removeDuplicates();
     words.sort();
     if (words.isEmpty()) {
@@ -118,8 +213,7 @@ void DashboardWindow::askForTag(bool add) {
       return;
     }
   }
-  QString by = settings::person();
-  if (by.isEmpty()) by = QInputDialog::getText(this, "Who decides", "Your pseudonym:").trimmed();
+  const QString by = personWhoDecides(this);
   if (by.isEmpty()) return;
   bool agreed = false;
   const QString what = chosen.size() == 1 ? "this attempt" : QString("%1 attempts").arg(chosen.size());
@@ -128,10 +222,8 @@ void DashboardWindow::askForTag(bool add) {
                                             words, 0, add, &agreed)
                           .trimmed();
   if (!agreed || tag.isEmpty()) return;
-  try {
-    analytics::checkTag(tag.toStdString());
-  } catch (const Error& error) {
-    showProblem(QString::fromStdString(problemText(error)));
+  if (const QString fault = faultOf([&] { analytics::checkTag(tag.toStdString()); }); !fault.isEmpty()) {
+    showProblem(fault);
     return;
   }
   settings::setPerson(by);
@@ -147,9 +239,72 @@ void DashboardWindow::askForNorm() {
   dialog.exec();
 }
 
-void DashboardWindow::showSettings() {
-  SettingsDialog dialog(this);
-  dialog.exec();
+namespace {
+
+constexpr qint64 maxWaiting = 120000;  // ms for a page to have read what it shows
+constexpr int settleTime = 1500;       // ms for pictures and animations to be on the screen
+
+void waitFor(const std::function<bool()>& condition) {
+  QElapsedTimer clock;
+  clock.start();
+  // Recently requested work may not have begun: the condition must hold for a while.
+  qint64 since = -1;
+  while (clock.elapsed() < maxWaiting && (since < 0 || clock.elapsed() < since + settleTime)) {
+    QCoreApplication::processEvents(QEventLoop::AllEvents, 50);
+    if (!condition())
+      since = -1;
+    else if (since < 0)
+      since = clock.elapsed();
+  }
+}
+
+void savePicture(QWidget& page, const QString& file) {
+  QCoreApplication::processEvents();
+  if (!page.grab().save(file, "PNG"))
+    throw Error(ErrorKind::failure, Where{file.toStdString()}, "cannot write the picture; does the folder exist?");
+}
+
+}  // namespace
+
+void DashboardWindow::savePictures(const QString& folder) {
+  const auto save = [&](QWidget* page, const char* name, const std::function<bool()>& ready) {
+    if (page != nullptr) tabs_->setCurrentWidget(page);
+    waitFor(ready);
+    savePicture(*this, folder + '/' + name);
+  };
+  const auto atOnce = [] { return true; };
+  if (stack_->currentWidget() == greeting_) {
+    save(nullptr, "greeting.png", atOnce);
+    return;
+  }
+  save(attempts_, "attempts.png", atOnce);
+  tabs_->setCurrentWidget(attempt_);
+  waitFor([this] { return attempt_->settled(); });
+  attempt_->figures().showWorst();
+  save(attempt_, "attempt.png", [this] { return attempt_->settled(); });
+  save(compare_, "compare.png", [this] { return compare_->ready(); });
+  bool studied = false;
+  const auto told = connect(study_, &StudyPage::studyShown, this, [&] { studied = true; });
+  save(study_, "study.png", [&] { return studied; });
+  disconnect(told);
+  save(trainee_, "trainee.png", [this] { return trainee_->ready(); });
+  tabs_->setCurrentWidget(pair_);
+  pair_->chooseTwo();
+  waitFor([this] { return pair_->settled(); });
+  pair_->showMiddle();
+  save(pair_, "pair.png", [this] { return pair_->settled(); });
+  rating_->chooseForm("goals");
+  save(rating_, "ratings.png", [this] { return rating_->settled(); });
+  const auto saveDialog = [&](QDialog& dialog, const char* name) {
+    dialog.show();
+    waitFor(atOnce);
+    savePicture(dialog, folder + '/' + name);
+    dialog.hide();
+  };
+  NormDialog norm(document_, {}, this);
+  saveDialog(norm, "norm.png");
+  SettingsDialog settings(this);
+  saveDialog(settings, "settings.png");
 }
 
 }  // namespace calot::gui

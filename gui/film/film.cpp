@@ -8,23 +8,19 @@
 #include <cstddef>
 #include <memory>
 #include <string>
-#include <system_error>
-#include <utility>
 #include <vector>
 
-#include "gui/film/film_source.h"
 #include "gui/film/film_writer.h"
 #include "gui/film/look_ahead.h"
-#include "gui/render/png_file.h"
+#include "gui/film/overlay.h"
+#include "gui/render/image.h"
 #include "gui/render/renderer.h"
 #include "recorder/base/errors.h"
+#include "recorder/kept/engine_folders.h"
 #include "recorder/prepared_scene.h"
-
-extern "C" {
-#include <libavcodec/avcodec.h>
-#include <libavformat/avformat.h>
-#include <libavutil/log.h>
-}
+#include "recorder/recording/layout.h"
+#include "recorder/replay.h"
+#include "sim/scene/version.h"
 
 namespace calot::gui {
 namespace {
@@ -63,6 +59,85 @@ void paste(const Image& from, int x, Image& to) {
                 to.rgba.begin() + 4 * (static_cast<std::ptrdiff_t>(y) * to.width + x));
 }
 
+/// Views of one recording in ascending order of time, re-simulated from the nearest keyframe or from the previous view.
+class FilmSource {
+ public:
+  struct Scene {
+    SceneView view;
+    Moment moment;
+    std::string doubt;  ///< why it is not what was recorded, for a mark; or empty
+  };
+
+  /// @pre the recording holds a step
+  /// @throws calot::Error: damaged where the file cannot be read, or its scene cannot be built; invalid where an
+  /// overlay needs what a golden recording has not; undecided where no engine of its version is here and `anyway` is
+  /// not set
+  FilmSource(const std::filesystem::path& recording, const FilmSettings& settings)
+      : recording_(recording),
+        anyway_(settings.anyway),
+        foreign_(isForeign(recording_.header().simulationVersion)),
+        seeker_(recording_, recorder::EngineChoice(recording_, {.anyway = anyway_ && foreign_})) {
+    if (settings.overlays.needTrack() || !recorder::isMinimal(recording_.header()))
+      track_ = std::make_unique<MomentTrack>(recording, settings.overlays.checkpoints);
+  }
+
+  [[nodiscard]] double seconds() const { return recording_.seconds(); }
+
+  /// After the step that begins at a time, or the last one. @pre 0 <= time <= seconds(), and not before the last call's
+  /// @throws calot::Error: damaged; refused where re-simulation comes to another State than was recorded and `anyway`
+  /// is not set
+  [[nodiscard]] Scene at(double time) {
+    const recorder::AttemptHeader& header = recording_.header();
+    const double stepSeconds = header.tickSeconds * header.ticksPerStep;
+    // Times are multiples of a frame's: a rounding error must not show the step before.
+    const auto begun = static_cast<std::uint64_t>(std::max(std::floor(time / stepSeconds + 1e-6), 0.0));
+    const std::uint64_t step = std::min(begun, recording_.stepCount() - 1);
+    seeker_.seek(step);
+    Scene scene;
+    scene.view = seeker_.view();
+    if (foreign_) {
+      scene.doubt =
+          fmt::format("NOT AS RECORDED: by version {}, shown by {}", header.simulationVersion, simulationVersion);
+    } else if (const auto& differs = seeker_.differsFrom()) {
+      if (!anyway_)
+        throw Error(ErrorKind::refused, Where{recording_.path().string()},
+                    fmt::format("diverged at step {}: from there on another operation would be shown", *differs),
+                    {Remedy::replayAnyway});
+      scene.doubt = fmt::format("NOT AS RECORDED: differs from step {} on", *differs);
+    }
+    if (track_)
+      scene.moment = track_->at(step);
+    else
+      scene.moment.time = static_cast<double>(step + 1) * stepSeconds;
+    return scene;
+  }
+
+  /// "synthetic: performer skilled", "kinematics", or empty for a human operator.
+  /// @param blinded "synthetic" alone, without the profile
+  [[nodiscard]] std::string mark(bool blinded) const {
+    const recorder::Provenance& source = recording_.header().provenance;
+    if (source.kind == recorder::OperatorKind::human) return "";
+    if (source.kind == recorder::OperatorKind::kinematics) return "from recorded kinematics";
+    return blinded ? "synthetic" : "synthetic: performer " + source.profile;
+  }
+  /// Operator for a title: pseudonym or the file's name.
+  [[nodiscard]] std::string title() const {
+    const std::string& participant = recording_.header().participant;
+    return participant.empty() ? recording_.path().stem().string() : participant;
+  }
+
+ private:
+  /// No engine of the recording's version is here: this program's own shows another operation.
+  static bool isForeign(std::uint32_t version) {
+    return version != simulationVersion && recorder::commandOfEngine(version).empty();
+  }
+
+  recorder::Recording recording_;
+  bool anyway_, foreign_;
+  recorder::Seeker seeker_;
+  std::unique_ptr<MomentTrack> track_;
+};
+
 /// One or two recordings, frame by frame. One thread may call at() while another calls draw().
 class Cutter {
  public:
@@ -81,27 +156,23 @@ class Cutter {
     Scenes scenes;
     for (std::size_t s = 0; s < sources_.size(); ++s) {
       const double own = s == 0 || course_.own.empty() ? time : timeBeside(course_, time);
-      scenes.push_back(sources_[s]->at(sources_[s]->stepAt(own)));
+      scenes.push_back(sources_[s]->at(own));
     }
     return scenes;
   }
 
   [[nodiscard]] Image draw(const Scenes& scenes) {
     const int width = settings_.size.width / static_cast<int>(scenes.size()), height = settings_.size.height;
-    RenderSettings quality;
-    quality.quality = settings_.quality;
-    Image whole;
+    Image whole{settings_.size.width, height, {}};
+    if (scenes.size() > 1)
+      whole.rgba.resize(4 * static_cast<std::size_t>(whole.width) * static_cast<std::size_t>(height));
     for (std::size_t s = 0; s < scenes.size(); ++s) {
-      Image image = renderer_.render(scenes[s].view, width, height, quality, scenes[s].moment.smoke);
+      Image image =
+          renderer_.render(scenes[s].view, width, height, {.quality = settings_.quality}, scenes[s].moment.smoke);
       Captions captions = captions_[s];
       captions.doubt = scenes[s].doubt.empty() ? settings_.doubt : scenes[s].doubt;
       letters_.paint(image, settings_.overlays, scenes[s].moment, scenes[s].view, captions);
       if (scenes.size() == 1) return image;
-      if (s == 0) {
-        whole.width = settings_.size.width;
-        whole.height = height;
-        whole.rgba.resize(4 * static_cast<std::size_t>(whole.width) * static_cast<std::size_t>(height));
-      }
       paste(image, static_cast<int>(s) * width, whole);
     }
     return whole;
@@ -109,7 +180,7 @@ class Cutter {
 
  private:
   void add(const std::filesystem::path& recording) {
-    sources_.push_back(std::make_unique<FilmSource>(recording, settings_.overlays, settings_.anyway));
+    sources_.push_back(std::make_unique<FilmSource>(recording, settings_));
     const FilmSource& source = *sources_.back();
     captions_.push_back({settings_.beside ? source.title() : "", source.mark(settings_.blinded), ""});
   }
@@ -192,93 +263,6 @@ ShownMoment writeMoment(const std::filesystem::path& recording, const std::files
   const Cutter::Scenes scenes = cutter.at(settings.from);
   writePng(cutter.draw(scenes), output);
   return {scenes[0].view.step - 1, scenes[0].view.time};
-}
-
-namespace {
-
-struct CloseFilm {
-  void operator()(AVFormatContext* p) const { avformat_close_input(&p); }
-};
-struct FreeCopy {
-  void operator()(AVFormatContext* p) const {
-    if (p->pb != nullptr) avio_closep(&p->pb);
-    avformat_free_context(p);
-  }
-  void operator()(AVPacket* p) const { av_packet_free(&p); }
-};
-
-std::string wordsOf(int error) {
-  std::array<char, AV_ERROR_MAX_STRING_SIZE> text{};
-  av_strerror(error, text.data(), text.size());
-  return text.data();
-}
-
-void needFilm(int result, const std::filesystem::path& film) {
-  if (result < 0) {
-    throw Error(ErrorKind::damaged, Where{film.string()}, fmt::format("cannot be read as a film: {}", wordsOf(result)));
-  }
-}
-
-void needCopy(int result, const std::filesystem::path& output) {
-  if (result < 0)
-    throw Error(ErrorKind::failure, Where{output.string()},
-                fmt::format("the film cannot be written: {}", wordsOf(result)));
-}
-
-void copyPictures(const std::filesystem::path& film, const std::filesystem::path& output) {
-  av_log_set_level(AV_LOG_QUIET);  // errors are reported by return values
-  AVFormatContext* opened = nullptr;
-  needFilm(avformat_open_input(&opened, film.c_str(), nullptr, nullptr), film);
-  const std::unique_ptr<AVFormatContext, CloseFilm> input(opened);
-  needFilm(avformat_find_stream_info(input.get(), nullptr), film);
-  const int pictures = av_find_best_stream(input.get(), AVMEDIA_TYPE_VIDEO, -1, -1, nullptr, 0);
-  needFilm(pictures, film);
-  const AVStream* const from = input->streams[pictures];
-
-  AVFormatContext* made = nullptr;
-  needCopy(avformat_alloc_output_context2(&made, nullptr, "mp4", output.c_str()), output);
-  const std::unique_ptr<AVFormatContext, FreeCopy> copy(made);
-  copy->flags |= AVFMT_FLAG_BITEXACT;  // neither date nor program
-  AVStream* const to = avformat_new_stream(copy.get(), nullptr);
-  if (to == nullptr) throw Error(ErrorKind::failure, Where{output.string()}, "not enough memory");
-  needCopy(avcodec_parameters_copy(to->codecpar, from->codecpar), output);
-  to->codecpar->codec_tag = 0;  // MP4's own, whatever the other container had
-  to->time_base = from->time_base;
-  to->avg_frame_rate = from->avg_frame_rate;
-  if (avformat_query_codec(copy->oformat, to->codecpar->codec_id, FF_COMPLIANCE_NORMAL) != 1) {
-    throw Error(ErrorKind::damaged, Where{film.string()},
-                "its pictures cannot be in MP4, which browsers play; encode them as H.264");
-  }
-  needCopy(avio_open(&copy->pb, output.c_str(), AVIO_FLAG_WRITE), output);
-  needCopy(avformat_write_header(copy.get(), nullptr), output);
-  const std::unique_ptr<AVPacket, FreeCopy> packet(av_packet_alloc());
-  if (!packet) throw Error(ErrorKind::failure, Where{output.string()}, "not enough memory");
-  while (true) {
-    const int result = av_read_frame(input.get(), packet.get());
-    if (result == AVERROR_EOF) break;
-    needFilm(result, film);
-    if (packet->stream_index == pictures) {
-      packet->stream_index = to->index;
-      av_packet_rescale_ts(packet.get(), from->time_base, to->time_base);
-      packet->pos = -1;
-      needCopy(av_interleaved_write_frame(copy.get(), packet.get()), output);
-    }
-    av_packet_unref(packet.get());
-  }
-  needCopy(av_write_trailer(copy.get()), output);
-  needCopy(avio_closep(&copy->pb), output);
-}
-
-}  // namespace
-
-void copyCleanFilm(const std::filesystem::path& film, const std::filesystem::path& output) {
-  try {
-    copyPictures(film, output);
-  } catch (...) {
-    std::error_code ignored;
-    std::filesystem::remove(output, ignored);
-    throw;
-  }
 }
 
 }  // namespace calot::gui

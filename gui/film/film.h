@@ -9,7 +9,7 @@
 #include <string>
 
 #include "gui/film/overlay.h"
-#include "gui/render/png_file.h"
+#include "gui/render/image.h"
 #include "gui/render/renderer.h"
 
 namespace calot::gui {
@@ -65,12 +65,5 @@ struct ShownMoment {
 /// @throws calot::Error as writeFilm()
 ShownMoment writeMoment(const std::filesystem::path& recording, const std::filesystem::path& output,
                         const FilmSettings& settings);
-
-/// Copies a film's pictures as they are encoded into a new MP4 file, and nothing else: no title, date, place, name of a
-/// device or program, no chapters, and no sound, in which people may be named.
-/// @param output does not exist
-/// @throws calot::Error: damaged where the film cannot be read or its pictures cannot be in MP4; failure where the file
-/// cannot be written. Nothing is left behind then.
-void copyCleanFilm(const std::filesystem::path& film, const std::filesystem::path& output);
 
 }  // namespace calot::gui

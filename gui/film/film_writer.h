@@ -42,4 +42,11 @@ class FilmWriter {
   std::unique_ptr<Impl> impl_;
 };
 
+/// Copies a film's pictures as they are encoded into a new MP4 file, and nothing else: no title, date, place, name of a
+/// device or program, no chapters, and no sound, in which people may be named.
+/// @param output does not exist
+/// @throws calot::Error: damaged where the film cannot be read or its pictures cannot be in MP4; failure where the file
+/// cannot be written. Nothing is left behind then.
+void copyCleanFilm(const std::filesystem::path& film, const std::filesystem::path& output);
+
 }  // namespace calot::gui

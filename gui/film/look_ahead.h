@@ -8,6 +8,7 @@
 #include <exception>
 #include <functional>
 #include <mutex>
+#include <stop_token>
 #include <thread>
 #include <utility>
 
@@ -19,17 +20,7 @@ class LookAhead {
  public:
   /// @param make is called for 0 to count - 1, on the thread, until one throws or this is destroyed
   LookAhead(std::uint64_t count, std::function<Thing(std::uint64_t)> make)
-      : thread_([this, count, make = std::move(make)] { run(count, make); }) {}
-  ~LookAhead() {
-    {
-      const std::lock_guard<std::mutex> lock(mutex_);
-      stopping_ = true;
-    }
-    changed_.notify_all();
-    thread_.join();
-  }
-  LookAhead(const LookAhead&) = delete;
-  LookAhead& operator=(const LookAhead&) = delete;
+      : thread_([this, count, make = std::move(make)](const std::stop_token& stop) { run(count, make, stop); }) {}
 
   /// Waits for the next item. Rethrows an exception of `make`. @pre fewer than `count` were taken
   Thing next() {
@@ -46,30 +37,28 @@ class LookAhead {
  private:
   static constexpr std::size_t ahead = 4;
 
-  void run(std::uint64_t count, const std::function<Thing(std::uint64_t)>& make) {
-    for (std::uint64_t k = 0; k < count; ++k) {
-      try {
+  void run(std::uint64_t count, const std::function<Thing(std::uint64_t)>& make, const std::stop_token& stop) {
+    try {
+      for (std::uint64_t k = 0; k < count; ++k) {
         Thing thing = make(k);
         std::unique_lock<std::mutex> lock(mutex_);
-        changed_.wait(lock, [this] { return stopping_ || ready_.size() < ahead; });
-        if (stopping_) return;
+        if (!changed_.wait(lock, stop, [this] { return ready_.size() < ahead; }) || stop.stop_requested()) return;
         ready_.push_back(std::move(thing));
-      } catch (...) {
-        const std::lock_guard<std::mutex> lock(mutex_);
-        fault_ = std::current_exception();
+        lock.unlock();
+        changed_.notify_all();
       }
-      changed_.notify_all();
+    } catch (...) {
       const std::lock_guard<std::mutex> lock(mutex_);
-      if (fault_) return;
+      fault_ = std::current_exception();
+      changed_.notify_all();
     }
   }
 
   std::mutex mutex_;
-  std::condition_variable changed_;
+  std::condition_variable_any changed_;
   std::deque<Thing> ready_;
   std::exception_ptr fault_;
-  bool stopping_ = false;
-  std::thread thread_;  ///< last: it uses all of the above
+  std::jthread thread_;  ///< last: it uses all of the above
 };
 
 }  // namespace calot::gui

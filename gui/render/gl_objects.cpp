@@ -2,11 +2,27 @@
 #include "gui/render/gl_objects.h"
 
 #include <fmt/format.h>
+#include <array>
+#include <string_view>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "recorder/base/errors.h"
 
 namespace calot::gui {
+
+GlFunctions::GlFunctions(const GraphicsContext& context) {
+  const auto load = [&](auto& function, const char* name) {
+    const auto found = context.function(name);
+    if (found == nullptr)
+      throw Error(ErrorKind::failure, fmt::format("rendering: this OpenGL has no {}; install a newer Mesa", name));
+    function = reinterpret_cast<std::remove_reference_t<decltype(function)>>(found);
+  };
+#define CALOT_GL_LOAD(Name) load(Name, "gl" #Name);
+  CALOT_GL_FUNCTIONS(CALOT_GL_LOAD)
+#undef CALOT_GL_LOAD
+}
 
 RenderTarget::RenderTarget(const GlFunctions& gl, int width, int height, const Layout& layout)
     : gl_(gl), width_(width), height_(height) {
@@ -100,51 +116,36 @@ void TriangleBuffer::draw(std::size_t firstIndex, std::size_t indexCount) const 
 
 namespace {
 
-[[noreturn]] void fail(const char* name, const std::string& log) {
-  throw Error(ErrorKind::failure, std::string("rendering: shader '") + name +
-                                      "' is refused by this OpenGL: " + log.substr(0, log.find('\n')));
-}
-
-GLuint compile(const GlFunctions& gl, const char* name, GLenum kind,
-               const std::initializer_list<const char*>& sources) {
-  std::vector<const char*> text{"#version 450 core\n"};
-  text.insert(text.end(), sources.begin(), sources.end());
-  const GLuint shader = gl.CreateShader(kind);
-  gl.ShaderSource(shader, static_cast<GLsizei>(text.size()), text.data(), nullptr);
-  gl.CompileShader(shader);
-  GLint compiled = GL_FALSE;
-  gl.GetShaderiv(shader, GL_COMPILE_STATUS, &compiled);
-  if (compiled == GL_TRUE) return shader;
-  std::string log(2000, '\0');
+/// @param get, log the functions for this kind of object, @param wanted its status that must be true
+void check(const char* name, GLuint object, GLenum wanted, PFNGLGETSHADERIVPROC get, PFNGLGETSHADERINFOLOGPROC log) {
+  GLint good = GL_FALSE;
+  get(object, wanted, &good);
+  if (good == GL_TRUE) return;
+  std::array<char, 2000> text{};
   GLsizei length = 0;
-  gl.GetShaderInfoLog(shader, static_cast<GLsizei>(log.size()), &length, log.data());
-  gl.DeleteShader(shader);
-  log.resize(static_cast<std::size_t>(length));
-  fail(name, log);
+  log(object, static_cast<GLsizei>(text.size()), &length, text.data());
+  const std::string_view all(text.data(), static_cast<std::size_t>(length));
+  throw Error(ErrorKind::failure,
+              fmt::format("rendering: shader '{}' is refused by this OpenGL: {}", name, all.substr(0, all.find('\n'))));
 }
 
 }  // namespace
 
 ShaderProgram::ShaderProgram(const GlFunctions& gl, const char* name, std::initializer_list<const char*> vertex,
                              std::initializer_list<const char*> fragment)
-    : gl_(gl) {
-  const GLuint vertexShader = compile(gl, name, GL_VERTEX_SHADER, vertex);
-  const GLuint fragmentShader = compile(gl, name, GL_FRAGMENT_SHADER, fragment);
-  program_ = gl.CreateProgram();
-  gl.AttachShader(program_, vertexShader);
-  gl.AttachShader(program_, fragmentShader);
+    : gl_(gl), program_(gl.CreateProgram()) {
+  for (const auto& [kind, sources] : {std::pair(GL_VERTEX_SHADER, vertex), {GL_FRAGMENT_SHADER, fragment}}) {
+    std::vector<const char*> text{"#version 450 core\n"};
+    text.insert(text.end(), sources.begin(), sources.end());
+    const GLuint shader = gl.CreateShader(static_cast<GLenum>(kind));
+    gl.ShaderSource(shader, static_cast<GLsizei>(text.size()), text.data(), nullptr);
+    gl.CompileShader(shader);
+    check(name, shader, GL_COMPILE_STATUS, gl.GetShaderiv, gl.GetShaderInfoLog);
+    gl.AttachShader(program_, shader);
+    gl.DeleteShader(shader);  // with the program
+  }
   gl.LinkProgram(program_);
-  gl.DeleteShader(vertexShader);
-  gl.DeleteShader(fragmentShader);
-  GLint linked = GL_FALSE;
-  gl.GetProgramiv(program_, GL_LINK_STATUS, &linked);
-  if (linked == GL_TRUE) return;
-  std::string log(2000, '\0');
-  GLsizei length = 0;
-  gl.GetProgramInfoLog(program_, static_cast<GLsizei>(log.size()), &length, log.data());
-  gl.DeleteProgram(program_);
-  log.resize(static_cast<std::size_t>(length));
-  fail(name, log);
+  check(name, program_, GL_LINK_STATUS, gl.GetProgramiv, gl.GetProgramInfoLog);
 }
 
 ShaderProgram::~ShaderProgram() { gl_.DeleteProgram(program_); }

@@ -1,16 +1,44 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <array>
+#define GL_GLEXT_PROTOTYPES  // for the functions' types
+#include <GL/gl.h>
+#include <GL/glext.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <initializer_list>
-#include <string>
 #include <vector>
 
-#include "gui/render/gl_functions.h"
+#include "gui/render/graphics.h"
+
+// clang-format off
+/// The OpenGL 4.5 functions that the renderer uses.
+#define CALOT_GL_FUNCTIONS(ENTRY)                                                                                     \
+  ENTRY(ActiveTexture) ENTRY(AttachShader) ENTRY(BindBuffer) ENTRY(BindFramebuffer) ENTRY(BindTexture)                \
+  ENTRY(BindVertexArray) ENTRY(BlendFunc) ENTRY(BufferData) ENTRY(CheckFramebufferStatus) ENTRY(Clear)                \
+  ENTRY(ClearColor) ENTRY(CompileShader) ENTRY(CreateProgram) ENTRY(CreateShader) ENTRY(DeleteBuffers)                \
+  ENTRY(DeleteFramebuffers) ENTRY(DeleteProgram) ENTRY(DeleteShader) ENTRY(DeleteTextures)                            \
+  ENTRY(DeleteVertexArrays) ENTRY(DepthFunc) ENTRY(DepthMask) ENTRY(Disable) ENTRY(DrawArrays) ENTRY(DrawBuffers)     \
+  ENTRY(DrawElements) ENTRY(Enable) ENTRY(EnableVertexAttribArray) ENTRY(FramebufferTexture2D) ENTRY(FrontFace)       \
+  ENTRY(GenBuffers) ENTRY(GenFramebuffers) ENTRY(GenTextures) ENTRY(GenVertexArrays) ENTRY(GenerateMipmap)            \
+  ENTRY(GetError) ENTRY(GetProgramInfoLog) ENTRY(GetProgramiv) ENTRY(GetShaderInfoLog) ENTRY(GetShaderiv)             \
+  ENTRY(GetString) ENTRY(GetUniformLocation) ENTRY(LinkProgram) ENTRY(PixelStorei) ENTRY(ReadPixels) ENTRY(Scissor)   \
+  ENTRY(ShaderSource) ENTRY(TexImage2D) ENTRY(TexImage3D) ENTRY(TexParameteri) ENTRY(TexStorage2D) ENTRY(Uniform1f)   \
+  ENTRY(Uniform1i) ENTRY(Uniform2f) ENTRY(Uniform3f) ENTRY(UseProgram) ENTRY(VertexAttribPointer) ENTRY(Viewport)
+// clang-format on
 
 namespace calot::gui {
+
+/// They are loaded through the context: no loader library works with every off-screen context.
+struct GlFunctions {
+#define CALOT_GL_MEMBER(Name) decltype(&gl##Name) Name = nullptr;
+  CALOT_GL_FUNCTIONS(CALOT_GL_MEMBER)
+#undef CALOT_GL_MEMBER
+
+  /// @pre the context is current. @throws calot::Error (failure) naming the first function that is missing.
+  explicit GlFunctions(const GraphicsContext& context);
+};
 
 /// A framebuffer with colour textures and an optional depth texture; all sampled with clamping to the edge.
 class RenderTarget {
@@ -74,9 +102,6 @@ class TriangleBuffer {
   GLuint vertexArray_ = 0, vertexBuffer_ = 0, indexBuffer_ = 0;
 };
 
-/// Column-major 4 x 4 matrix as OpenGL takes it.
-using Matrix4 = std::array<float, 16>;
-
 /// A linked pair of vertex and fragment shader.
 class ShaderProgram {
  public:
@@ -94,7 +119,6 @@ class ShaderProgram {
   void set(const char* name, float value) const { gl_.Uniform1f(location(name), value); }
   void set(const char* name, float x, float y) const { gl_.Uniform2f(location(name), x, y); }
   void set(const char* name, float x, float y, float z) const { gl_.Uniform3f(location(name), x, y, z); }
-  void set(const char* name, const Matrix4& m) const { gl_.UniformMatrix4fv(location(name), 1, GL_FALSE, m.data()); }
 
  private:
   [[nodiscard]] GLint location(const char* name) const { return gl_.GetUniformLocation(program_, name); }

@@ -14,7 +14,6 @@
 #include <string>
 #include <vector>
 
-#include "gui/render/graphics_context.h"
 #include "recorder/base/errors.h"
 
 namespace calot::gui {
@@ -32,17 +31,6 @@ Graphics graphicsFrom(std::string_view word) {
   return static_cast<Graphics>(found - words.begin());
 }
 
-std::unique_ptr<GraphicsContext> createContext(Graphics graphics) {
-  switch (graphics) {
-    case Graphics::card:
-      return createDeviceContext(DeviceKind::card);
-    case Graphics::deviceSoftware:
-      return createDeviceContext(DeviceKind::software);
-    default:
-      return createSoftwareContext();
-  }
-}
-
 namespace {
 
 template <class Function>
@@ -55,16 +43,10 @@ bool names(const char* list, const std::string& word) {
   return list != nullptr && fmt::format(" {} ", list).find(fmt::format(" {} ", word)) != std::string::npos;
 }
 
-struct Device {
-  EGLDeviceEXT id = nullptr;
-  bool software = false;  ///< it has no card behind it
-};
-
-/// All devices of this machine; none where EGL cannot list them.
-std::vector<Device> devices() {
-  if (!names(eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS), "EGL_EXT_device_base") &&
-      !names(eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS), "EGL_EXT_device_enumeration"))
-    return {};
+/// The devices of this machine with a card behind them, or those without; none where EGL cannot list them.
+std::vector<EGLDeviceEXT> devices(bool software) {
+  const char* const extensions = eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
+  if (!names(extensions, "EGL_EXT_device_base") && !names(extensions, "EGL_EXT_device_enumeration")) return {};
   const auto list = extension<PFNEGLQUERYDEVICESEXTPROC>("eglQueryDevicesEXT");
   const auto text = extension<PFNEGLQUERYDEVICESTRINGEXTPROC>("eglQueryDeviceStringEXT");
   EGLint count = 0;
@@ -72,11 +54,10 @@ std::vector<Device> devices() {
   std::vector<EGLDeviceEXT> ids(static_cast<std::size_t>(count));
   if (list(count, ids.data(), &count) != EGL_TRUE) return {};
   ids.resize(static_cast<std::size_t>(count));
-  std::vector<Device> found;
-  found.reserve(ids.size());
-  for (EGLDeviceEXT id : ids)
-    found.push_back({id, text != nullptr && names(text(id, EGL_EXTENSIONS), "EGL_MESA_device_software")});
-  return found;
+  std::erase_if(ids, [&](EGLDeviceEXT id) {
+    return software != (text != nullptr && names(text(id, EGL_EXTENSIONS), "EGL_MESA_device_software"));
+  });
+  return ids;
 }
 
 class EglContext final : public GraphicsContext {
@@ -131,39 +112,13 @@ class EglContext final : public GraphicsContext {
   std::string fault_;
 };
 
-}  // namespace
-
-std::unique_ptr<GraphicsContext> createDeviceContext(DeviceKind kind) {
-  std::string why = "EGL lists none";
-  for (const Device& device : devices()) {
-    if (device.software != (kind == DeviceKind::software)) continue;
-    auto context = std::make_unique<EglContext>(device.id);
-    if (context->fault().empty()) return context;
-    why = context->fault();
-  }
-  throw Error(ErrorKind::failure,
-              fmt::format("rendering: no graphics card that draws ({}); software draws without one", why));
-}
-
-namespace {
-
 class OsmesaContext final : public GraphicsContext {
  public:
   OsmesaContext() {
-    static constexpr std::array<int, 13> attributes{OSMESA_FORMAT,
-                                                    OSMESA_RGBA,
-                                                    OSMESA_DEPTH_BITS,
-                                                    0,
-                                                    OSMESA_PROFILE,
-                                                    OSMESA_CORE_PROFILE,
-                                                    OSMESA_CONTEXT_MAJOR_VERSION,
-                                                    4,
-                                                    OSMESA_CONTEXT_MINOR_VERSION,
-                                                    5,
-                                                    0,
-                                                    0,
-                                                    0};
-    context_ = OSMesaCreateContextAttribs(attributes.data(), nullptr);
+    static constexpr int attributes[][2]{{OSMESA_FORMAT, OSMESA_RGBA},          {OSMESA_DEPTH_BITS, 0},
+                                         {OSMESA_PROFILE, OSMESA_CORE_PROFILE}, {OSMESA_CONTEXT_MAJOR_VERSION, 4},
+                                         {OSMESA_CONTEXT_MINOR_VERSION, 5},     {0, 0}};
+    context_ = OSMesaCreateContextAttribs(attributes[0], nullptr);
     if (context_ == nullptr)
       throw Error(ErrorKind::failure,
                   "rendering: no off-screen OpenGL 4.5; install a Mesa with libosmesa6 22 or newer");
@@ -188,6 +143,16 @@ class OsmesaContext final : public GraphicsContext {
 
 }  // namespace
 
-std::unique_ptr<GraphicsContext> createSoftwareContext() { return std::make_unique<OsmesaContext>(); }
+std::unique_ptr<GraphicsContext> createContext(Graphics graphics) {
+  if (graphics == Graphics::software) return std::make_unique<OsmesaContext>();
+  std::string why = "EGL lists none";
+  for (EGLDeviceEXT device : devices(graphics == Graphics::deviceSoftware)) {
+    auto context = std::make_unique<EglContext>(device);
+    if (context->fault().empty()) return context;
+    why = context->fault();
+  }
+  throw Error(ErrorKind::failure,
+              fmt::format("rendering: no graphics card that draws ({}); software draws without one", why));
+}
 
 }  // namespace calot::gui

@@ -3,6 +3,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
+#include <string>
 #include <vector>
 
 namespace calot::gui {
@@ -20,5 +22,20 @@ struct Image {
            (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)) * 4;
   }
 };
+
+/// Writes an image as PNG (8-bit RGBA, sRGB chunk, no time stamp: equal images give equal files). Writes to a temporary
+/// name beside the file and renames; an existing file is replaced.
+/// @throws calot::Error (failure) naming the file if it cannot be written.
+void writePng(const Image& image, const std::string& file);
+
+/// How large a picture is asked for.
+struct PictureSize {
+  int width = 1280;  ///< pixels
+  int height = 720;  ///< pixels
+};
+/// "1280x720"; none for anything else.
+[[nodiscard]] std::optional<PictureSize> readSize(const std::string& text);
+/// The same. @throws calot::Error (invalid) where there is none, or for a size outside the renderer's limits.
+[[nodiscard]] PictureSize parsePictureSize(const std::string& text);
 
 }  // namespace calot::gui

@@ -12,23 +12,10 @@
 
 namespace calot::gui {
 
-std::vector<InstrumentPart> makeInstrument(const InstrumentView& instrument) {
-  InstrumentParts parts(instrument);
-  switch (instrument.kind) {
-    case InstrumentKind::none:
-      break;
-#define CALOT_DRAWN(name, number) \
-  case InstrumentKind::name:      \
-    drawing::name(parts);         \
-    break;
-      CALOT_INSTRUMENTS(CALOT_DRAWN)
-#undef CALOT_DRAWN
-  }
-  return parts.take();
-}
-
 namespace {
 
+constexpr double mm = 1e-3;                 // m
+constexpr int around = 20;                  // points of a ring
 constexpr double nominalRadius = 2.5 * mm;  // sizes of drawings are those of 5 mm instruments
 
 Quat aboutHinge(double angle) { return Quat(Eigen::AngleAxisd(angle, Vec3::UnitX())); }
@@ -41,26 +28,28 @@ Mesh barrel(double from, double to, double radius, double bevel) {
                superellipse({0, 0, to}, radius - bevel, radius - bevel, 2, around)});
 }
 
+/// Skin over steps + 1 rings. @param ring of a share, 0 to 1
+template <class RingAt>
+Mesh swept(int steps, RingAt ring) {
+  std::vector<Ring> rings;
+  for (int i = 0; i <= steps; ++i) rings.push_back(ring(static_cast<double>(i) / steps));
+  return loft(rings);
+}
+
 // From a round shaft to the flat fork that holds the hinge.
 Mesh clevis(double from, double hinge, double scale) {
-  std::vector<Ring> rings;
-  constexpr int steps = 12;
-  for (int i = 0; i <= steps; ++i) {
-    const double u = static_cast<double>(i) / steps;
+  return swept(12, [&](double u) {
     const double narrow = u * u * (3.0 - 2.0 * u);
-    rings.push_back(superellipse({0, 0, from + u * (hinge + 1.4 * mm * scale - from)},
-                                 (2.3 - 0.2 * narrow) * mm * scale, (2.3 - 1.0 * narrow) * mm * scale,
-                                 2.0 + 1.5 * narrow, around));
-  }
-  return loft(rings);
+    return superellipse({0, 0, from + u * (hinge + 1.4 * mm * scale - from)}, (2.3 - 0.2 * narrow) * mm * scale,
+                        (2.3 - 1.0 * narrow) * mm * scale, 2.0 + 1.5 * narrow, around);
+  });
 }
 
 Mesh hingePin(double hinge, double scale) {
   return tube({Vec3(-2.2 * mm * scale, 0, hinge), Vec3(2.2 * mm * scale, 0, hinge)}, 0.75 * mm * scale, 16);
 }
 
-}  // namespace
-
+/// The other jaw: y to -y.
 Mesh mirrored(Mesh mesh) {
   for (Vec3& p : mesh.position) p.y() = -p.y();
   for (Vec3& n : mesh.normal) n.y() = -n.y();
@@ -68,61 +57,61 @@ Mesh mirrored(Mesh mesh) {
   return mesh;
 }
 
-InstrumentParts::InstrumentParts(const InstrumentView& instrument)
-    : scale_(instrument.radius / nominalRadius), jaw_(std::clamp(instrument.jaw, 0.0, 2.5)) {
-  const Vec3 axis = instrument.pose.orientation.normalized() * Vec3::UnitZ();
-  const double toPort = (instrument.pose.position - instrument.port).dot(axis);
-  shaftStart_ = -std::max(toPort, 0.06) - 0.10;  // ten centimetres of it stand outside the port
-}
+/// The parts of one instrument, as they are drawn. A drawing multiplies the sizes of a 5 mm instrument with `scale`.
+struct InstrumentParts {
+  double scale, jaw;  ///< jaw: opening angle (rad)
+  double shaftStart;  ///< z (m)
+  std::vector<InstrumentPart> list = {};
 
-void InstrumentParts::add(Appearance appearance, Mesh mesh) { parts_.push_back({appearance, std::move(mesh)}); }
+  explicit InstrumentParts(const InstrumentView& instrument)
+      : scale(instrument.radius / nominalRadius), jaw(std::clamp(instrument.jaw, 0.0, 2.5)) {
+    const Vec3 axis = instrument.pose.orientation.normalized() * Vec3::UnitZ();
+    const double toPort = (instrument.pose.position - instrument.port).dot(axis);
+    shaftStart = -std::max(toPort, 0.06) - 0.10;  // ten centimetres of it stand outside the port
+  }
 
-void InstrumentParts::addShaft(double end) {
-  add(Appearance::insulation, barrel(shaftStart_, end, nominalRadius * scale_, 0.4 * mm * scale_));
-}
+  void add(Appearance appearance, Mesh mesh) { list.push_back({appearance, std::move(mesh)}); }
 
-void InstrumentParts::addHinged(double jawLength, double forkLength) {
-  const double hinge = -jawLength;
-  const double sleeveEnd = hinge - forkLength;
-  addShaft(sleeveEnd);
-  add(Appearance::steel, clevis(sleeveEnd - 0.5 * mm * scale_, hinge, scale_));
-  add(Appearance::steel, hingePin(hinge, scale_));
-}
+  /// The insulated shaft, from outside the port to `end` (z).
+  void addShaft(double end) {
+    add(Appearance::insulation, barrel(shaftStart, end, nominalRadius * scale, 0.4 * mm * scale));
+  }
 
-void InstrumentParts::addJaws(const Mesh& upper, const Mesh& lower, double jawLength) {
-  add(Appearance::steel, moved(upper, aboutHinge(-0.5 * jaw_), Vec3(0, 0, -jawLength)));
-  add(Appearance::steel, moved(lower, aboutHinge(0.5 * jaw_), Vec3(0, 0, -jawLength)));
-}
-
-namespace {
+  /// Shaft, fork and pin, and both jaws, opened. @param upper, lower from the hinge at z = 0 along z, inner faces at
+  /// y = 0 when closed @param jawLength from the hinge to the tips @param forkLength from the shaft's end to the hinge
+  void addJaws(const Mesh& upper, const Mesh& lower, double jawLength, double forkLength) {
+    const double hinge = -jawLength;
+    const double sleeveEnd = hinge - forkLength;
+    addShaft(sleeveEnd);
+    add(Appearance::steel, clevis(sleeveEnd - 0.5 * mm * scale, hinge, scale));
+    add(Appearance::steel, hingePin(hinge, scale));
+    add(Appearance::steel, moved(upper, aboutHinge(-0.5 * jaw), Vec3(0, 0, hinge)));
+    add(Appearance::steel, moved(lower, aboutHinge(0.5 * jaw), Vec3(0, 0, hinge)));
+  }
+};
 
 // A bar that first leaves the axis and then runs parallel to it, its tip turned inward.
 Mesh clipJaw(double length, double scale) {
-  std::vector<Ring> rings;
-  constexpr int steps = 36;
-  for (int i = 0; i <= steps; ++i) {
-    const double u = static_cast<double>(i) / steps;
+  return swept(36, [&](double u) {
     const double rise = std::min(1.0, u / 0.35);
     const double lift = 1.7 * mm * scale * rise * rise * (3.0 - 2.0 * rise);
     const double tip = u > 0.9 ? (u - 0.9) / 0.1 : 0.0;
     Ring ring = superellipse({0, 0, u * length}, (1.9 - 0.35 * u - 0.3 * tip) * mm * scale,
                              (0.95 - 0.2 * tip) * mm * scale, 3.5, around);
     for (Vec3& p : ring) p.y() += lift + 0.2 * mm * scale - 0.7 * mm * scale * tip * tip;
-    rings.push_back(ring);
-  }
-  return loft(rings);
+    return ring;
+  });
 }
 
-}  // namespace
+namespace drawing {
 
-void drawing::clipApplier(InstrumentParts& parts) {
-  const double m = mm * parts.scale();
-  const double length = instrument::clipApplier.jawLength * parts.scale();
-  const Mesh jaw = clipJaw(length, parts.scale());
-  parts.addHinged(length, 10.0 * m);
-  parts.addJaws(jaw, mirrored(jaw), length);
+void clipApplier(InstrumentParts& parts) {
+  const double m = mm * parts.scale;
+  const double length = instrument::clipApplier.jawLength * parts.scale;
+  const Mesh jaw = clipJaw(length, parts.scale);
+  parts.addJaws(jaw, mirrored(jaw), length, 10.0 * m);
   // A loaded clip: a V whose legs lie in the jaws.
-  const auto leg = [&](double z) { return std::sin(0.5 * parts.jaw()) * z + 1.15 * m; };
+  const auto leg = [&](double z) { return std::sin(0.5 * parts.jaw) * z + 1.15 * m; };
   const double front = length - 1.2 * m, back = length - 8.5 * m;
   std::vector<Vec3> path{{0, leg(front), front - length},
                          {0, leg(back + 1.5 * m), back + 1.5 * m - length},
@@ -132,8 +121,6 @@ void drawing::clipApplier(InstrumentParts& parts) {
                          {0, -leg(front), front - length}};
   parts.add(Appearance::titanium, tube(path, 0.42 * m, 14));
 }
-
-namespace {
 
 // One jaw from its hinge at z = 0 along z, its inner face at y = 0: tapered, rounded at the tip, toothed inside.
 Mesh grasperJaw(double length, double scale) {
@@ -157,17 +144,14 @@ Mesh grasperJaw(double length, double scale) {
   return loft(rings);
 }
 
-}  // namespace
-
-void drawing::grasper(InstrumentParts& parts) {
-  const double length = instrument::grasper.jawLength * parts.scale();
-  const Mesh jaw = grasperJaw(length, parts.scale());
-  parts.addHinged(length, 9.0 * mm * parts.scale());
-  parts.addJaws(jaw, mirrored(jaw), length);
+void grasper(InstrumentParts& parts) {
+  const double length = instrument::grasper.jawLength * parts.scale;
+  const Mesh jaw = grasperJaw(length, parts.scale);
+  parts.addJaws(jaw, mirrored(jaw), length, 9.0 * mm * parts.scale);
 }
 
-void drawing::hook(InstrumentParts& parts) {
-  const double m = mm * parts.scale();
+void hook(InstrumentParts& parts) {
+  const double m = mm * parts.scale;
   const double sleeveEnd = -13.0 * m;
   parts.addShaft(sleeveEnd);
   parts.add(Appearance::ceramic, loft({superellipse({0, 0, sleeveEnd}, 2.0 * m, 2.0 * m, 2, around),
@@ -185,8 +169,8 @@ void drawing::hook(InstrumentParts& parts) {
   parts.add(Appearance::steel, tube(path, wire, 18));
 }
 
-void drawing::probe(InstrumentParts& parts) {
-  const double radius = 2.5 * mm * parts.scale();
+void probe(InstrumentParts& parts) {
+  const double radius = 2.5 * mm * parts.scale;
   const double shaft = -4.0 * radius;
   parts.addShaft(shaft);
   std::vector<Ring> rings{superellipse({0, 0, shaft}, radius, radius, 2, around)};
@@ -199,14 +183,9 @@ void drawing::probe(InstrumentParts& parts) {
   parts.add(Appearance::steel, loft(rings));
 }
 
-namespace {
-
 // A curved, pointed blade; side is +1 or -1: which side of the hinge plane it lies on.
 Mesh scissorBlade(double length, double side, double scale) {
-  std::vector<Ring> rings;
-  constexpr int steps = 30;
-  for (int i = 0; i <= steps; ++i) {
-    const double u = static_cast<double>(i) / steps;
+  return swept(30, [&](double u) {
     const double height = (2.3 * (1.0 - u) + 0.35) * mm * scale * (u < 0.97 ? 1.0 : 0.5);
     const double thickness = (0.62 - 0.3 * u) * mm * scale;
     const double bend = 2.6 * mm * scale * u * u;
@@ -215,17 +194,32 @@ Mesh scissorBlade(double length, double side, double scale) {
       if (p.y() < 0.0) p.y() *= 0.25;
       p.x() += side * 0.55 * mm * scale * (1.0 - 0.6 * u) + bend;
     }
-    rings.push_back(ring);
-  }
-  return loft(rings);
+    return ring;
+  });
 }
 
+void scissors(InstrumentParts& parts) {
+  const double length = instrument::scissors.jawLength * parts.scale;
+  parts.addJaws(scissorBlade(length, 1.0, parts.scale), mirrored(scissorBlade(length, -1.0, parts.scale)), length,
+                9.0 * mm * parts.scale);
+}
+
+}  // namespace drawing
 }  // namespace
 
-void drawing::scissors(InstrumentParts& parts) {
-  const double length = instrument::scissors.jawLength * parts.scale();
-  parts.addHinged(length, 9.0 * mm * parts.scale());
-  parts.addJaws(scissorBlade(length, 1.0, parts.scale()), mirrored(scissorBlade(length, -1.0, parts.scale())), length);
+std::vector<InstrumentPart> makeInstrument(const InstrumentView& instrument) {
+  InstrumentParts parts(instrument);
+  switch (instrument.kind) {
+    case InstrumentKind::none:
+      break;
+#define CALOT_DRAWN(name, number) \
+  case InstrumentKind::name:      \
+    drawing::name(parts);         \
+    break;
+      CALOT_INSTRUMENTS(CALOT_DRAWN)
+#undef CALOT_DRAWN
+  }
+  return std::move(parts.list);
 }
 
 Mesh makeClip(const ClipView& clip) {

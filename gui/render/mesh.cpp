@@ -22,16 +22,15 @@ std::vector<Vec3> vertexNormals(const std::vector<Vec3>& position, const std::ve
   return normal;
 }
 
-std::vector<Index3> gridTriangles(int rows, int columns, bool closed) {
-  std::vector<Index3> triangle;
+void closeGrid(Mesh& mesh, int rows, int columns, bool closed) {
   const auto at = [&](int row, int column) { return row * columns + column % columns; };
   for (int i = 0; i + 1 < rows; ++i) {
     for (int j = 0; j < (closed ? columns : columns - 1); ++j) {
-      triangle.emplace_back(at(i, j), at(i, j + 1), at(i + 1, j));
-      triangle.emplace_back(at(i, j + 1), at(i + 1, j + 1), at(i + 1, j));
+      mesh.triangle.emplace_back(at(i, j), at(i, j + 1), at(i + 1, j));
+      mesh.triangle.emplace_back(at(i, j + 1), at(i + 1, j + 1), at(i + 1, j));
     }
   }
-  return triangle;
+  mesh.normal = vertexNormals(mesh.position, mesh.triangle);
 }
 
 namespace {

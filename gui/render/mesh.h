@@ -21,9 +21,9 @@ struct Mesh {
 /// From a frame whose z is up to W. @param down where gravity pulls in W, unit
 [[nodiscard]] inline Quat upright(const Vec3& down) { return Quat::FromTwoVectors(-Vec3::UnitZ(), down); }
 
-/// Two triangles for each cell of a grid, whose vertices stand row by row, so many in each.
+/// Adds triangles, two for each cell of a grid whose vertices the mesh has, row by row, and normals.
 /// @param closed the last vertex of a row is joined to its first
-[[nodiscard]] std::vector<Index3> gridTriangles(int rows, int columns, bool closed);
+void closeGrid(Mesh& mesh, int rows, int columns, bool closed);
 
 /// A closed curve around a path: point k of n, counter-clockwise seen from the path's end.
 using Ring = std::vector<Vec3>;

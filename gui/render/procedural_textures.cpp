@@ -7,7 +7,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <numbers>
-#include <utility>
 
 #include "sim/math/elementary.h"
 #include "sim/math/linear.h"
@@ -179,34 +178,28 @@ struct Tip {
   double gone = 1e9;        ///< since it came up out of the depth (texels)
 };
 
-class Canvas {
- public:
-  void dot(double s, double t, double radius) {
-    const double strength = std::min(1.0, 0.30 + 0.28 * radius);  // a thin vein shows through less
-    const int reached = static_cast<int>(radius + 2.0);
-    for (int j = -reached; j <= reached; ++j) {
-      for (int i = -reached; i <= reached; ++i) {
-        const double column = std::floor(s) + i, row = std::floor(t) + j;
-        const double away = std::hypot(column + 0.5 - s, row + 0.5 - t);
-        const double cover = strength * std::clamp(radius + 0.5 - away, 0.0, 1.0);
-        std::uint8_t& texel = texel_[wrapped(row) * veinSide + wrapped(column)];
-        texel = std::max(texel, static_cast<std::uint8_t>(std::lround(255.0 * cover)));
-      }
+std::size_t wrapped(double x) {
+  return static_cast<std::size_t>((static_cast<int>(x) % veinSide + veinSide) % veinSide);
+}
+
+void addDot(std::vector<std::uint8_t>& texture, double s, double t, double radius) {
+  const double strength = std::min(1.0, 0.30 + 0.28 * radius);  // a thin vein shows through less
+  const int reached = static_cast<int>(radius + 2.0);
+  for (int j = -reached; j <= reached; ++j) {
+    for (int i = -reached; i <= reached; ++i) {
+      const double column = std::floor(s) + i, row = std::floor(t) + j;
+      const double away = std::hypot(column + 0.5 - s, row + 0.5 - t);
+      const double cover = strength * std::clamp(radius + 0.5 - away, 0.0, 1.0);
+      std::uint8_t& texel = texture[wrapped(row) * veinSide + wrapped(column)];
+      texel = std::max(texel, byteOf(cover));
     }
   }
-  [[nodiscard]] std::vector<std::uint8_t> taken() { return std::move(texel_); }
-
- private:
-  [[nodiscard]] static std::size_t wrapped(double x) {
-    return static_cast<std::size_t>((static_cast<int>(x) % veinSide + veinSide) % veinSide);
-  }
-  std::vector<std::uint8_t> texel_ = std::vector<std::uint8_t>(static_cast<std::size_t>(veinSide) * veinSide, 0);
-};
+}
 
 }  // namespace
 
 std::vector<std::uint8_t> makeVeinTexture() {
-  Canvas canvas;
+  std::vector<std::uint8_t> texture(static_cast<std::size_t>(veinSide) * veinSide, 0);
   Random random(36, 5);
   const auto wayOf = [&](double radius) { return (fixed + reach * radius) * random.uniform(0.5, 1.4); };
   std::vector<Tip> growing;
@@ -222,7 +215,7 @@ std::vector<std::uint8_t> makeVeinTexture() {
     Tip tip = growing.back();
     growing.pop_back();
     while (tip.radius > thinnest) {
-      canvas.dot(tip.s, tip.t, tip.radius * std::min(1.0, 0.15 + tip.gone / emerging));
+      addDot(texture, tip.s, tip.t, tip.radius * std::min(1.0, 0.15 + tip.gone / emerging));
       tip.gone += step;
       // It meanders, and more the thinner it is.
       tip.bend = 0.93 * tip.bend + random.uniform(-0.010, 0.010) * (0.5 + 2.2 / tip.radius);
@@ -246,7 +239,7 @@ std::vector<std::uint8_t> makeVeinTexture() {
       tip.left = wayOf(tip.radius);
     }
   }
-  return canvas.taken();
+  return texture;
 }
 
 }  // namespace calot::gui

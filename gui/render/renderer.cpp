@@ -7,7 +7,7 @@
 #include <deque>
 #include <future>
 #include <mutex>
-#include <optional>
+#include <stop_token>
 #include <string>
 #include <thread>
 
@@ -22,24 +22,18 @@ namespace calot::gui {
 /// A thread that owns context and painter and serves requests one at a time.
 class Renderer::Worker {
  public:
-  explicit Worker(Graphics graphics) : wanted_(graphics) {
-    std::promise<void> started;
-    std::future<void> ready = started.get_future();
-    thread_ = std::thread([this, &started] { run(started); });
-    try {
-      ready.get();
-    } catch (...) {
-      thread_.join();
-      throw;
-    }
+  explicit Worker(Graphics graphics) : thread_([this](const std::stop_token& stop) { serve(stop); }) {
+    perform([&] {
+      begin(graphics);
+      name_ = fmt::format("{}, {}", context_->way(), painter_->implementation());
+    });
   }
   ~Worker() {
-    {
-      const std::lock_guard<std::mutex> lock(mutex_);
-      stopping_ = true;
-    }
-    wake_.notify_one();
-    thread_.join();
+    perform([this] {
+      const std::lock_guard<std::mutex> alone(compiling());
+      painter_.reset();
+      context_.reset();
+    });
   }
   Worker(const Worker&) = delete;
   Worker& operator=(const Worker&) = delete;
@@ -48,27 +42,18 @@ class Renderer::Worker {
 
   Image render(const SceneView& view, int width, int height, const RenderSettings& settings,
                std::span<const Puff> smoke) {
-    std::packaged_task<Image(ScenePainter&)> task([&](ScenePainter& painter) {
+    Image image;
+    perform([&] {
       const Sight sight = sightOf(width, height, view.verticalFieldOfView, settings.endoscopeMask);
       const DrawList& list = drawLists_.make(view, sight, settings.cavity, smoke);
-      const auto alone = looks_.note(list, settings) ? std::unique_lock(compiling()) : std::unique_lock<std::mutex>();
-      return painter.paint(list, sight, view.verticalFieldOfView, width, height, settings);
+      const auto alone =
+          noteLooks(looks_, list, settings) ? std::unique_lock(compiling()) : std::unique_lock<std::mutex>();
+      image = painter_->paint(list, sight, view.verticalFieldOfView, width, height, settings);
     });
-    std::future<Image> image = task.get_future();
-    {
-      const std::lock_guard<std::mutex> lock(mutex_);
-      tasks_.push_back(std::move(task));
-    }
-    wake_.notify_one();
-    return image.get();
+    return image;
   }
 
  private:
-  struct Drawing {
-    std::unique_ptr<GraphicsContext> context;
-    std::unique_ptr<ScenePainter> painter;  ///< last: it needs the context until its end
-  };
-
   /// Held while Mesa compiles, which is what its contexts share most. (Two crashes were seen in hundreds of runs in
   /// which two contexts drew; nobody could bring one about.)
   static std::mutex& compiling() {
@@ -76,56 +61,56 @@ class Renderer::Worker {
     return lock;
   }
 
-  static Drawing drawingBy(Graphics graphics) {
-    const std::lock_guard<std::mutex> alone(compiling());
-    Drawing made{createContext(graphics), nullptr};
-    made.context->makeCurrent();
-    made.painter = std::make_unique<ScenePainter>(*made.context);
-    return made;
-  }
-  [[nodiscard]] Drawing makeDrawing() const {
-    if (wanted_ != Graphics::automatic) return drawingBy(wanted_);
-    try {
-      return drawingBy(Graphics::card);
-    } catch (const Error&) {  // no card, or one that lacks something
-      return drawingBy(Graphics::software);
-    }
-  }
-
-  void run(std::promise<void>& started) {
-    std::optional<Drawing> drawing;
-    try {
-      drawing.emplace(makeDrawing());
-      name_ = fmt::format("{}, {}", drawing->context->way(), drawing->painter->implementation());
-    } catch (...) {
-      started.set_exception(std::current_exception());
-      return;
-    }
-    started.set_value();
-    while (true) {
-      std::packaged_task<Image(ScenePainter&)> task;
-      {
-        std::unique_lock<std::mutex> lock(mutex_);
-        wake_.wait(lock, [this] { return stopping_ || !tasks_.empty(); });
-        if (tasks_.empty()) break;
-        task = std::move(tasks_.front());
-        tasks_.pop_front();
+  void begin(Graphics graphics) {
+    if (graphics == Graphics::automatic) {
+      try {
+        return begin(Graphics::card);
+      } catch (const Error&) {  // no card, or one that lacks something
+        return begin(Graphics::software);
       }
-      task(*drawing->painter);
     }
     const std::lock_guard<std::mutex> alone(compiling());
-    drawing.reset();
+    std::unique_ptr<GraphicsContext> context = createContext(graphics);
+    context->makeCurrent();
+    painter_ = std::make_unique<ScenePainter>(*context);
+    context_ = std::move(context);
   }
 
-  const Graphics wanted_;
-  std::string name_;         ///< fixed once the thread has started
-  DrawListMaker drawLists_;  ///< on the thread
-  LooksDrawn looks_;         ///< on the thread
+  /// Waits until the thread has done it. @throws what it throws
+  template <class Work>
+  void perform(Work work) {
+    std::packaged_task<void()> task(std::move(work));
+    std::future<void> done = task.get_future();
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      tasks_.push_back(std::move(task));
+    }
+    wake_.notify_one();
+    done.get();
+  }
+
+  void serve(const std::stop_token& stop) {
+    std::unique_lock<std::mutex> lock(mutex_);
+    while (wake_.wait(lock, stop, [this] { return !tasks_.empty(); })) {
+      std::packaged_task<void()> task = std::move(tasks_.front());
+      tasks_.pop_front();
+      lock.unlock();
+      task();
+      lock.lock();
+    }
+  }
+
+  // On the thread:
+  std::unique_ptr<GraphicsContext> context_;
+  std::unique_ptr<ScenePainter> painter_;  ///< needs the context until its end
+  DrawListMaker drawLists_;
+  LooksDrawn looks_;
+
+  std::string name_;  ///< fixed once the constructor is through
   std::mutex mutex_;
-  std::condition_variable wake_;
-  std::deque<std::packaged_task<Image(ScenePainter&)>> tasks_;
-  bool stopping_ = false;
-  std::thread thread_;
+  std::condition_variable_any wake_;
+  std::deque<std::packaged_task<void()>> tasks_;
+  std::jthread thread_;  // last: it uses what is above
 };
 
 Renderer::Renderer(Graphics graphics) : worker_(std::make_unique<Worker>(graphics)) {}

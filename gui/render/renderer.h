@@ -9,7 +9,7 @@
 
 #include "gui/render/graphics.h"
 #include "gui/render/image.h"
-#include "gui/render/smoke.h"
+#include "gui/render/translucent.h"
 #include "sim/scene/scene_view.h"
 
 namespace calot::gui {
@@ -45,15 +45,13 @@ class Renderer {
   ///   (width / 2 + f x / z, height / 2 + f y / z),  f = (height / 2) / tan(verticalFieldOfView / 2).
   /// @throws calot::Error: invalid if the size is outside the limits above; damaged if the view has a number that is
   /// not finite, a triangle that names no vertex, a sheet that names no strand, a strand without condition or with an
-  /// alpha outside [0, 1], a puff that is none, or a field of view outside (0.05, 3.0) rad; failure if there is no
+  /// alpha outside [0, 1], an invalid puff, or a field of view outside (0.05, 3.0) rad; failure if there is no
   /// memory.
   /// @param smoke what a view knows nothing of (SmokeTrail); drawn over the rest
   [[nodiscard]] Image render(const SceneView& view, int width, int height, const RenderSettings& settings = {},
                              std::span<const Puff> smoke = {});
   [[nodiscard]] Image render(const SceneView& view, int width, int height, Quality quality) {
-    RenderSettings settings;
-    settings.quality = quality;
-    return render(view, width, height, settings);
+    return render(view, width, height, RenderSettings{.quality = quality});
   }
   /// Description of the renderer: "OSMesa, llvmpipe (LLVM 15.0.6, 256 bits)".
   [[nodiscard]] const std::string& graphics() const;

@@ -65,7 +65,7 @@ std::string ScenePainter::implementation() const {
 }
 
 void ScenePainter::drawPart(const DrawPart& part) const {
-  // Of a closed body only the near side is seen; of the cavity, from outside, only the far wall. Other surfaces may be
+  // A closed body shows only its near side; the cavity, from outside, only its far wall. Other surfaces may be
   // open: both sides are drawn.
   if (part.oneSided) gl_.Enable(GL_CULL_FACE);
   surfaces_.draw(part.firstIndex, part.indexCount);
@@ -259,20 +259,15 @@ void ScenePainter::compose(const Frame& frame) const {
   drawPicture();
 }
 
-Image ScenePainter::read() const {
-  const int width = targets_->width, height = targets_->height;
+Image ScenePainter::paint(const DrawList& list, const Sight& sight, double verticalFieldOfView, int width, int height,
+                          const RenderSettings& settings) {
+  draw(list, sight, verticalFieldOfView, width, height, settings);
   Image image{width, height,
               std::vector<std::uint8_t>(4 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height))};
   gl_.ReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, image.rgba.data());
   if (gl_.GetError() != GL_NO_ERROR)
     throw Error(ErrorKind::failure, "rendering: OpenGL reported an error; is memory short?");
   return image;
-}
-
-Image ScenePainter::paint(const DrawList& list, const Sight& sight, double verticalFieldOfView, int width, int height,
-                          const RenderSettings& settings) {
-  draw(list, sight, verticalFieldOfView, width, height, settings);
-  return read();
 }
 
 void ScenePainter::draw(const DrawList& list, const Sight& sight, double verticalFieldOfView, int width, int height,

@@ -6,7 +6,6 @@
 #include <string>
 
 #include "gui/render/draw_list.h"
-#include "gui/render/gl_functions.h"
 #include "gui/render/gl_objects.h"
 #include "gui/render/renderer.h"
 #include "gui/render/scene_resources.h"
@@ -58,7 +57,6 @@ class ScenePainter {
   /// Draws all that may come, nowhere.
   void makeReady(const DrawList& list, const Frame& frame);
   void compose(const Frame& frame) const;
-  [[nodiscard]] Image read() const;
 
   GlFunctions gl_;
   std::unique_ptr<ScenePrograms> film_, interactive_;

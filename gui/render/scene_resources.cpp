@@ -23,9 +23,9 @@ bool isTissue(Appearance a) { return a < Appearance::insulation && !isSurroundin
 
 }  // namespace
 
-bool LooksDrawn::note(const DrawList& list, const RenderSettings& settings) {
+bool noteLooks(LooksDrawn& drawn, const DrawList& list, const RenderSettings& settings) {
   bool isNew = false;
-  const auto add = [&](int look) { isNew = drawn_.insert({settings.quality, look}).second || isNew; };
+  const auto add = [&](int look) { isNew = drawn.insert({settings.quality, look}).second || isNew; };
   for (const DrawPart& part : list.part) add(lookOf(part));
   if (!list.sheets.index.empty()) add(sheetLook);
   if (!list.smoke.index.empty()) add(smokeLook);
@@ -57,62 +57,20 @@ std::vector<DrawPart> looksToCome(const DrawList& list) {
   return parts;
 }
 
-namespace {
-
-// What the qualities differ in. Interactive: noise of eight bits, its slow part for every vertex instead of every pixel
-// and its finest part not at all; narrow shadows; occlusion and cavity at half the size.
-const char* const filmChoices = R"(
-#define FIELD_SIDES 96
-#define OCCLUSION_SAMPLES 24
-#define BLOCKERS 8
-#define SHADOW_SAMPLES 16
-#define SHEET_SHADOW_SAMPLES 4
-#define PATTERN 4
-#define STRIDE 1
-#define SAMPLES_ASIDE 2
-#define DIRECT 0
-#define NOISE_BYTES 0
-#define BROAD_PER_VERTEX 0
-#define FINE 1
-#define EXACT 1
-#define SOFT_SHADOWS 1
-#define SHADOW_OFFSET 0.0006
-)";
-const char* const interactiveChoices = R"(
-#define FIELD_SIDES 96
-#define OCCLUSION_SAMPLES 6
-#define SHEET_SHADOW_SAMPLES 1
-#define PATTERN 2
-#define STRIDE 2
-#define SAMPLES_ASIDE 1
-#define DIRECT 1
-#define NOISE_BYTES 1
-#define BROAD_PER_VERTEX 1
-#define FINE 0
-#define EXACT 0
-#define SOFT_SHADOWS 0
-#define SHADOW_OFFSET 0.0016
-)";
-
-}  // namespace
-
 ScenePrograms::ScenePrograms(const GlFunctions& gl, Quality quality)
-    : ScenePrograms(gl, quality == Quality::film ? filmChoices : interactiveChoices) {}
-
-ScenePrograms::ScenePrograms(const GlFunctions& gl, const char* choices)
-    : shadow(gl, "shadow", {choices, glsl::common, glsl::surfaceVertex}, {glsl::emptyFragment}),
-      prepass(gl, "prepass", {choices, glsl::common, glsl::surfaceVertex}, {glsl::prepassFragment}),
-      surround(gl, "surround", {choices, glsl::common, glsl::surroundVertex}, {glsl::surroundFragment}),
-      sheet(gl, "sheet", {choices, glsl::common, glsl::sheetVertex},
-            {choices, glsl::common, glsl::display, glsl::receiver, glsl::shadowLookup, glsl::sheetFragment}),
-      smoke(gl, "smoke", {choices, glsl::common, glsl::smokeVertex},
-            {choices, glsl::common, glsl::display, glsl::receiver, glsl::smokeFragment}),
-      occlusion(gl, "occlusion", {glsl::pictureVertex}, {choices, glsl::common, glsl::occlusionFragment}),
+    : gl_(gl),
+      choices_(quality == Quality::film ? glsl::filmChoices : glsl::interactiveChoices),
+      shadow(gl, "shadow", {choices_, glsl::common, glsl::surfaceVertex}, {glsl::emptyFragment}),
+      prepass(gl, "prepass", {choices_, glsl::common, glsl::surfaceVertex}, {glsl::prepassFragment}),
+      surround(gl, "surround", {choices_, glsl::common, glsl::surroundVertex}, {glsl::surroundFragment}),
+      sheet(gl, "sheet", {choices_, glsl::common, glsl::sheetVertex},
+            {choices_, glsl::common, glsl::display, glsl::receiver, glsl::shadowLookup, glsl::sheetFragment}),
+      smoke(gl, "smoke", {choices_, glsl::common, glsl::smokeVertex},
+            {choices_, glsl::common, glsl::display, glsl::receiver, glsl::smokeFragment}),
+      occlusion(gl, "occlusion", {glsl::pictureVertex}, {choices_, glsl::common, glsl::occlusionFragment}),
       backdrop(gl, "backdrop", {glsl::pictureVertex}, {glsl::backdropFragment}),
-      blur(gl, "blur", {glsl::pictureVertex}, {choices, glsl::blurFragment}),
-      compose(gl, "compose", {glsl::pictureVertex}, {choices, glsl::display, glsl::composeFragment}),
-      gl_(gl),
-      choices_(choices) {}
+      blur(gl, "blur", {glsl::pictureVertex}, {choices_, glsl::blurFragment}),
+      compose(gl, "compose", {glsl::pictureVertex}, {choices_, glsl::display, glsl::composeFragment}) {}
 
 const ShaderProgram& ScenePrograms::surface(const DrawPart& part) {
   const int look = static_cast<int>(part.appearance);

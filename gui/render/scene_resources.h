@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "gui/render/draw_list.h"
-#include "gui/render/gl_functions.h"
 #include "gui/render/gl_objects.h"
 #include "gui/render/renderer.h"
 
@@ -17,14 +16,9 @@ namespace calot::gui {
 
 /// Looks that a painter has drawn. For the first picture of one a software OpenGL compiles programs, for up to a
 /// second.
-class LooksDrawn {
- public:
-  /// Notes the looks of a picture. @return is one of them new?
-  bool note(const DrawList& list, const RenderSettings& settings);
-
- private:
-  std::set<std::pair<Quality, int>> drawn_;
-};
+using LooksDrawn = std::set<std::pair<Quality, int>>;
+/// Notes the looks of a picture. @return is one of them new?
+bool noteLooks(LooksDrawn& drawn, const DrawList& list, const RenderSettings& settings);
 
 /// Parts in every look that an attempt which begins like this may come to: tissue that is charred or parted, clips,
 /// blood, every instrument. Each is one triangle of the list. @pre the list has a part
@@ -43,14 +37,13 @@ class ScenePrograms {
   /// The lit surface in one look.
   [[nodiscard]] const ShaderProgram& surface(const DrawPart& part);
 
-  const ShaderProgram shadow, prepass, surround, sheet, smoke, occlusion, backdrop, blur, compose;
-
  private:
   const GlFunctions& gl_;
-  const char* choices_;
+  const char* choices_;  ///< of the quality
   std::map<std::pair<int, bool>, std::unique_ptr<ShaderProgram>> surface_;
 
-  ScenePrograms(const GlFunctions& gl, const char* choices);
+ public:
+  const ShaderProgram shadow, prepass, surround, sheet, smoke, occlusion, backdrop, blur, compose;
 };
 
 /// Use of each texture unit.

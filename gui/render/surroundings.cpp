@@ -53,12 +53,25 @@ Mesh makeCavity(const CavityShape& shape) {
       mesh.position.push_back(shape.centre + shape.radius * (1.0 + unevenness(d)) * d);
     }
   }
-  mesh.triangle = gridTriangles(rings + 1, segments, true);
-  mesh.normal = vertexNormals(mesh.position, mesh.triangle);
+  closeGrid(mesh, rings + 1, segments, true);
   return mesh;
 }
 
 namespace {
+
+/// A surface over a grid in the horizontal plane. @param height y over (x, z)
+template <class Height>
+Mesh surfaceOver(double x0, double z0, int across, int along, double cell, Height height) {
+  Mesh mesh;
+  for (int i = 0; i <= across; ++i) {
+    for (int j = 0; j <= along; ++j) {
+      const double x = x0 + i * cell, z = z0 + j * cell;
+      mesh.position.emplace_back(x, height(x, z), z);
+    }
+  }
+  closeGrid(mesh, across + 1, along + 1, false);
+  return mesh;
+}
 
 constexpr double gap = 0.002;     // between all of it and what may not be hidden (m)
 constexpr double buried = 0.011;  // how far the omentum's highest fold lies below the bowel's highest (m)
@@ -78,48 +91,26 @@ double apron(double x, double z) {
 double sunk(double share) { return 0.06 * std::pow(std::abs(share), 8.0); }
 
 Mesh omentum(double x0, double z0, double top) {
-  Mesh mesh;
   const int across = static_cast<int>(2.0 * halfWidth / omentumCell),
             along = static_cast<int>((towards + beyond) / omentumCell);
-  for (int i = 0; i <= across; ++i) {
-    for (int j = 0; j <= along; ++j) {
-      const double x = x0 - halfWidth + i * omentumCell, z = z0 - towards + j * omentumCell;
-      const double y = top + apron(x, z) - sunk((x - x0) / halfWidth);
-      mesh.position.emplace_back(x, y, z);
-    }
-  }
-  mesh.triangle = gridTriangles(across + 1, along + 1, false);
-  mesh.normal = vertexNormals(mesh.position, mesh.triangle);
-  return mesh;
+  return surfaceOver(x0 - halfWidth, z0 - towards, across, along, omentumCell,
+                     [&](double x, double z) { return top + apron(x, z) - sunk((x - x0) / halfWidth); });
 }
 
 /// A piece of gut along a path in the horizontal plane: a tube that bulges between furrows.
 struct Gut {
-  std::vector<std::array<double, 2>> path;  ///< x, z from the hilum (m)
-  double radius;                            ///< at its bulges (m)
-  double furrows;                           ///< distance from one to the next (m)
-  double depth;                             ///< of a furrow, share of the radius
+  std::span<const std::array<double, 2>> path;  ///< x, z from the hilum (m)
+  double radius;                                ///< at its bulges (m)
+  double furrows;                               ///< distance from one to the next (m)
+  double depth;                                 ///< of a furrow, share of the radius
 };
 
 // Assumed: sizes of adults' bowel that is neither empty nor blown up.
-const Gut& colon() {
-  static const Gut gut{{{0.150, 0.155},
-                        {0.152, 0.105},
-                        {0.138, 0.060},
-                        {0.102, 0.024},
-                        {0.074, -0.012},
-                        {0.066, -0.050},
-                        {0.074, -0.10}},
-                       0.0175,
-                       0.026,
-                       0.16};
-  return gut;
-}
-const Gut& duodenum() {
-  static const Gut gut{
-      {{-0.14, 0.020}, {-0.09, 0.018}, {-0.055, -0.002}, {-0.040, -0.035}, {-0.043, -0.09}}, 0.0135, 0.011, 0.035};
-  return gut;
-}
+constexpr std::array<std::array<double, 2>, 7> colonPath{
+    {{0.150, 0.155}, {0.152, 0.105}, {0.138, 0.060}, {0.102, 0.024}, {0.074, -0.012}, {0.066, -0.050}, {0.074, -0.10}}};
+constexpr std::array<std::array<double, 2>, 5> duodenumPath{
+    {{-0.14, 0.020}, {-0.09, 0.018}, {-0.055, -0.002}, {-0.040, -0.035}, {-0.043, -0.09}}};
+constexpr std::array<Gut, 2> guts{{{colonPath, 0.0175, 0.026, 0.16}, {duodenumPath, 0.0135, 0.011, 0.035}}};
 
 /// Between the points of a path as Catmull and Rom have it.
 std::vector<Vec3> smoothed(const Gut& gut, double x0, double z0, double y) {
@@ -183,7 +174,7 @@ Viscera makeViscera(std::span<const Vec3> vessels, double lowest) {
   const Vec3 hilum = 0.5 * (box.lower + box.upper);
   const double top = lowest - gap;
   viscera.omentum = omentum(hilum.x(), hilum.z(), top - buried);
-  for (const Gut* const gut : {&colon(), &duodenum()}) append(viscera.bowel, tubeOf(*gut, hilum.x(), hilum.z(), top));
+  for (const Gut& gut : guts) append(viscera.bowel, tubeOf(gut, hilum.x(), hilum.z(), top));
   return viscera;
 }
 
@@ -210,7 +201,7 @@ double lowestOf(const SceneView& view) {
 
 void Surroundings::update(const SceneView& view) {
   if (const CavityShape shape = cavityShape(view); shape != shape_) {
-    wall_ = makeCavity(shape);
+    wall = makeCavity(shape);
     shape_ = shape;
   }
   std::vector<Vec3> vessels;
@@ -218,8 +209,8 @@ void Surroundings::update(const SceneView& view) {
     if (view.down.y() < yUpBelow && isOfHilum(surface.role))
       vessels.insert(vessels.end(), surface.rest.begin(), surface.rest.end());
   if (vessels == vessels_) return;
-  ligament_ = makeLigament(vessels);
-  viscera_ = makeViscera(vessels, lowestOf(view));
+  ligament = makeLigament(vessels);
+  viscera = makeViscera(vessels, lowestOf(view));
   vessels_ = std::move(vessels);
 }
 
@@ -229,7 +220,7 @@ constexpr double cell = 0.0035;          // m
 constexpr double ligamentReach = 0.050;  // how far it goes to the sides, where it has long left the picture below (m)
 constexpr double behind = 0.0055;  // its crest, below the upper side of a vessel: as deep as the bile duct is thick (m)
 constexpr double crest = 0.015;    // radius of its crest (m)
-// What can be injured is not to be hidden: wherever another vessel lies deeper, the fold gives way.
+// Vessels that can be injured must stay visible: wherever another vessel lies deeper, the fold gives way.
 constexpr double under = 0.001;   // below the lower side of every vessel (m)
 constexpr double trough = 0.005;  // radius of the trough that it lies in (m)
 
@@ -239,28 +230,21 @@ double fold(double x, double z) { return 0.0007 * std::sin(310.0 * x + 150.0 * z
 }  // namespace
 
 Mesh makeLigament(std::span<const Vec3> vessels) {
-  Mesh mesh;
-  if (vessels.empty()) return mesh;
+  if (vessels.empty()) return {};
   Box box;
   for (const Vec3& p : vessels) box.include(p);
   const double x0 = box.lower.x() - ligamentReach, z0 = box.lower.z() - ligamentReach;
   const auto cells = [](double length) { return static_cast<int>(std::ceil((length + 2.0 * ligamentReach) / cell)); };
   const int across = cells(box.upper.x() - box.lower.x()), along = cells(box.upper.z() - box.lower.z());
-  for (int i = 0; i <= across; ++i) {
-    for (int j = 0; j <= along; ++j) {
-      const double x = x0 + i * cell, z = z0 + j * cell;
-      double height = -std::numeric_limits<double>::infinity(), most = std::numeric_limits<double>::infinity();
-      for (const Vec3& p : vessels) {
-        const double dx = x - p.x(), dz = z - p.z(), square = dx * dx + dz * dz;
-        height = std::max(height, p.y() - 0.5 * square / crest);
-        most = std::min(most, p.y() + 0.5 * square / trough);
-      }
-      mesh.position.emplace_back(x, std::min(height - behind + fold(x, z), most - under), z);
+  return surfaceOver(x0, z0, across, along, cell, [&](double x, double z) {
+    double height = -std::numeric_limits<double>::infinity(), most = std::numeric_limits<double>::infinity();
+    for (const Vec3& p : vessels) {
+      const double dx = x - p.x(), dz = z - p.z(), square = dx * dx + dz * dz;
+      height = std::max(height, p.y() - 0.5 * square / crest);
+      most = std::min(most, p.y() + 0.5 * square / trough);
     }
-  }
-  mesh.triangle = gridTriangles(across + 1, along + 1, false);
-  mesh.normal = vertexNormals(mesh.position, mesh.triangle);
-  return mesh;
+    return std::min(height - behind + fold(x, z), most - under);
+  });
 }
 
 }  // namespace calot::gui

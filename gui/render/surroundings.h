@@ -35,21 +35,16 @@ struct Viscera {
 [[nodiscard]] Viscera makeViscera(std::span<const Vec3> vessels, double lowest);
 
 /// Abdominal wall, and where the scene has bile duct or hepatic artery, and y is up, their ligament, omentum and bowel.
-/// Caches the surroundings of one view while its organs at rest are the same.
-class Surroundings {
- public:
-  void update(const SceneView& view);
+struct Surroundings {
+  Mesh wall, ligament;
+  Viscera viscera;
 
-  [[nodiscard]] const Mesh& wall() const { return wall_; }
-  [[nodiscard]] const Mesh& ligament() const { return ligament_; }
-  [[nodiscard]] const Viscera& viscera() const { return viscera_; }
+  /// Rebuilds the meshes where the view's organs at rest are others than before.
+  void update(const SceneView& view);
 
  private:
   CavityShape shape_;
-  Mesh wall_;
-  std::vector<Vec3> vessels_;  ///< of which the ligament was made
-  Mesh ligament_;
-  Viscera viscera_;
+  std::vector<Vec3> vessels_;  ///< of which ligament and viscera were made
 };
 
 /// The hepatoduodenal ligament: the fold of peritoneum that bile duct and hepatic artery run along, from close behind

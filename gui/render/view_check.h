@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "gui/render/smoke.h"
+#include "gui/render/translucent.h"
 #include "sim/scene/scene_view.h"
 
 namespace calot::gui {

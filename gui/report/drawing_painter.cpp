@@ -2,9 +2,12 @@
 #include "gui/report/drawing_painter.h"
 
 #include <algorithm>
+#include <QFontDatabase>
 #include <QFontMetricsF>
 #include <QPen>
 #include <QString>
+
+#include "recorder/base/errors.h"
 
 namespace calot::gui {
 namespace {
@@ -79,6 +82,14 @@ void paintDrawing(QPainter& painter, const analytics::Drawing& drawing, const QR
     std::visit(ShapePainter{painter, style, look.font}, shape.form);
   }
   painter.restore();
+}
+
+QFont reportFont() {
+  if (QFontDatabase::families().isEmpty())
+    throw Error(ErrorKind::failure, "no font is installed, and a PDF needs one (Debian: fonts-dejavu-core)");
+  QFont font;
+  font.setFamilies({"DejaVu Sans", "Liberation Sans", "Sans Serif"});
+  return font;
 }
 
 }  // namespace calot::gui

@@ -19,4 +19,7 @@ struct DrawingLook {
 /// Paints a figure into `target`, as large as fits in it.
 void paintDrawing(QPainter& painter, const analytics::Drawing& drawing, const QRectF& target, const DrawingLook& look);
 
+/// The font of what is printed. @throws Error (failure) where no font is installed
+QFont reportFont();
+
 }  // namespace calot::gui

@@ -2,17 +2,18 @@
 #include "gui/report/pdf_report.h"
 
 #include <algorithm>
-#include <functional>
+#include <clocale>
 #include <QAbstractTextDocumentLayout>
 #include <QBuffer>
 #include <QFont>
+#include <QGuiApplication>
 #include <QImage>
 #include <QPainter>
 #include <QPainterPath>
 #include <QPdfWriter>
 #include <QTextBlock>
 
-#include "gui/report/offscreen_application.h"
+#include "gui/report/drawing_painter.h"
 #include "gui/report/text_document.h"
 
 namespace calot::gui {
@@ -51,10 +52,25 @@ QString titleOf(const analytics::ReportDocument& document) {
   return QString(document.synthetic ? "SYNTHETIC: " : "") + QString::fromStdString(document.title);
 }
 
+/// Qt's application without a display, where none is there yet; else null. Qt takes the user's locale as the process':
+/// numbers would get his decimal comma from then on. And it warns of what a desktop would have.
+std::unique_ptr<QGuiApplication> offscreenApplication() {
+  if (QCoreApplication::instance() != nullptr) return nullptr;
+  static char name[] = "calot", option[] = "-platform", platform[] = "offscreen";
+  static char* words[] = {name, option, platform, nullptr};
+  static int count = 3;
+  const std::string locale = std::setlocale(LC_ALL, nullptr);
+  const QtMessageHandler before = qInstallMessageHandler([](QtMsgType, const QMessageLogContext&, const QString&) {});
+  auto application = std::make_unique<QGuiApplication>(count, words);
+  qInstallMessageHandler(before);
+  std::setlocale(LC_ALL, locale.c_str());
+  return application;
+}
+
 /// Bytes of a PDF that `paint` fills: A4, of `dots` an inch, all margins alike (mm).
 std::string pdfOf(const QString& title, const std::string& maker, int dots, double margin,
                   const std::function<void(QPdfWriter& writer, const QFont& font)>& paint) {
-  const OffscreenApplication application;
+  const std::unique_ptr<QGuiApplication> application = offscreenApplication();
   const QFont font = reportFont();
   QBuffer bytes;
   bytes.open(QIODevice::WriteOnly);

@@ -11,7 +11,6 @@
 #include <QTextTable>
 
 #include "gui/report/drawing_painter.h"
-#include "gui/report/offscreen_application.h"
 
 namespace calot::gui {
 namespace {
@@ -50,13 +49,18 @@ struct ReportTextDocument::Writer {
 
   /// The first block is there already, as is the one behind a table.
   void begin(const QTextBlockFormat& format, const QTextCharFormat& ink) {
-    const bool fresh = cursor.block().length() == 1;
-    if (fresh) {
+    if (cursor.block().length() == 1) {
       cursor.setBlockFormat(format);
       cursor.setBlockCharFormat(ink);
     } else {
       cursor.insertBlock(format, ink);
     }
+  }
+
+  /// A block of one text.
+  void line(const std::string& text, const QTextBlockFormat& format, const QTextCharFormat& ink) {
+    begin(format, ink);
+    cursor.insertText(QString::fromStdString(text), ink);
   }
 
   void spans(const Paragraph& paragraph, const QTextCharFormat& ink) {
@@ -76,20 +80,13 @@ struct ReportTextDocument::Writer {
     format.setBackground(QColor("#b00020"));
     QTextCharFormat ink = letters(textPoints, true);
     ink.setForeground(Qt::white);
-    begin(format, ink);
-    cursor.insertText(QString(" ") + analytics::watermarkText, ink);
-  }
-
-  void title(const std::string& text) {
-    begin(block(0.0, 3.0), letters(titlePoints, true));
-    cursor.insertText(QString::fromStdString(text), letters(titlePoints, true));
+    line(std::string(" ") + analytics::watermarkText, format, ink);
   }
 
   void operator()(const analytics::Heading& heading) {
     QTextBlockFormat format = block(5.0, 1.5);
     if (heading.newPage) format.setPageBreakPolicy(QTextFormat::PageBreak_AlwaysBefore);
-    begin(format, letters(headingPoints, true));
-    cursor.insertText(QString::fromStdString(heading.text), letters(headingPoints, true));
+    line(heading.text, format, letters(headingPoints, true));
   }
 
   void operator()(const Paragraph& paragraph) {
@@ -143,7 +140,7 @@ struct ReportTextDocument::Writer {
     font.setBold(true);
     const QFontMetricsF metrics(font, document.device_);
     const double dotsPerMillimetre = document.device_->logicalDpiX() / 25.4;
-    const auto isWords = [&](std::size_t c) { return table.columns[c].second == analytics::TextTable::Align::left; };
+    const auto isWords = [&](std::size_t c) { return table.columns[c].second == analytics::Align::left; };
     std::vector<double> width, words;
     double room = document.page_.width() / dotsPerMillimetre - 1.0;
     for (std::size_t c = 0; c < table.columns.size(); ++c) {
@@ -151,11 +148,10 @@ struct ReportTextDocument::Writer {
       for (const auto& row : table.rows)
         widest = std::max(widest, metrics.horizontalAdvance(QString::fromStdString(row[c])));
       width.push_back(widest / dotsPerMillimetre + 2.0 * cellPadding + aroundText);
-      if (isWords(c)) {
+      if (isWords(c))
         words.push_back(width.back());
-      } else {
+      else
         room -= width.back();
-      }
     }
     std::sort(words.begin(), words.end());
     double maxWords = words.empty() ? 0.0 : words.back();
@@ -174,11 +170,10 @@ struct ReportTextDocument::Writer {
     return lengths;
   }
 
-  static void cell(QTextTable& grid, int row, int column, const std::string& text, analytics::TextTable::Align align,
-                   bool bold) {
+  static void cell(QTextTable& grid, int row, int column, const std::string& text, analytics::Align align, bool bold) {
     QTextCursor inside = grid.cellAt(row, column).firstCursorPosition();
     QTextBlockFormat format;
-    format.setAlignment(align == analytics::TextTable::Align::right ? Qt::AlignRight : Qt::AlignLeft);
+    format.setAlignment(align == analytics::Align::right ? Qt::AlignRight : Qt::AlignLeft);
     inside.setBlockFormat(format);
     inside.setBlockCharFormat(letters(tablePoints, bold));  // an empty cell is no higher
     inside.insertText(QString::fromStdString(text), letters(tablePoints, bold));
@@ -208,7 +203,7 @@ ReportTextDocument::ReportTextDocument(const analytics::ReportDocument& report, 
   Writer writer{*this};
   writer.cursor.beginEditBlock();
   if (report.synthetic) writer.banner();
-  writer.title(report.title);
+  writer.line(report.title, writer.block(0.0, 3.0), letters(titlePoints, true));
   for (const auto& part : report.parts) std::visit(writer, part);
   if (report.synthetic) writer.banner();
   writer.cursor.endEditBlock();

@@ -1,19 +1,25 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Events that a trainee may want to undo.
+// What a window learns of an attempt: its state, the mistakes that a trainee may want to undo, its views, and how
+// smoothly they come.
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "gui/words/event_words.h"
 #include "recorder/engine/observer.h"
+#include "recorder/engine/session.h"
+#include "recorder/live/wrapped_sources.h"
 #include "sim/judgement/judge.h"
 #include "sim/scene/model.h"
 
@@ -28,7 +34,7 @@ struct Mistake {
   bool critical = false;  ///< fails an assessment
   std::string text;       ///< one line: "cystic duct: clip half on"
 
-  /// Where the branch leaves (s): goBackBy earlier, or the end of the first step.
+  /// Fork of the branch (s): goBackBy earlier, or the end of the first step.
   [[nodiscard]] double branchTime(double stepSeconds) const;
 };
 
@@ -111,6 +117,106 @@ class AttemptMonitor final : public recorder::Observer {
 
   mutable std::mutex mutex_;
   AttemptFigures figures_;
+};
+
+/// When the last motion of each of the latest steps was asked for: with it a window says how long after a motion of the
+/// hands the picture of it was there. What lies between device and source is not in it (a calibration measures that).
+class MotionClock {
+ public:
+  using Time = std::chrono::steady_clock::time_point;
+
+  /// One thread, the one that asks for ticks.
+  void asked(std::uint64_t step, Time now);
+  /// Any thread: none where the step is not among the latest.
+  [[nodiscard]] std::optional<Time> of(std::uint64_t step) const;
+
+ private:
+  struct Entry {
+    std::atomic<std::uint64_t> step{~std::uint64_t{0}};
+    std::atomic<Time::rep> ticks{0};
+  };
+  static constexpr std::size_t kept = 256;  ///< steps: 2.56 s
+  std::array<Entry, kept> entries_;
+};
+
+/// A source whose ticks are noted in a MotionClock.
+class ClockedSource final : public recorder::WrappedSource {
+ public:
+  /// @param source, clock outlive this. @param firstStep of the attempt, in which the source's tick 0 lies
+  ClockedSource(recorder::SampleSource& source, MotionClock& clock, std::uint64_t firstStep, std::uint32_t ticksPerStep)
+      : WrappedSource(source), clock_(clock), firstStep_(firstStep), ticksPerStep_(ticksPerStep) {}
+
+  bool next(std::uint64_t tick, TickSamples& out) override;
+
+ private:
+  MotionClock& clock_;
+  std::uint64_t firstStep_;
+  std::uint32_t ticksPerStep_;
+};
+
+/// How smoothly an operation was seen while it was running: pictures a second, the longest time that one stood, how
+/// large they were drawn, and how long after a motion of the hands it was on the screen. Pauses and what comes after
+/// the end do not count. One thread.
+class PictureRate {
+ public:
+  using Time = std::chrono::steady_clock::time_point;
+
+  /// Sets whether the operation moves from now on.
+  void setRunning(bool running);
+  /// A picture came on the screen. @param side its share of the size that it is shown in. @param delay since the last
+  /// motion that is in it (s); none where that is not known
+  void shown(Time now, double side = 1.0, std::optional<double> delay = {});
+
+  [[nodiscard]] std::uint64_t pictures() const { return pictures_; }  ///< that followed another one
+  [[nodiscard]] double seconds() const { return seconds_; }           ///< from the first one to the last
+  [[nodiscard]] double longest() const { return longest_; }           ///< between two (s)
+  /// Mean pictures a second; 0 before there were two.
+  [[nodiscard]] double mean() const { return seconds_ > 0.0 ? static_cast<double>(pictures_) / seconds_ : 0.0; }
+
+  /// Mean share of the size that they are shown in; 1 before there were two.
+  [[nodiscard]] double side() const { return pictures_ > 0 ? sides_ / static_cast<double>(pictures_) : 1.0; }
+  /// Delay (s) not exceeded by that share of the pictures; none if it was never known.
+  [[nodiscard]] std::optional<double> delay(double share) const;
+
+  /// "25.3 pictures a second of 1280x720 in 25.0 s, ...": one line for a terminal.
+  [[nodiscard]] std::string report(int width, int height, const std::string& drawnBy) const;
+
+ private:
+  bool running_ = false;
+  std::optional<Time> last_;
+  std::uint64_t pictures_ = 0;
+  double seconds_ = 0.0, longest_ = 0.0, sides_ = 0.0;
+  std::vector<float> delays_;
+};
+
+/// Hands out views of a running attempt, as many as are looked at: at most one in 30 ms, and none while three are
+/// still to be shown, since each costs the simulation's thread the surfaces of the scene.
+class ViewTap final : public recorder::Observer {
+ public:
+  using Sink = std::function<void(std::shared_ptr<const SceneView>)>;
+
+  /// @param sink called on the simulation's thread; must not wait
+  explicit ViewTap(Sink sink) : sink_(std::move(sink)) {}
+
+  void onStep(const recorder::StepRecord& record) override;
+  void onEnd(recorder::Outcome /*outcome*/) override {}
+
+  /// Hands out a view of a session that it is to be joined to.
+  void begin(recorder::Session& session);
+  /// Any thread: a view has been shown.
+  void shown() { underway_ = 0; }
+  /// Has the newest one that was handed out been shown, or one after it?
+  [[nodiscard]] bool isShown() const { return underway_ == 0; }
+  [[nodiscard]] std::uint64_t taken() const { return taken_; }  ///< views handed out
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  Sink sink_;
+  Clock::time_point next_{};  ///< when the next one is due
+  Clock::time_point last_{};
+  std::atomic<int> underway_{0};  ///< handed out since the last one was shown
+  std::atomic<std::uint64_t> taken_{0};
 };
 
 }  // namespace calot::gui

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "analytics/assess.h"
+#include "analytics/checkpoints/checkpoint.h"
 #include "analytics/checkpoints/collector.h"
-#include "analytics/checkpoints/registry.h"
 #include "gui/attempt/figure_standing.h"
 #include "gui/attempt/figure_text.h"
 #include "recorder/base/errors.h"

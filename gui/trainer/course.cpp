@@ -8,17 +8,11 @@
 #include "gui/words/problem_words.h"
 #include "recorder/base/errors.h"
 #include "recorder/base/file_bytes.h"
+#include "recorder/base/record_reader.h"
 #include "recorder/formats/scene_file.h"
 
 namespace calot::gui {
 namespace {
-
-using recorder::JsonObject;
-using recorder::JsonPlace;
-using recorder::ObjectRule;
-
-constexpr std::size_t maxCourseBytes = 1U << 16U;
-constexpr std::size_t maxTasks = 50, maxName = 60, maxTitle = 80, maxGoal = 300;
 
 /// The first of these files that is there, or empty.
 std::filesystem::path firstUnder(const std::vector<std::filesystem::path>& roots, const std::filesystem::path& name) {
@@ -31,32 +25,38 @@ std::filesystem::path firstUnder(const std::vector<std::filesystem::path>& roots
 
 }  // namespace
 
-const std::vector<ObjectRule>& courseRules() {
-  static const std::vector<ObjectRule> rules{
-      {"", {{"format"}, {"formatVersion", true, 1, 1}, {"name"}, {"title"}, {"tasks"}}},
-      {"task", {{"scene"}, {"title"}, {"goal"}}}};
-  return rules;
+std::vector<Field> CourseTask::fields() {
+  using S = CourseTask;
+  return {
+      object("task", "Task on a scene"),
+      {"scene", at<S, &S::scene>, TextRule{60}, "Name of a scene (calot scenes)"},
+      {"title", at<S, &S::title>, TextRule{80}, "A word or a few: Clip and cut"},
+      {"goal", at<S, &S::goal>, TextRule{300}, "One sentence: what is to be reached"},
+  };
+}
+
+std::vector<Field> Course::fields() {
+  using S = Course;
+  return {
+      object("", "Tasks of rising difficulty for the trainer"),
+      fileFormat("calot-course"),
+      fileFormatVersion(),
+      {"name", at<S, &S::name>, TextRule{60}, "Name of the course"},
+      {"title", at<S, &S::title>, TextRule{80}, "One line"},
+      Field("tasks", at<S, &S::tasks>, "The easiest first; no scene twice").items(1, 50),
+  };
 }
 
 Course readCourse(const std::filesystem::path& file) {
-  const std::vector<std::byte> bytes = recorder::readFileBytes(file, file.string(), maxCourseBytes);
-  const nlohmann::json json = recorder::parseStrictJson(bytes, file.string());
-  const JsonPlace top(json, file.string());
-  const JsonObject o = top.object(courseRules()[0]);
-  static_cast<void>(o.at("format").word<bool>({{"calot-course", true}}));
-  std::uint32_t version = 0;
-  o.read("formatVersion", version);
+  const nlohmann::json json =
+      recorder::parseStrictJson(recorder::readFileBytes(file, file.string(), 1U << 16U), file.string());
+  const recorder::JsonPlace root(json, file.string());
   Course course;
-  o.read("name", course.name, maxName);
-  o.read("title", course.title, maxTitle);
+  recorder::readRecord(root, course);
   std::set<std::string> scenes;
-  for (const JsonPlace& place : o.at("tasks").list(1, maxTasks)) {
-    const JsonObject t = place.object(courseRules()[1]);
-    CourseTask& task = course.tasks.emplace_back();
-    t.read("scene", task.scene, maxName);
-    t.read("title", task.title, maxTitle);
-    t.read("goal", task.goal, maxGoal);
-    if (!scenes.insert(task.scene).second) t.at("scene").fail("an earlier task has this scene");
+  for (std::size_t i = 0; i < course.tasks.size(); ++i) {
+    if (!scenes.insert(course.tasks[i].scene).second)
+      root.at("tasks").at(i).at("scene").fail("an earlier task has this scene");
   }
   return course;
 }

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "recorder/base/json_reader.h"
+#include "sim/math/record.h"
 
 namespace calot::gui {
 
@@ -14,15 +14,16 @@ struct CourseTask {
   std::string scene;  ///< name of the scene
   std::string title;  ///< "Clip and cut"
   std::string goal;   ///< one sentence: what is to be reached
+
+  static std::vector<Field> fields();
 };
 
 struct Course {
   std::string name, title;
   std::vector<CourseTask> tasks;  ///< the easiest first
-};
 
-/// Limits of the reader, as in schemas/course.schema.json.
-const std::vector<recorder::ObjectRule>& courseRules();
+  static std::vector<Field> fields();
+};
 
 /// @throws Error (damaged), naming file and JSON pointer, where anything is unknown, missing or out of its range.
 Course readCourse(const std::filesystem::path& file);

@@ -5,7 +5,6 @@
 #include <QLabel>
 #include <QListWidget>
 #include <QPushButton>
-#include <QScrollArea>
 #include <utility>
 
 #include "analytics/assess.h"
@@ -14,7 +13,7 @@
 #include "gui/attempt/replay_transport.h"
 #include "gui/attempt/theme.h"
 #include "gui/attempt/widget_parts.h"
-#include "gui/trainer/trainer_texts.h"
+#include "gui/trainer/run_panel.h"
 #include "gui/view/scene_picture_widget.h"
 #include "gui/words/problem_words.h"
 #include "recorder/base/errors.h"
@@ -39,7 +38,7 @@ QString figureWords(const FigureReport& figure) {
   return text;
 }
 
-/// Where the recording is stored, or why it is not.
+/// Path of the stored recording, or the reason why it is not stored.
 QString putIntoCohort(const std::filesystem::path& file, const std::filesystem::path& cohort, unsigned threads,
                       LongWork::Control& control) {
   analytics::AssessSettings settings;
@@ -94,8 +93,7 @@ EndPage::EndPage(Setup setup, QWidget* parent)
   connect(moments_, &QListWidget::currentRowChanged, this, [this](int at) { back_->setEnabled(at >= 0); });
   connect(replay_.get(), &Replay::failed, this, [this](const QString& reason) { picture_->showText(reason); });
   connect(back_, &QPushButton::clicked, this, [this] {
-    if (const QListWidgetItem* const item = moments_->currentItem(); item != nullptr)
-      emit backRequested(item->data(Qt::UserRole).toDouble());
+    if (const auto time = chosenBranch(*moments_)) emit backRequested(*time);
   });
   connect(again_, &QPushButton::clicked, this, &EndPage::againRequested);
   connect(next_, &QPushButton::clicked, this, &EndPage::nextRequested);
@@ -129,16 +127,13 @@ QWidget* EndPage::buildReplay() {
   auto* const made = new QWidget;
   auto* const layout = parts::bare<QVBoxLayout>(made);
   layout->addWidget(picture_, 3);
-  layout->addWidget(new TransportBar(*replay_));
-  layout->addWidget(momentsTitle_);
+  parts::fill(*layout, {new TransportBar(*replay_), momentsTitle_});
   layout->addWidget(moments_, 1);
   return made;
 }
 
 QWidget* EndPage::buildWords() {
-  QFont large = font();
-  large.setPointSizeF(1.5 * large.pointSizeF());
-  title_->setFont(large);
+  parts::enlarge(title_, 1.5);
   parts::embolden(verdict_);
   parts::embolden(syntheticMark_);
   syntheticMark_->setText("SYNTHETIC: made by a performer, no person's attempt");
@@ -146,15 +141,9 @@ QWidget* EndPage::buildWords() {
   figures_->setAccessibleName("Figures that count");
   auto* const inside = new QWidget;
   auto* const layout = new QVBoxLayout(inside);
-  for (QLabel* const label : {title_, syntheticMark_, outcome_, verdict_, norm_, previous_, figures_, storeText_})
-    layout->addWidget(label);
+  parts::fill(*layout, {title_, syntheticMark_, outcome_, verdict_, norm_, previous_, figures_, storeText_});
   layout->addStretch(1);
-  auto* const scroll = new QScrollArea;
-  scroll->setFrameShape(QFrame::NoFrame);
-  scroll->setWidgetResizable(true);
-  scroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
-  scroll->setWidget(inside);
-  return scroll;
+  return parts::scrolled(inside);
 }
 
 QWidget* EndPage::buildButtons() {
@@ -164,7 +153,7 @@ QWidget* EndPage::buildButtons() {
   auto* const row = parts::bare<QHBoxLayout>(made);
   row->addWidget(store_);
   row->addStretch(1);
-  for (QPushButton* const button : {back_, again_, next_, scenes_}) row->addWidget(button);
+  parts::fill(*row, {back_, again_, next_, scenes_});
   return made;
 }
 
@@ -193,27 +182,17 @@ void EndPage::showAttempt(const TrainingStatus& status, const QString& result, d
     again_->setFocus();
     return;
   }
-  showMistakes(status, stepSeconds);
+  listMistakes(*moments_, *status.figures.mistakes, stepSeconds);
+  moments_->setCurrentRow(0);
+  momentsTitle_->setText(moments_->count() > 0 ? "What went wrong: a click shows it again." : "Nothing went wrong.");
   picture_->showText("Opening the replay …");
   replay_->open(file_, attempt_);
   read();
   (moments_->count() > 0 ? static_cast<QWidget*>(moments_) : again_)->setFocus();
 }
 
-void EndPage::showMistakes(const TrainingStatus& status, double stepSeconds) {
-  moments_->clear();
-  for (const Mistake& mistake : *status.figures.mistakes) {
-    auto* const item = new QListWidgetItem(mistakeText(mistake), moments_);
-    item->setData(Qt::UserRole, mistake.branchTime(stepSeconds));
-  }
-  moments_->setVisible(moments_->count() > 0);
-  momentsTitle_->setText(moments_->count() > 0 ? "What went wrong: a click shows it again." : "Nothing went wrong.");
-  if (moments_->count() > 0) moments_->setCurrentRow(0);
-}
-
 void EndPage::replayMoment() {
-  if (const QListWidgetItem* const item = moments_->currentItem(); item != nullptr)
-    replay_->playFrom(item->data(Qt::UserRole).toDouble());
+  if (const auto time = chosenBranch(*moments_)) replay_->playFrom(*time);
 }
 
 void EndPage::read() {

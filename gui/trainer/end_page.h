@@ -6,7 +6,6 @@
 #include <optional>
 #include <QWidget>
 
-#include "gui/attempt/background.h"
 #include "gui/attempt/long_work.h"
 #include "gui/attempt/replay_transport.h"
 #include "gui/trainer/attempt_report.h"
@@ -59,7 +58,6 @@ class EndPage : public QWidget {
   QWidget* buildButtons();
   void read();
   void showReport(const AttemptReport& report);
-  void showMistakes(const TrainingStatus& status, double stepSeconds);
   void replayMoment();
   void store();
   void showStoring();

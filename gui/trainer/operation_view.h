@@ -1,15 +1,50 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Key bindings in the picture of the operation.
 #pragma once
 
 #include <memory>
 #include <optional>
 #include <QPointF>
+#include <string>
+#include <vector>
 
-#include "gui/trainer/key_bindings.h"
 #include "gui/view/scene_picture_widget.h"
 #include "recorder/sources/devices/window_input.h"
+#include "sim/scene/samples.h"
 
 namespace calot::gui {
+
+struct KeyAction {
+  enum class Kind : std::uint8_t {
+    control,     ///< does it while it is held
+    switchHand,  ///< passes mouse and keyboard to the other hand
+    toggleLock,
+    mount,       ///< exchanges an instrument
+    retraction,  ///< asks the assistant for more or less
+    scope,       ///< moves the endoscope while it is held
+    scopePedal,  ///< while it is held, the mouse moves the endoscope
+    pause,       ///< or goes on
+  };
+  Kind kind = Kind::control;
+  recorder::MouseControl control = recorder::MouseControl::right;
+  recorder::ScopeControl scope = recorder::ScopeControl::right;
+  InstrumentKind instrument = InstrumentKind::none;
+  bool otherHand = false;  ///< mount: not the hand that is driven
+  bool more = false;       ///< retraction
+};
+
+/// @param key of Qt::Key
+[[nodiscard]] std::optional<KeyAction> actionOf(int key);
+
+/// For the page of keys: "Space" and "the other hand".
+struct KeyHelp {
+  std::string keys;
+  std::string what;
+  bool assistant = false;  ///< only where the scene has one
+};
+/// @param mouse both hands are driven by mouse and keyboard; else only instruments are exchanged and runs held
+/// @param scope keys move the endoscope @param pauses the mode has a pause
+[[nodiscard]] std::vector<KeyHelp> keyHelp(bool mouse, bool scope, bool pauses);
 
 /// Motions of a pointer that is put back to the middle now and then, so that it never comes to an edge. Positions of
 /// before are still under way when it was put back: they count as what they are.
@@ -79,8 +114,7 @@ class OperationView : public ScenePictureWidget {
   void resizeEvent(QResizeEvent* event) override;
 
  private:
-  void press(const KeyAction& action);
-  void release(const KeyAction& action);
+  void act(const KeyAction& action, bool held);
   void releaseAll();
   void holdButton(Qt::MouseButton button, bool held);
   void holdPointer(bool hold);

@@ -11,7 +11,6 @@
 #include <QProgressBar>
 #include <QPushButton>
 #include <QRegularExpression>
-#include <QScrollArea>
 #include <QStackedWidget>
 
 #include "gui/attempt/theme.h"
@@ -54,17 +53,21 @@ QWidget* keyPage(bool mouse, bool scope, bool pauses) {
   return page;
 }
 
-/// Letters may be so large that not all keys fit.
-QWidget* scrolled(QWidget* page) {
-  auto* const scroll = new QScrollArea;
-  scroll->setFrameShape(QFrame::NoFrame);
-  scroll->setWidgetResizable(true);
-  scroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
-  scroll->setWidget(page);
-  return scroll;
+}  // namespace
+
+void listMistakes(QListWidget& list, const std::vector<Mistake>& mistakes, double stepSeconds) {
+  list.clear();
+  for (const Mistake& mistake : mistakes) {
+    auto* const item = new QListWidgetItem(mistakeText(mistake), &list);
+    item->setData(Qt::UserRole, mistake.branchTime(stepSeconds));
+  }
+  list.setVisible(!mistakes.empty());
 }
 
-}  // namespace
+std::optional<double> chosenBranch(const QListWidget& list) {
+  const QListWidgetItem* const item = list.currentItem();
+  return item == nullptr ? std::nullopt : std::optional(item->data(Qt::UserRole).toDouble());
+}
 
 RunPanel::RunPanel(recorder::Mode mode, bool mouse, bool scope, QWidget* parent)
     : QWidget(parent),
@@ -82,7 +85,7 @@ RunPanel::RunPanel(recorder::Mode mode, bool mouse, bool scope, QWidget* parent)
       assistant_(plainLabel("assistant")),
       progress_(parts::named("progress", new QProgressBar)),
       lower_(new QStackedWidget),
-      keys_(scrolled(keyPage(mouse, scope, mode == recorder::Mode::practice))),
+      keys_(parts::scrolled(keyPage(mouse, scope, mode == recorder::Mode::practice))),
       mistakes_(new QWidget),
       mistakesTitle_(plainLabel("mistakesTitle")),
       list_(parts::named("mistakes", new QListWidget)),
@@ -95,9 +98,7 @@ RunPanel::RunPanel(recorder::Mode mode, bool mouse, bool scope, QWidget* parent)
   setMaximumWidth(theme::inType(320));
   parts::embolden(stage_);
   parts::embolden(phase_);
-  QFont large = font();
-  large.setPointSizeF(2.0 * large.pointSizeF());
-  time_->setFont(large);
+  parts::enlarge(time_, 2.0);
   hint_->setStyleSheet(hintStyle);
   result_->setTextInteractionFlags(Qt::TextSelectableByMouse | Qt::TextSelectableByKeyboard);
   progress_->setRange(0, 100);
@@ -124,18 +125,11 @@ RunPanel::RunPanel(recorder::Mode mode, bool mouse, bool scope, QWidget* parent)
 
   auto* const layout = new QVBoxLayout(this);
   layout->addLayout(head);
-  layout->addWidget(progress_);
-  layout->addWidget(time_);
-  layout->addWidget(deadlines_);
+  parts::fill(*layout, {progress_, time_, deadlines_});
   layout->addSpacing(6);
-  layout->addWidget(phase_);
-  layout->addWidget(score_);
-  layout->addWidget(hint_);
-  layout->addWidget(pointer_);
-  layout->addWidget(result_);
+  parts::fill(*layout, {phase_, score_, hint_, pointer_, result_});
   layout->addSpacing(6);
-  for (QLabel* const hand : hand_) layout->addWidget(hand);
-  layout->addWidget(assistant_);
+  parts::fill(*layout, {hand_[0], hand_[1], assistant_});
   layout->addSpacing(10);
   layout->addWidget(lower_, 1);
   layout->addLayout(buttons);
@@ -198,20 +192,14 @@ void RunPanel::showMistakes(const TrainingStatus& status, double stepSeconds) {
                                                           : "Nothing went wrong.");
   if (listed_ == status.figures.mistakes) return;
   listed_ = status.figures.mistakes;
-  list_->clear();
-  for (const Mistake& mistake : *listed_) {
-    auto* const item = new QListWidgetItem(mistakeText(mistake), list_);
-    item->setData(Qt::UserRole, mistake.branchTime(stepSeconds));
-  }
-  list_->setVisible(!none);
+  listMistakes(*list_, *listed_, stepSeconds);
   back_->setVisible(!none);
   // The last one is the one to be undone, mostly.
   list_->setCurrentRow(list_->count() - 1);
 }
 
 void RunPanel::goBack() {
-  if (const QListWidgetItem* const item = list_->currentItem(); item != nullptr)
-    emit backRequested(item->data(Qt::UserRole).toDouble());
+  if (const auto time = chosenBranch(*list_)) emit backRequested(*time);
 }
 
 }  // namespace calot::gui

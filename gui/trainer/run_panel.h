@@ -3,10 +3,11 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <QWidget>
 #include <vector>
 
-#include "gui/trainer/key_bindings.h"
+#include "gui/trainer/operation_view.h"
 #include "gui/trainer/trainer_texts.h"
 
 class QLabel;
@@ -16,6 +17,11 @@ class QPushButton;
 class QStackedWidget;
 
 namespace calot::gui {
+
+/// Fills a list with mistakes. @param stepSeconds of the scene
+void listMistakes(QListWidget& list, const std::vector<Mistake>& mistakes, double stepSeconds);
+/// Fork of a branch before the chosen one (s); none: none is chosen.
+[[nodiscard]] std::optional<double> chosenBranch(const QListWidget& list);
 
 /// Beside the picture: what the attempt is at, what to do next, the keys; paused and afterwards the mistakes to go back
 /// to. It shows what it is given and requests what is pressed.

@@ -15,6 +15,8 @@
 #include "gui/attempt/figure_text.h"
 #include "gui/attempt/widget_parts.h"
 #include "gui/trainer/trainer_texts.h"
+#include "gui/words/problem_words.h"
+#include "recorder/base/errors.h"
 
 namespace calot::gui {
 
@@ -82,15 +84,13 @@ ScenesPage::ScenesPage(bool practice, bool demonstrates, QWidget* parent)
     : QWidget(parent),
       list_(parts::named("scenes", new QListWidget)),
       past_(parts::named("past", new QListWidget)),
-      pastTitle_(new QLabel),
+      pastTitle_(parts::plainLabel("pastTitle")),
       pastSide_(new QWidget),
-      begin_(parts::named("begin", new QPushButton("&Begin"))),
-      tutorial_(parts::named("tutorial", new QPushButton("&Learn the controls"))),
-      demonstration_(parts::named("demonstration", new QPushButton("&Watch a demonstration"))) {
+      begin_(parts::button("&Begin", "begin")),
+      tutorial_(parts::button("&Learn the controls", "tutorial")),
+      demonstration_(parts::button("&Watch a demonstration", "demonstration")) {
   auto* const title = new QLabel("Welcome to the trainer");
-  QFont large = font();
-  large.setPointSizeF(1.6 * large.pointSizeF());
-  title->setFont(large);
+  parts::enlarge(title, 1.6);
   auto* const text = new QLabel(
       practice
           ? "Choose what to practise; the tasks become harder from the top. Every attempt is recorded; you can pause, "
@@ -104,17 +104,12 @@ ScenesPage::ScenesPage(bool practice, bool demonstrates, QWidget* parent)
   list_->setStyleSheet("QListWidget::item { padding: 6px; }");
   past_->setAccessibleName("Your attempts at this task");
   past_->setWordWrap(true);
-  pastTitle_->setTextFormat(Qt::PlainText);
-  pastTitle_->setWordWrap(true);
   pastTitle_->setAlignment(Qt::AlignTop | Qt::AlignLeft);  // also where there is no list below it
   tutorial_->setToolTip("Asks for one control after the other, on the first task's scene");
   demonstration_->setToolTip("A skilled performer does it: a program, no person; its recording is marked synthetic");
   demonstration_->setVisible(demonstrates);
   tutorial_->setVisible(practice);
-  for (QPushButton* const button : {begin_, tutorial_, demonstration_}) {
-    button->setEnabled(false);
-    button->setAutoDefault(true);  // Enter presses it
-  }
+  for (QPushButton* const button : {begin_, tutorial_, demonstration_}) button->setEnabled(false);
 
   auto* const side = parts::bare<QVBoxLayout>(pastSide_);
   side->addWidget(pastTitle_);
@@ -126,13 +121,11 @@ ScenesPage::ScenesPage(bool practice, bool demonstrates, QWidget* parent)
   auto* const buttons = new QHBoxLayout;
   buttons->addWidget(tutorial_);
   buttons->addStretch(1);
-  buttons->addWidget(demonstration_);
-  buttons->addWidget(begin_);
+  parts::fill(*buttons, {demonstration_, begin_});
   auto* const column = new QWidget;
   column->setMaximumWidth(1300);
   auto* const inner = new QVBoxLayout(column);
-  inner->addWidget(title);
-  inner->addWidget(text);
+  parts::fill(*inner, {title, text});
   inner->addSpacing(6);
   inner->addLayout(middle, 1);
   inner->addLayout(buttons);

@@ -124,10 +124,8 @@ void TrainerWindow::begin(recorder::LoadedScene scene, Purpose purpose) {
       std::move(settings), purpose == Purpose::demonstration ? setup_.demonstration : setup_.input,
       [view = view_](std::shared_ptr<const SceneView> seen) { view->showView(std::move(seen)); });
   session_->start();
-  stack_->setCurrentWidget(operation_);
-  view_->setFocus();
   timer_.start();
-  refresh();
+  showOperation();
 }
 
 bool TrainerWindow::openScene(const QString& file, Purpose purpose) {
@@ -174,14 +172,14 @@ void TrainerWindow::restart() {
   if (!session_) return;
   session_->start();
   if (tutorial_) tutorial_.emplace(setup_.mouse != nullptr);
-  stack_->setCurrentWidget(operation_);
-  end_->leave();
-  refresh();
-  view_->setFocus();
+  showOperation();
 }
 
 void TrainerWindow::goBack(double time) {
-  if (!session_ || !session_->goBack(time)) return;
+  if (session_ && session_->goBack(time)) showOperation();
+}
+
+void TrainerWindow::showOperation() {
   stack_->setCurrentWidget(operation_);
   end_->leave();
   refresh();

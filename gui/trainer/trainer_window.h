@@ -9,10 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "gui/attempt/background.h"
-#include "gui/trainer/controls_tutorial.h"
-#include "gui/trainer/course.h"
-#include "gui/trainer/picture_timing.h"
+#include "gui/attempt/long_work.h"
+#include "gui/trainer/attempt_monitor.h"
+#include "gui/trainer/scenes_page.h"
 #include "gui/trainer/trainer_texts.h"
 #include "gui/trainer/training_session.h"
 #include "recorder/sources/devices/window_input.h"
@@ -89,6 +88,7 @@ class TrainerWindow : public QMainWindow {
   void togglePause();
   void restart();
   void goBack(double time);
+  void showOperation();
   void nextTask();
   void readHistory();
   void showEnd(const TrainingStatus& status, const QString& result);

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <iterator>
 #include <utility>
@@ -13,8 +14,53 @@
 #include "recorder/branch.h"
 #include "recorder/live/worker_pool.h"
 #include "recorder/live/wrapped_sources.h"
+#include "recorder/sources/devices/device_source.h"
+#include "recorder/sources/devices/mouse_device.h"
+#include "recorder/sources/scope/scope_source.h"
 
 namespace calot::gui {
+namespace {
+
+constexpr double patience = 5.0;  // s
+
+/// Ports and the endoscope's eye in D (the scene's camera's axes), seen from where the tips begin.
+void setPlaces(recorder::MouseInput& mouse, const SceneDescription& scene, const CameraSample& camera,
+               const std::array<Vec3, handCount>& tips) {
+  std::array<Vec3, handCount> ports, eyes;
+  for (std::size_t h = 0; h < handCount; ++h) {
+    ports[h] = scene.camera.orientation.conjugate() * Vec3(scene.hands[h].port - tips[h]);
+    eyes[h] = scene.camera.orientation.conjugate() * Vec3(camera.position - tips[h]);
+  }
+  mouse.setPorts(ports);
+  mouse.setEyes(eyes);
+}
+
+}  // namespace
+
+void AttemptInput::setOut(recorder::SampleSource& source, const SceneDescription& /*scene*/, const TickSamples& start) {
+  if (auto* const device = source.device(); device != nullptr) device->setOutFrom(start);
+  if (auto* const scope = source.scope(); scope != nullptr) scope->setOutFrom(start.camera);
+}
+
+MouseAttemptInput::MouseAttemptInput(std::shared_ptr<recorder::MouseInput> mouse,
+                                     recorder::DeviceSourceSettings settings, AddScope addScope)
+    : mouse_(std::move(mouse)), settings_(std::move(settings)), addScope_(std::move(addScope)) {}
+
+std::unique_ptr<recorder::SampleSource> MouseAttemptInput::open(const SceneDescription& scene) {
+  mouse_->reset();
+  setPlaces(*mouse_, scene, scene.camera, {scene.hands[0].home, scene.hands[1].home});
+  auto source =
+      std::make_unique<recorder::DeviceSource>(std::make_unique<recorder::MouseDevice>(mouse_), scene, settings_);
+  source->waitForFirst(patience);
+  if (addScope_) return addScope_(std::move(source), scene);
+  return source;
+}
+
+void MouseAttemptInput::setOut(recorder::SampleSource& source, const SceneDescription& scene,
+                               const TickSamples& start) {
+  setPlaces(*mouse_, scene, start.camera, {start.hand[0].position, start.hand[1].position});
+  AttemptInput::setOut(source, scene, start);
+}
 
 using recorder::Outcome;
 
@@ -23,29 +69,6 @@ namespace {
 constexpr std::chrono::milliseconds longSilence(500);
 
 }  // namespace
-
-/// A run that commands can reach.
-class TrainingSession::Registered {
- public:
-  Registered(TrainingSession& session, recorder::ControlledSource& controlled, AttemptMonitor& monitor)
-      : session_(session) {
-    const std::lock_guard lock(session_.mutex_);
-    if (session_.command_) controlled.finish(Outcome::stopped);  // it came while the run was made ready
-    session_.controlled_ = &controlled;
-    session_.monitor_ = &monitor;
-  }
-  ~Registered() {
-    const std::lock_guard lock(session_.mutex_);
-    session_.status_.figures = session_.monitor_->figures();
-    session_.controlled_ = nullptr;
-    session_.monitor_ = nullptr;
-  }
-  Registered(const Registered&) = delete;
-  Registered& operator=(const Registered&) = delete;
-
- private:
-  TrainingSession& session_;
-};
 
 TrainingSession::TrainingSession(TrainingSettings settings, std::shared_ptr<AttemptInput> input, ViewTap::Sink sink)
     : settings_(std::move(settings)), input_(std::move(input)), tap_(std::move(sink)), thread_([this] { work(); }) {}
@@ -157,32 +180,16 @@ void TrainingSession::work() {
     }
     std::string problem;
     try {
-      obey(command);
+      attempt(command.back);
     } catch (const Interrupted&) {
     } catch (const std::exception& error) {
       problem = problemText(error);
     }
     const std::lock_guard lock(mutex_);
-    // Where something else is wanted already, nothing has come to an end.
+    // If something else is requested already, nothing has ended.
     if (!command_ || command_->quit) status_.stage = Stage::ended;
     if (!problem.empty()) status_.problem = problem;
   }
-}
-
-void TrainingSession::obey(const Command& command) {
-  enter(command.back ? Stage::takingParent : Stage::preparing);
-  prepare();
-  if (command.back)
-    branch(*command.back);
-  else
-    attempt();
-}
-
-void TrainingSession::enter(Stage stage) {
-  const std::lock_guard lock(mutex_);
-  status_.stage = stage;
-  status_.progress = 0.0;
-  status_.problem.clear();
 }
 
 void TrainingSession::giveWay() const {
@@ -190,59 +197,52 @@ void TrainingSession::giveWay() const {
   if (command_) throw Interrupted{};
 }
 
-void TrainingSession::prepare() {
-  if (prepared_) return;
-  prepared_ = recorder::prepareScene(settings_.scene.assets, Where{"scene " + scene().name});
-}
-
-void TrainingSession::attempt() {
-  const std::unique_ptr<recorder::SampleSource> source = input_->open(scene());
-  giveWay();
-  recorder::ControlledSource controlled(*source);
-  const recorder::AttemptHeader header =
-      recorder::makeHeader(prepared_->model(), settings_.scene.assets, source->provenance(), settings_.attempt);
-  const std::filesystem::path file = freshFile(settings_.folder, scene().name, header.startUtc);
-  recorder::RecordingWriter writer(file, header, {false, settings_.key});
-  recorder::WorkerPool pool(settings_.threads);
-  recorder::Session session(prepared_->model(), header.seed, pool, prepared_->services(settings_.makeBroadPhase));
-  AttemptMonitor monitor(prepared_->model());
-  session.join(writer);
-  session.join(monitor);
-  input_->record(*source, writer, 0);
-  run(session, *source, controlled, writer, monitor, header, file);
-}
-
-void TrainingSession::branch(double time) {
+/// A new attempt, or a branch of the last one, from that time of it.
+void TrainingSession::attempt(std::optional<double> back) {
   std::filesystem::path parentFile;
   {
     const std::lock_guard lock(mutex_);
+    status_.stage = back ? Stage::takingParent : Stage::preparing;
+    status_.progress = 0.0;
+    status_.problem.clear();
     parentFile = status_.file;
   }
+  if (!prepared_) prepared_ = recorder::prepareScene(settings_.scene.assets, Where{"scene " + scene().name});
+  const Model& model = prepared_->model();
   const std::unique_ptr<recorder::SampleSource> source = input_->open(scene());
-  recorder::Recording parent(parentFile);
-  recorder::refuseParent(parent, parent.verifyChain());
-  const std::uint64_t fork = recorder::forkStepAt(parent, time);
-  const recorder::AttemptHeader header = recorder::branchHeader(parent, prepared_->model(), fork, source->provenance());
+  giveWay();
+  std::optional<recorder::Recording> parent;
+  std::uint64_t fork = 0;
+  if (back) {
+    parent.emplace(parentFile);
+    recorder::refuseParent(*parent, parent->verifyChain());
+    fork = recorder::forkStepAt(*parent, *back);
+  }
+  const recorder::AttemptHeader header =
+      parent ? recorder::branchHeader(*parent, model, fork, source->provenance())
+             : recorder::makeHeader(model, settings_.scene.assets, source->provenance(), settings_.attempt);
   const std::filesystem::path file = freshFile(settings_.folder, scene().name, header.startUtc);
-  recorder::BranchFile place(file, false);
-  recorder::RecordingWriter writer(place.path(), header, {true, settings_.key});
+  std::optional<recorder::BranchFile> place;
+  if (parent) place.emplace(file, false);
+  recorder::RecordingWriter writer(place ? place->path() : file, header, {parent.has_value(), settings_.key});
   recorder::WorkerPool pool(settings_.threads);
-  recorder::Session session(prepared_->model(), header.seed, pool, prepared_->services(settings_.makeBroadPhase));
-  AttemptMonitor monitor(prepared_->model());
+  recorder::Session session(model, header.seed, pool, prepared_->services(settings_.makeBroadPhase));
+  AttemptMonitor monitor(model);
   session.join(writer);
   session.join(monitor);
-  recorder::takeParent(parent, session, fork, [&](std::uint64_t step, std::uint64_t of) {
-    giveWay();
-    if (writer.failed()) {
-      session.end(Outcome::technicalFailure);
-      writer.finish();  // says why
-    }
-    const std::lock_guard lock(mutex_);
-    status_.progress = static_cast<double>(step) / static_cast<double>(of);
-  });
-  place.publish();
+  const auto record = [&] {
+    if (auto* const device = source->device(); device != nullptr)
+      writer.takeRawSamples(device->rawSamples(), session.steps() * scene().ticksPerStep);
+  };
+  if (!parent) {
+    recorder::ControlledSource controlled(*source);
+    record();
+    run(session, *source, controlled, writer, monitor, header, file);
+    return;
+  }
+  takeParent(*parent, session, fork, writer);
+  place->publish();
   monitor.beginRun();
-
   const TickSamples start = monitor.lastPose();
   input_->setOut(*source, scene(), start);
   recorder::BlendedSource blended(*source, start);
@@ -254,8 +254,21 @@ void TrainingSession::branch(double time) {
       if (had != InstrumentKind::none) controlled.mount(hand, had);
     }
   }
-  input_->record(*source, writer, session.steps() * scene().ticksPerStep);
+  record();
   run(session, *source, controlled, writer, monitor, header, file);
+}
+
+void TrainingSession::takeParent(recorder::Recording& parent, recorder::Session& session, std::uint64_t fork,
+                                 recorder::RecordingWriter& writer) {
+  recorder::takeParent(parent, session, fork, [&](std::uint64_t step, std::uint64_t of) {
+    giveWay();
+    if (writer.failed()) {
+      session.end(Outcome::technicalFailure);
+      writer.finish();  // says why
+    }
+    const std::lock_guard lock(mutex_);
+    status_.progress = static_cast<double>(step) / static_cast<double>(of);
+  });
 }
 
 void TrainingSession::run(recorder::Session& session, recorder::SampleSource& source,
@@ -273,15 +286,24 @@ void TrainingSession::run(recorder::Session& session, recorder::SampleSource& so
   };
   input_->drive(source, run);
   recorder::RunReport report;
+  const auto release = [](TrainingSession* trained) {
+    const std::lock_guard lock(trained->mutex_);
+    trained->status_.figures = trained->monitor_->figures();
+    trained->controlled_ = nullptr;
+    trained->monitor_ = nullptr;
+  };
   {
-    const Registered registered(*this, controlled, monitor);
+    const std::unique_ptr<TrainingSession, decltype(release)> reachable(this, release);  // by commands
     {
       const std::lock_guard lock(mutex_);
+      if (command_) controlled.finish(Outcome::stopped);  // it came while the run was made ready
+      controlled_ = &controlled;
+      monitor_ = &monitor;
       status_.stage = Stage::running;
       status_.file = file;
       status_.attempt = header.attempt;
       status_.parent = header.parent;
-      status_.branchedAt = static_cast<double>(header.forkStep + 1) * prepared_->model().stepSeconds();
+      status_.branchedAt = static_cast<double>(header.forkStep + 1) * session.model().stepSeconds();
       status_.operatorKind = header.provenance.kind;
       status_.report = {};
       status_.undone.clear();
@@ -309,7 +331,7 @@ void TrainingSession::awaitPicture(recorder::Session& session) {
   }
 }
 
-/// Who went back looks first and acts then. What the hands do meanwhile is forgotten.
+/// A person who went back looks first and acts then. Motion of the hands meanwhile is discarded.
 void TrainingSession::countDown(recorder::SampleSource& source) {
   using Clock = std::chrono::steady_clock;
   constexpr std::chrono::milliseconds glance(10);

@@ -14,15 +14,56 @@
 #include <thread>
 #include <vector>
 
-#include "gui/trainer/attempt_input.h"
 #include "gui/trainer/attempt_monitor.h"
-#include "gui/trainer/picture_timing.h"
 #include "recorder/formats/scene_file.h"
 #include "recorder/live/wrapped_sources.h"
+#include "recorder/loop.h"
 #include "recorder/prepared_scene.h"
 #include "recorder/recording/station_key.h"
+#include "recorder/sources/devices/device_source.h"
+#include "recorder/sources/devices/window_input.h"
+#include "recorder/sources/source.h"
 
 namespace calot::gui {
+
+/// Input of the trainer: opens a source for each attempt and ties it to its run. Called by the session's thread
+/// alone. What open() gave is what the other functions are given.
+class AttemptInput {
+ public:
+  AttemptInput() = default;
+  AttemptInput(const AttemptInput&) = delete;
+  AttemptInput& operator=(const AttemptInput&) = delete;
+  virtual ~AttemptInput() = default;
+
+  /// A source for a new attempt. @throws calot::Error where it is not there
+  virtual std::unique_ptr<recorder::SampleSource> open(const SceneDescription& scene) = 0;
+
+  /// Before the first tick of a branch: hands and endoscope of the source set out from here.
+  virtual void setOut(recorder::SampleSource& source, const SceneDescription& scene, const TickSamples& start);
+
+  /// Requirements of the source on its run: feedback to motors.
+  virtual void drive(recorder::SampleSource& /*source*/, recorder::RunSettings& /*run*/) {}
+};
+
+/// Both hands by mouse and keyboard. An assessment wants a calibration, which is declared.
+class MouseAttemptInput final : public AttemptInput {
+ public:
+  /// Lets an endoscope move with the hands of a source (ScopeSource).
+  using AddScope = std::function<std::unique_ptr<recorder::SampleSource>(std::unique_ptr<recorder::SampleSource>,
+                                                                         const SceneDescription&)>;
+
+  /// @param mouse what the window writes to; not null. @param addScope empty: the camera is fixed
+  explicit MouseAttemptInput(std::shared_ptr<recorder::MouseInput> mouse, recorder::DeviceSourceSettings settings = {},
+                             AddScope addScope = {});
+
+  std::unique_ptr<recorder::SampleSource> open(const SceneDescription& scene) override;
+  void setOut(recorder::SampleSource& source, const SceneDescription& scene, const TickSamples& start) override;
+
+ private:
+  std::shared_ptr<recorder::MouseInput> mouse_;
+  recorder::DeviceSourceSettings settings_;
+  AddScope addScope_;
+};
 
 struct TrainingSettings {
   recorder::LoadedScene scene;
@@ -110,21 +151,18 @@ class TrainingSession {
     std::optional<double> back;  ///< go back to this time; none: a new attempt
   };
   struct Interrupted {};  ///< thrown where another command came before a run began
-  class Registered;
 
   void post(Command command, recorder::Outcome ending);
   void work();
-  void obey(const Command& command);
-  void prepare();
-  void attempt();
-  void branch(double time);
+  void attempt(std::optional<double> back);
+  void takeParent(recorder::Recording& parent, recorder::Session& session, std::uint64_t fork,
+                  recorder::RecordingWriter& writer);
   void run(recorder::Session& session, recorder::SampleSource& source, recorder::ControlledSource& controlled,
            recorder::RecordingWriter& writer, AttemptMonitor& monitor, const recorder::AttemptHeader& header,
            const std::filesystem::path& file);
   void awaitPicture(recorder::Session& session);
   void countDown(recorder::SampleSource& source);
   void keepResult(const recorder::RunReport& report, const recorder::SampleSource& source);
-  void enter(Stage stage);
   void giveWay() const;
 
   TrainingSettings settings_;

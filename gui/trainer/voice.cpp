@@ -45,7 +45,7 @@ void Voice::say(const QString& subject, const QString& words) {
     return;
   }
   if (present_ == subject) {
-    // What is replaced is not finished, and what replaces it goes first.
+    // A replaced sentence is not finished, and its replacement goes first.
     waiting_.push_front({subject, words});
     speech_->stop();
     // An engine that was silent already has no change of state to tell.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "analytics/checkpoints/phases.h"
 
@@ -67,6 +68,13 @@ std::string spoken(std::string name) {
   std::replace_if(
       name.begin(), name.end(), [](char c) { return c == '_' || c == '-'; }, ' ');
   return name;
+}
+
+std::string timeText(double seconds) {
+  const auto tenths = static_cast<long long>(std::floor(std::max(0.0, seconds) * 10.0 + 1e-6));
+  const long long rest = tenths / 10 % 60;
+  return std::to_string(tenths / 600) + (rest < 10 ? ":0" : ":") + std::to_string(rest) + '.' +
+         std::to_string(tenths % 10);
 }
 
 std::string wordFor(Phase phase) {

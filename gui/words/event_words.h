@@ -37,6 +37,9 @@ struct SubjectNames {
 /// "cystic-duct" in plain text: "cystic duct".
 [[nodiscard]] std::string spoken(std::string name);
 
+/// "0:42.5", "12:03.0": minutes, seconds and tenths, with the decimal point of no locale.
+[[nodiscard]] std::string timeText(double seconds);
+
 /// "identification", ..., "done"; empty for none.
 [[nodiscard]] std::string wordFor(Phase phase);
 

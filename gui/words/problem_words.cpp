@@ -1,65 +1,30 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "gui/words/problem_words.h"
 
+#include <utility>
+
 #include "recorder/base/errors.h"
 
 namespace calot::gui {
 namespace {
 
-/// Empty: nothing that is done in a window.
-const char* adviceOf(Remedy remedy) {
-  switch (remedy) {
-    case Remedy::replaceExisting:
-      return "choose another name, or allow it to be replaced";
-    case Remedy::recover:
-      return "what it holds can be recovered on the command line";
-    case Remedy::moveFork:
-      return "choose another time";
-    case Remedy::measureCalibration:
-      return "measure its calibration again";
-    case Remedy::addParticipant:
-      return "add the participant first";
-    case Remedy::upgradeCohort:
-      return "open it alone, which brings it there and keeps a copy";
-    case Remedy::emptyLog:
-      return "end that program";
-    case Remedy::importAgain:
-      return "import its file again";
-    case Remedy::assessAgain:
-      return "import the older recordings again";
-    case Remedy::chooseKey:
-      return "choose one scene, device and version";
-    case Remedy::chooseAttemptRule:
-      return "choose which of a participant's attempts counts";
-    case Remedy::takeMean:
-      return "choose the mean of a participant's attempts";
-    case Remedy::exclude:
-      return "exclude one";
-    case Remedy::nameGroups:
-      return "choose two groups";
-    case Remedy::installEngine:
-    case Remedy::replayAnyway:
-    case Remedy::listDevices:
-    case Remedy::nameDevice:
-    case Remedy::nameTools:
-    case Remedy::changeParticipant:
-    case Remedy::nameCohort:
-    case Remedy::rateAttempts:
-    case Remedy::mixKeys:
-    case Remedy::takeFirst:
-    case Remedy::chooseOccasion:
-    case Remedy::nameParticipantColumn:
-    case Remedy::nameGroupColumn:
-    case Remedy::nameOccasionColumn:
-    case Remedy::nameOccasion:
-    case Remedy::nameOutcome:
-    case Remedy::nameBetterGroup:
-    case Remedy::nameFamily:
-    case Remedy::nameCheckpoints:
-      break;
-  }
-  return "";
-}
+/// Remedies of a window. The other remedies are the command line's.
+constexpr std::pair<Remedy, const char*> advice[] = {
+    {Remedy::replaceExisting, "choose another name, or allow it to be replaced"},
+    {Remedy::recover, "what it holds can be recovered on the command line"},
+    {Remedy::moveFork, "choose another time"},
+    {Remedy::measureCalibration, "measure its calibration again"},
+    {Remedy::addParticipant, "add the participant first"},
+    {Remedy::upgradeCohort, "open it alone, which brings it there and keeps a copy"},
+    {Remedy::emptyLog, "end that program"},
+    {Remedy::importAgain, "import its file again"},
+    {Remedy::assessAgain, "import the older recordings again"},
+    {Remedy::chooseKey, "choose one scene, device and version"},
+    {Remedy::chooseAttemptRule, "choose which of a participant's attempts counts"},
+    {Remedy::takeMean, "choose the mean of a participant's attempts"},
+    {Remedy::exclude, "exclude one"},
+    {Remedy::nameGroups, "choose two groups"},
+};
 
 }  // namespace
 
@@ -68,11 +33,12 @@ std::string problemText(const std::exception& error) {
   const auto* known = dynamic_cast<const Error*>(&error);
   if (known == nullptr) return text;
   const char* between = "; ";
-  for (const Remedy remedy : known->remedies()) {
-    const std::string advice = adviceOf(remedy);
-    if (advice.empty()) continue;
-    text += between + advice;
-    between = ", or ";
+  for (const Remedy wanted : known->remedies()) {
+    for (const auto& [remedy, words] : advice) {
+      if (remedy != wanted) continue;
+      text += std::string(between) + words;
+      between = ", or ";
+    }
   }
   return text;
 }

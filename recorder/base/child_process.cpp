@@ -37,14 +37,6 @@ class FileActions {
   posix_spawn_file_actions_t actions_{};
 };
 
-/// This process's end, and the child's.
-std::pair<Channel, Channel> connection(const std::string& what) {
-  std::array<int, 2> ends{};
-  if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0)
-    throw Error(ErrorKind::failure, what.empty() ? Where{} : Where{what}, std::strerror(errno));
-  return {Channel(ends[0]), Channel(ends[1])};
-}
-
 /// Waits until something can be read. @return false at the deadline
 bool waitFor(int descriptor, Channel::Deadline deadline) {
   for (;;) {
@@ -111,12 +103,19 @@ std::optional<std::vector<std::byte>> Channel::receiveMessage() const {
   return bytes;
 }
 
+std::pair<Channel, Channel> newConnection() {
+  std::array<int, 2> ends{};
+  if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0)
+    throw Error(ErrorKind::failure, fmt::format("no connection to a child process: {}", std::strerror(errno)));
+  return {Channel(ends[0]), Channel(ends[1])};
+}
+
 std::string ProcessEnd::describe() const {
   return signalled ? fmt::format("signal {} ({})", number, ::strsignal(number)) : fmt::format("exit code {}", number);
 }
 
 ChildProcess::ChildProcess(const std::vector<std::string>& command) {
-  auto [own, childs] = connection(command.front());
+  auto [own, childs] = newConnection();
   FileActions actions;
   posix_spawn_file_actions_adddup2(actions.get(), childs.descriptor(), STDIN_FILENO);
   posix_spawn_file_actions_adddup2(actions.get(), childs.descriptor(), STDOUT_FILENO);
@@ -138,7 +137,7 @@ ChildProcess::ChildProcess(const std::vector<std::string>& command) {
 }
 
 ChildProcess::ChildProcess(const Task& task, std::mutex* quiet) {
-  auto [own, childs] = connection({});
+  auto [own, childs] = newConnection();
   {
     std::unique_lock<std::mutex> held;
     if (quiet != nullptr) held = std::unique_lock<std::mutex>(*quiet);

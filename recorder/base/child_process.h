@@ -53,6 +53,9 @@ class Channel {
   int descriptor_ = -1;
 };
 
+/// This process's end of a new connection, and the end for a child. @throws Error (failure)
+std::pair<Channel, Channel> newConnection();
+
 /// How a process ended.
 struct ProcessEnd {
   bool signalled = false;
@@ -89,6 +92,7 @@ class ChildProcess {
   ~ChildProcess() { static_cast<void>(end()); }
 
   [[nodiscard]] const Channel& channel() const { return channel_; }
+  [[nodiscard]] pid_t pid() const { return pid_; }  ///< -1: it has ended
   /// Closes the connection and waits for the end; a process that does not end within `patience` is killed.
   ProcessEnd end(std::chrono::milliseconds patience = std::chrono::milliseconds(200));
 

@@ -169,7 +169,7 @@ std::size_t CsvTable::column(const std::string& name) const {
 CsvTable parseCsvTable(std::string_view text, const std::string& path) {
   skipByteOrderMark(text);
   if (text.find('\0') != std::string_view::npos)
-    throw Error(ErrorKind::damaged, Where{path}, "is no table of text (CSV)");
+    throw Error(ErrorKind::damaged, Where{path}, "is not a table of text (CSV)");
   CsvTable table;
   table.path = path;
   const std::string_view header = text.substr(0, text.find('\n'));
@@ -230,7 +230,7 @@ CsvNumbers readCsvNumbers(std::span<const std::byte> bytes, const std::string& f
     if (numbers.line.size() == maxRows) fail(file, line, fmt::format("more than {} rows", maxRows));
     split(row, delimiter, cells);
     if (cells.size() != columns) {
-      fail(file, line, fmt::format("{} cells; the {} columns of line 1 are wanted", cells.size(), columns));
+      fail(file, line, fmt::format("{} cells; the {} columns of line 1 are expected", cells.size(), columns));
     }
     for (std::size_t i = 0; i < places.size(); ++i) {
       const double value = recorder::readFiniteNumber(cells[places[i]], fault);

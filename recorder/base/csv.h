@@ -46,7 +46,7 @@ struct CsvNumbers {
 /// @param file the name that messages use.
 /// @param delimiter a comma, a semicolon or a tab.
 /// @throws Error (damaged) naming file and line: no names, a name that is wanted and missing or there twice, a row with
-/// other than so many cells (one that was cut off), a wanted cell that is no finite number, an empty line between rows,
+/// another number of cells (one that was cut off), a wanted cell that is no finite number, an empty line between rows,
 /// no row, more than a million rows.
 CsvNumbers readCsvNumbers(std::span<const std::byte> bytes, const std::string& file, char delimiter,
                           std::span<const std::string> wanted);

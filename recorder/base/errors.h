@@ -56,7 +56,7 @@ enum class Remedy : std::uint8_t {
   nameCheckpoints,        ///< name figures that judge
 };
 
-/// Where an error lies.
+/// Location of an error.
 struct Where {
   std::string file;        ///< a file, folder or database, as it was named
   std::string place = {};  ///< in the file: "/observables", "line 3"; may be empty

@@ -15,7 +15,8 @@ std::vector<std::byte> readFileBytes(const std::filesystem::path& path, const st
   std::error_code fault;
   const std::filesystem::file_status status = std::filesystem::status(path, fault);
   if (!std::filesystem::exists(status)) throw Error(ErrorKind::damaged, Where{name}, "there is no such file");
-  if (std::filesystem::is_directory(status)) throw Error(ErrorKind::damaged, Where{name}, "a folder; a file is wanted");
+  if (std::filesystem::is_directory(status))
+    throw Error(ErrorKind::damaged, Where{name}, "a folder; a file is expected");
   std::ifstream in(path, std::ios::binary);
   if (!in) throw Error(ErrorKind::damaged, Where{name}, "cannot be opened for reading");
   // Read piece by piece: a size that was asked for before would be wrong for a pipe or a growing file.

@@ -13,7 +13,7 @@
 
 namespace calot::recorder {
 
-/// Who acts. Set by the source, not by the caller. Numbers are stored and never reused.
+/// Kind of operator. Set by the source, not by the caller. Numbers are stored and never reused.
 enum class OperatorKind : std::uint8_t { human = 0, kinematics = 1, performer = 2 };
 enum class Mode : std::uint8_t { practice = 0, assessment = 1 };
 

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "recorder/base/json_reader.h"
 
 #include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
+#include <regex>
 #include <set>
+#include <string_view>
 
 #include "recorder/base/errors.h"
-#include "recorder/base/json_faults.h"
 #include "recorder/base/nearest_word.h"
 
 namespace calot::recorder {
@@ -52,11 +53,11 @@ std::string escaped(const std::string& key) {
   return out.substr(0, 80);
 }
 
-std::string rangeOf(const KeyRule& rule) {
+std::string rangeOf(const Range& rule) {
   return fmt::format("{}{}, {}{}", rule.lowerOpen ? '(' : '[', rule.lower, rule.upper, rule.upperOpen ? ')' : ']');
 }
 
-bool inside(double value, const KeyRule& rule) {
+bool inside(double value, const Range& rule) {
   return std::isfinite(value) && (rule.lowerOpen ? value > rule.lower : value >= rule.lower) &&
          (rule.upperOpen ? value < rule.upper : value <= rule.upper);
 }
@@ -103,10 +104,27 @@ void JsonPlace::fail(const std::string& fault) const {
   throw Error(ErrorKind::damaged, Where{file_, pointer_.empty() ? "/" : pointer_}, fault);
 }
 
-JsonObject JsonPlace::object(const ObjectRule& rule) const { return {*this, rule}; }
+bool JsonPlace::has(const std::string& key) const { return value_->contains(key); }
+
+JsonPlace JsonPlace::named(const std::string& key) const {
+  return {has(key) ? (*value_)[key] : *value_, file_, pointer_ + "/" + escaped(key)};
+}
+
+JsonPlace JsonPlace::at(const std::string& key) const {
+  static_cast<void>(keys());
+  if (!has(key)) fail(fmt::format("the key \"{}\" is missing", key));
+  return named(key);
+}
+
+std::vector<std::string> JsonPlace::keys() const {
+  if (!value_->is_object()) fail(fmt::format("an object is expected, not {}", value_->type_name()));
+  std::vector<std::string> out;
+  for (const auto& entry : value_->items()) out.push_back(entry.key());
+  return out;
+}
 
 std::vector<JsonPlace> JsonPlace::list(std::size_t least, std::size_t most) const {
-  if (!value_->is_array()) fail(fmt::format("a list is wanted, not {}", value_->type_name()));
+  if (!value_->is_array()) fail(fmt::format("a list is expected, not {}", value_->type_name()));
   if (value_->size() < least || value_->size() > most) {
     fail(fmt::format("{} entries; from {} to {} are allowed", value_->size(), least, most));
   }
@@ -117,7 +135,7 @@ std::vector<JsonPlace> JsonPlace::list(std::size_t least, std::size_t most) cons
 }
 
 std::string JsonPlace::text(std::size_t longest) const {
-  if (!value_->is_string()) fail(fmt::format("text is wanted, not {}", value_->type_name()));
+  if (!value_->is_string()) fail(fmt::format("text is expected, not {}", value_->type_name()));
   auto text = value_->get<std::string>();
   if (text.empty()) fail("the text is empty");
   if (text.size() > longest) fail(fmt::format("the text has {} bytes; at most {} are allowed", text.size(), longest));
@@ -127,84 +145,74 @@ std::string JsonPlace::text(std::size_t longest) const {
   return text;
 }
 
+std::string JsonPlace::text(const TextRule& rule) const {
+  std::string found = text(rule.longest);
+  if (rule.pattern != nullptr && !std::regex_match(found, std::regex(rule.pattern))) fail(rule.wanted);
+  return found;
+}
+
+std::uint32_t JsonPlace::word(const FieldWords& words) const {
+  const std::string given = text(maxWord);
+  std::vector<std::string> known;
+  for (const auto& [name, number] : words) {
+    if (name == given) return number;
+    known.push_back(name);
+  }
+  if (known.size() == 1) fail(fmt::format("\"{}\" is expected", known[0]));
+  std::sort(known.begin(), known.end());
+  fail(fmt::format("unknown word{}; known are {}", didYouMean(given, known), fmt::join(known, ", ")));
+}
+
 bool JsonPlace::boolean() const {
-  if (!value_->is_boolean()) fail(fmt::format("true or false is wanted, not {}", value_->type_name()));
+  if (!value_->is_boolean()) fail(fmt::format("true or false is expected, not {}", value_->type_name()));
   return value_->get<bool>();
 }
 
-double JsonPlace::number(const KeyRule& rule) const {
-  if (!value_->is_number()) fail(fmt::format("a number is wanted, not {}", value_->type_name()));
+double JsonPlace::number(const Range& range) const {
+  if (!value_->is_number()) fail(fmt::format("a number is expected, not {}", value_->type_name()));
   const auto value = value_->get<double>();
-  if (!inside(value, rule)) fail(fmt::format("{} is not in {}", value, rangeOf(rule)));
+  if (!inside(value, range)) fail(fmt::format("{} is not in {}", value, rangeOf(range)));
   return value;
 }
 
-std::uint32_t JsonPlace::integer(const KeyRule& rule) const {
-  if (!value_->is_number_integer()) fail("a whole number is wanted");
-  const double value = number(rule);
+std::uint32_t JsonPlace::integer(const Range& range) const {
+  if (!value_->is_number_integer()) fail("a whole number is expected");
+  const double value = number(range);
   return static_cast<std::uint32_t>(value);
 }
 
-Vec3 JsonPlace::vector(const KeyRule& rule) const {
+Vec3 JsonPlace::vector(const Range& range) const {
   const std::vector<JsonPlace> parts = list(3, 3);
-  return {parts[0].number(rule), parts[1].number(rule), parts[2].number(rule)};
+  return {parts[0].number(range), parts[1].number(range), parts[2].number(range)};
 }
 
-JsonObject::JsonObject(const JsonPlace& place, const ObjectRule& rule) : place_(place), rule_(&rule) {
-  const nlohmann::json& value = *place_.value_;
-  if (!value.is_object()) place_.fail(fmt::format("an object is wanted, not {}", value.type_name()));
-  for (const auto& entry : value.items()) {
-    const bool known =
-        std::any_of(rule.keys.begin(), rule.keys.end(), [&](const KeyRule& k) { return k.key == entry.key(); });
-    if (!known) {
-      std::string names;
-      for (const KeyRule& k : rule.keys) names += (names.empty() ? "" : ", ") + k.key;
-      std::vector<std::string> keys;
-      for (const KeyRule& k : rule.keys) keys.push_back(k.key);
-      JsonFaults::part([&] {
-        JsonPlace(value, place_.file_, place_.pointer_ + "/" + escaped(entry.key()))
-            .fail(fmt::format("unknown key{}; known are {}", didYouMean(entry.key(), keys), names));
-      });
-    }
-  }
-  for (const KeyRule& k : rule.keys) {
-    if (k.required && !value.contains(k.key))
-      JsonFaults::part([&] { place_.fail(fmt::format("the key \"{}\" is missing", k.key)); });
-  }
+namespace {
+
+thread_local JsonFaults* noting = nullptr;
+
+}  // namespace
+
+JsonFaults::JsonFaults() : outer_(noting) { noting = this; }
+
+JsonFaults::~JsonFaults() { noting = outer_; }
+
+void JsonFaults::note(const Error& fault) {
+  const bool known = std::any_of(found_.begin(), found_.end(),
+                                 [&](const Error& e) { return std::string_view(e.what()) == fault.what(); });
+  if (!known) found_.push_back(fault);
 }
 
-const KeyRule& JsonObject::ruleOf(const std::string& key) const {
-  const auto found =
-      std::find_if(rule_->keys.begin(), rule_->keys.end(), [&](const KeyRule& k) { return k.key == key; });
-  if (found == rule_->keys.end()) throw std::logic_error("no rule for the key " + key);
-  return *found;
+bool JsonFaults::at(std::initializer_list<std::string_view> pointers) {
+  return noting != nullptr && std::any_of(noting->found_.begin(), noting->found_.end(), [&](const Error& fault) {
+           const std::string place = fault.where().place + "/";
+           return std::any_of(pointers.begin(), pointers.end(),
+                              [&](std::string_view p) { return place.starts_with(std::string(p) + "/"); });
+         });
 }
 
-bool JsonObject::has(const std::string& key) const {
-  static_cast<void>(ruleOf(key));
-  return place_.value_->contains(key);
-}
-
-JsonPlace JsonObject::at(const std::string& key) const {
-  static_cast<void>(ruleOf(key));
-  if (!place_.value_->contains(key)) place_.fail(fmt::format("the key \"{}\" is missing", key));
-  return {place_.value_->at(key), place_.file_, place_.pointer_ + "/" + key};
-}
-
-void JsonObject::read(const std::string& key, double& out) const {
-  if (has(key)) JsonFaults::part([&] { out = at(key).number(ruleOf(key)); });
-}
-void JsonObject::read(const std::string& key, std::uint32_t& out) const {
-  if (has(key)) JsonFaults::part([&] { out = at(key).integer(ruleOf(key)); });
-}
-void JsonObject::read(const std::string& key, bool& out) const {
-  if (has(key)) JsonFaults::part([&] { out = at(key).boolean(); });
-}
-void JsonObject::read(const std::string& key, Vec3& out) const {
-  if (has(key)) JsonFaults::part([&] { out = at(key).vector(ruleOf(key)); });
-}
-void JsonObject::read(const std::string& key, std::string& out, std::size_t longest) const {
-  if (has(key)) JsonFaults::part([&] { out = at(key).text(longest); });
+void JsonFaults::report(const Error& fault) {
+  if (noting == nullptr) throw fault;
+  noting->note(fault);
 }
 
 }  // namespace calot::recorder

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Strict reading of JSON: every error is one line that names file and JSON pointer. The allowed content of objects is a
-// table of rules, so that the reader, its messages and the published schema agree (a test compares them).
+// Strict reading of JSON: every error is one line that names file and JSON pointer.
+// All faults of a JSON file at once, rather than the first.
 #pragma once
 
 #include <cstddef>
@@ -9,34 +9,21 @@
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
+#include "recorder/base/errors.h"
 #include "sim/math/linear.h"
+#include "sim/math/record.h"
 
 namespace calot::recorder {
-
-/// One key of an object. The bounds are those of its number, or of each of its numbers; `open` excludes the bound.
-struct KeyRule {
-  std::string key;
-  bool required = true;
-  double lower = 0.0, upper = 0.0;
-  bool lowerOpen = false, upperOpen = false;
-};
-
-/// One kind of object: its name in the schema's "$defs" (empty: the root), and all its keys.
-struct ObjectRule {
-  std::string definition;
-  std::vector<KeyRule> keys;
-};
 
 /// Parses UTF-8 JSON without comments. Refuses what JSON leaves undefined: a key given twice, nesting deeper than 32
 /// levels, more than 4 MiB, numbers beyond a double.
 /// @param file the name that messages use.
 /// @throws Error (damaged) with file, line and column.
 nlohmann::json parseStrictJson(std::span<const std::byte> bytes, const std::string& file);
-
-class JsonObject;
 
 /// A value and its location.
 class JsonPlace {
@@ -51,56 +38,64 @@ class JsonPlace {
   /// @throws Error (damaged): "FILE: POINTER: FAULT".
   [[noreturn]] void fail(const std::string& fault) const;
 
-  [[nodiscard]] JsonObject object(const ObjectRule& rule) const;
+  /// Is it an object with this key?
+  [[nodiscard]] bool has(const std::string& key) const;
+  /// A value of an object. @throws Error (damaged) where it is no object or has no such key
+  [[nodiscard]] JsonPlace at(const std::string& key) const;
+  /// An item of a list. @pre it is a list of more than i items
+  [[nodiscard]] JsonPlace at(std::size_t i) const { return list(i + 1, static_cast<std::size_t>(-1))[i]; }
+  /// Keys of an object. @throws Error (damaged) if it is not an object
+  [[nodiscard]] std::vector<std::string> keys() const;
+  /// Place of a key, which may be absent, for messages.
+  [[nodiscard]] JsonPlace named(const std::string& key) const;
   /// @pre the fault of a wrong count names `least` and `most`.
   [[nodiscard]] std::vector<JsonPlace> list(std::size_t least, std::size_t most) const;
   [[nodiscard]] std::string text(std::size_t longest) const;
+  [[nodiscard]] std::string text(const TextRule& rule) const;
+  /// The number of one of these words.
+  [[nodiscard]] std::uint32_t word(const FieldWords& words) const;
   [[nodiscard]] bool boolean() const;
-  [[nodiscard]] double number(const KeyRule& rule) const;
-  [[nodiscard]] std::uint32_t integer(const KeyRule& rule) const;
+  [[nodiscard]] double number(const Range& range) const;
+  [[nodiscard]] std::uint32_t integer(const Range& range) const;
   /// Three numbers.
-  [[nodiscard]] Vec3 vector(const KeyRule& rule) const;
-  /// One of a few words, each with the value that it denotes.
-  template <class T>
-  [[nodiscard]] T word(std::initializer_list<std::pair<const char*, T>> words) const {
-    const std::string given = text(maxWord);
-    std::string known;
-    for (const auto& [name, meaning] : words) {
-      if (given == name) return meaning;
-      known += (known.empty() ? "" : ", ") + std::string(name);
-    }
-    fail("none of " + known);
-  }
+  [[nodiscard]] Vec3 vector(const Range& range) const;
 
  private:
-  static constexpr std::size_t maxWord = 200;
-  friend class JsonObject;
+  static constexpr std::size_t maxWord = 64;
   const nlohmann::json* value_;
   std::string file_, pointer_;
 };
 
-/// An object checked against its rule: no unknown key, no missing one. Optional values that the file omits are left
-/// unchanged.
-class JsonObject {
+/// While one lives, objects that this thread reads note faults where reading can go on, instead of throwing the first:
+/// unknown and missing keys, and values out of their range, which stay at their defaults.
+class JsonFaults {
  public:
-  JsonObject(const JsonPlace& place, const ObjectRule& rule);
+  JsonFaults();
+  ~JsonFaults();
+  JsonFaults(const JsonFaults&) = delete;
+  JsonFaults& operator=(const JsonFaults&) = delete;
 
-  [[nodiscard]] bool has(const std::string& key) const;
-  /// @pre the key is there.
-  [[nodiscard]] JsonPlace at(const std::string& key) const;
-  [[noreturn]] void fail(const std::string& fault) const { place_.fail(fault); }
+  /// In the order in which they were found, each once.
+  [[nodiscard]] const std::vector<Error>& found() const { return found_; }
+  void note(const Error& fault);
 
-  void read(const std::string& key, double& out) const;
-  void read(const std::string& key, std::uint32_t& out) const;
-  void read(const std::string& key, bool& out) const;
-  void read(const std::string& key, Vec3& out) const;
-  /// @param longest in bytes.
-  void read(const std::string& key, std::string& out, std::size_t longest) const;
+  /// Has this thread noted a fault at one of these places of a file, or within it?
+  [[nodiscard]] static bool at(std::initializer_list<std::string_view> pointers);
+  /// Notes the fault where faults are noted. @throws the fault where they are not
+  static void report(const Error& fault);
+  /// Runs a part of the reading whose fault does not keep other parts from being read.
+  template <class Work>
+  static void part(Work&& work) {
+    try {
+      work();
+    } catch (const Error& fault) {
+      report(fault);
+    }
+  }
 
  private:
-  [[nodiscard]] const KeyRule& ruleOf(const std::string& key) const;
-  JsonPlace place_;
-  const ObjectRule* rule_;
+  JsonFaults* outer_;
+  std::vector<Error> found_;
 };
 
 }  // namespace calot::recorder

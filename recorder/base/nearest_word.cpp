@@ -13,14 +13,6 @@ namespace {
 /// Longer words are no words of ours; comparing them would cost time that an input chooses.
 constexpr std::size_t longestWord = 100;
 
-std::string lower(std::string_view text) {
-  std::string out(text);
-  for (char& c : out) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
-  return out;
-}
-
 }  // namespace
 
 std::size_t wordDistance(std::string_view a, std::string_view b) {
@@ -41,13 +33,13 @@ std::size_t wordDistance(std::string_view a, std::string_view b) {
 
 std::string nearestWord(std::string_view word, const std::vector<std::string>& known) {
   if (word.empty() || word.size() > longestWord) return {};
-  const std::string typed = lower(word);
+  const std::string typed = lowerCase(word);
   std::string nearest, begun;
   std::size_t least = std::clamp<std::size_t>(typed.size() / 3, 1, 3) + 1, begins = 0;
   for (const std::string& one : known) {
     if (one == word) return {};
     if (one.empty() || one.size() > longestWord) continue;
-    const std::string there = lower(one);
+    const std::string there = lowerCase(one);
     if (there.starts_with(typed)) {
       begun = one;
       ++begins;

@@ -17,7 +17,7 @@ class ProgramFiles {
   /// Folder of the running program.
   static ProgramFiles ofThisProgram();
 
-  /// Where the programs are.
+  /// Folder of the programs.
   [[nodiscard]] const std::filesystem::path& programs() const { return programs_; }
   /// Folders that may contain `scenes/`, `organs/`, `performers/` and so on, in order of precedence: CALOT_ASSETS of
   /// the environment alone where it is set.

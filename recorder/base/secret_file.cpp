@@ -41,7 +41,7 @@ std::string readSecret(const std::filesystem::path& path, std::size_t most) {
   struct stat status {};
   if (file.get() < 0 || ::fstat(file.get(), &status) != 0)
     throw Error(ErrorKind::damaged, Where{path.string()}, fmt::format("cannot be read: {}", std::strerror(errno)));
-  if (!S_ISREG(status.st_mode)) throw Error(ErrorKind::damaged, Where{path.string()}, "is no file");
+  if (!S_ISREG(status.st_mode)) throw Error(ErrorKind::damaged, Where{path.string()}, "is not a file");
   if ((status.st_mode & 077U) != 0) {
     throw Error(ErrorKind::invalid, Where{path.string()},
                 "others than its owner may use it; take that away (chmod 600) and think of who has read it");

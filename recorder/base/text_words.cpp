@@ -51,6 +51,14 @@ std::string_view takeLine(std::string_view& text) {
   return line;
 }
 
+std::string lowerCase(std::string_view text) {
+  std::string out(text);
+  for (char& c : out) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  return out;
+}
+
 std::string shown(std::string_view word) {
   std::string text(word.substr(0, 40));
   std::replace_if(

@@ -23,6 +23,9 @@ class Words {
 /// Removes and returns the next line of a text, without its line break.
 std::string_view takeLine(std::string_view& text);
 
+/// With small letters for A to Z.
+std::string lowerCase(std::string_view text);
+
 /// A word for a message: short, and without control characters.
 std::string shown(std::string_view word);
 

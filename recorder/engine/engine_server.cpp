@@ -84,13 +84,13 @@ void EngineServer::dispatch(std::uint32_t kind, std::span<const std::byte> paylo
     default:
       return fail(wire::FaultCode::message, "there is no request " + std::to_string(kind));
   }
-  fail(wire::FaultCode::message, "request " + std::to_string(kind) + " has not the bytes that it must have");
+  fail(wire::FaultCode::message, "request " + std::to_string(kind) + " does not have the expected number of bytes");
 }
 
 void EngineServer::hello(std::span<const std::byte> payload) {
   wire::Hello request;
   if (!decode(payload, request) || request.magic != wire::magic)
-    return fail(wire::FaultCode::message, "this is no hello to an engine");
+    return fail(wire::FaultCode::message, "this is not a hello to an engine");
   if (request.protocol < wire::protocol)
     return fail(wire::FaultCode::protocol, "protocol " + std::to_string(request.protocol) + " is not known");
   greeted_ = true;
@@ -104,7 +104,8 @@ void EngineServer::hello(std::span<const std::byte> payload) {
 
 void EngineServer::scene(std::span<const std::byte> payload) {
   wire::Scene request;
-  if (!decode(payload, request)) return fail(wire::FaultCode::message, "the scene has not the bytes that it must have");
+  if (!decode(payload, request))
+    return fail(wire::FaultCode::message, "the scene does not have the expected number of bytes");
   if (model_) return fail(wire::FaultCode::message, "an engine has one scene");
   std::vector<Asset> assets;
   for (wire::File& file : request.files) assets.push_back({std::move(file.name), std::move(file.content)});
@@ -126,11 +127,11 @@ void EngineServer::scene(std::span<const std::byte> payload) {
 void EngineServer::restore(std::span<const std::byte> payload) {
   wire::Restore request;
   if (!decode(payload, request) || request.known > 1)
-    return fail(wire::FaultCode::message, "restore has not the bytes that it must have");
+    return fail(wire::FaultCode::message, "restore does not have the expected number of bytes");
   std::optional<NamedSets> named;
   if (request.known == 1) named = request.named;
   if (!engine_->restore(request.keyframe, named))
-    return appendMessage(wire::IsRefused{"the keyframe is no State of the scene's model"}, answer_);
+    return appendMessage(wire::IsRefused{"the keyframe is not a State of the scene's model"}, answer_);
   begun_ = true;
   appendMessage(wire::IsReady{engine_->steps()}, answer_);
 }
@@ -138,7 +139,7 @@ void EngineServer::restore(std::span<const std::byte> payload) {
 void EngineServer::step(std::span<const std::byte> payload) {
   wire::Step request;
   if (!decode(payload, request) || (request.wanted & ~wire::wantAll) != 0)
-    return fail(wire::FaultCode::message, "step has not the bytes that it must have");
+    return fail(wire::FaultCode::message, "step does not have the expected number of bytes");
   if (!running()) return;
   if (request.ticks.size() != model_->scene().ticksPerStep)
     return fail(wire::FaultCode::message, "a step has " + std::to_string(model_->scene().ticksPerStep) + " ticks");
@@ -146,7 +147,7 @@ void EngineServer::step(std::span<const std::byte> payload) {
   logged_.resize(request.ticks.size());
   for (std::size_t i = 0; i < request.ticks.size(); ++i) {
     if (!isValid(request.ticks[i]))
-      return fail(wire::FaultCode::message, "tick " + std::to_string(i) + " of the step is no sample");
+      return fail(wire::FaultCode::message, "tick " + std::to_string(i) + " of the step is not a sample");
     samples_[i] = request.ticks[i].samples;
     logged_[i] = request.ticks[i].logged;
   }

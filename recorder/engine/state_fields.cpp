@@ -114,7 +114,7 @@ std::optional<KeyframeDifference> differenceOf(const Model& model, const Keyfram
   State a;
   State b;
   if (!restoreState(model, recorded.state, a) || !restoreState(model, here.state, b))
-    return KeyframeDifference{"state", "the recorded bytes are no State of this scene's model"};
+    return KeyframeDifference{"state", "the recorded bytes are not a State of this scene's model"};
   const auto difference = firstDifference(stateFields(model, a), stateFields(model, b));
   if (!difference) return KeyframeDifference{"state", ""};
   return KeyframeDifference{difference->field, fmt::format("index {}: recorded {}, here {}", difference->index,

@@ -15,7 +15,7 @@ TriangleMesh readSurface(const std::filesystem::path& path, LengthUnit unit, con
   return parseSurface(readFileBytes(path, path.string(), limits.bytes), path.string(), unit, limits);
 }
 
-TriangleMesh readObj(const std::filesystem::path& path, LengthUnit unit, const ObjLimits& limits) {
+TriangleMesh readObj(const std::filesystem::path& path, LengthUnit unit, const SurfaceLimits& limits) {
   return parseObj(readFileBytes(path, path.string(), limits.bytes), path.string(), unit, limits);
 }
 

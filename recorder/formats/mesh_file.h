@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <string>
 
-#include "recorder/formats/obj.h"
 #include "recorder/formats/surface_bytes.h"
 #include "sim/geometry/isosurface_stuffing.h"
 
@@ -16,7 +15,7 @@ namespace calot::recorder {
 TriangleMesh readSurface(const std::filesystem::path& path, LengthUnit unit, const SurfaceLimits& limits = {});
 
 /// parseObj() of a file. @throws Error (damaged)
-TriangleMesh readObj(const std::filesystem::path& path, LengthUnit unit, const ObjLimits& limits = {});
+TriangleMesh readObj(const std::filesystem::path& path, LengthUnit unit, const SurfaceLimits& limits = {});
 
 /// Writes formatObj() under a temporary name, then renames.
 /// @throws Error (invalid) where the file exists and `force` is not set, or its folder does not exist; (failure) where

@@ -4,10 +4,10 @@
 
 #include <fmt/format.h>
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -18,204 +18,56 @@
 namespace calot::recorder {
 namespace {
 
-class PlyBody {
- public:
-  PlyBody(std::string_view body, PlyHeader header, const std::string& name, double scale, const SurfaceLimits& limits)
-      : body_(body), words_(""), header_(std::move(header)), name_(name), scale_(scale), limits_(limits) {
-    line_ = header_.lines;
-  }
+enum class PlyFormat : std::uint8_t { ascii, littleEndian, bigEndian };
+enum class PlyType : std::uint8_t { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
 
-  TriangleMesh read() {
-    for (const PlyElement& element : header_.elements) {
-      element_ = &element;
-      const bool vertices = element.name == "vertex";
-      const bool faces = element.name == "face";
-      for (number_ = 0; number_ < element.count; ++number_) {
-        if (vertices) {
-          readVertex();
-        } else if (faces) {
-          readFace();
-        } else {
-          for (const PlyProperty& property : element.properties) pass(property);
-        }
-      }
-    }
-    // Faces may come before the vertices.
-    for (std::size_t t = 0; t < mesh_.triangle.size(); ++t) {
-      for (int k = 0; k < 3; ++k) {
-        if (mesh_.triangle[t][k] < mesh_.vertices()) continue;
-        throw Error(
-            ErrorKind::damaged, Where{name_, fmt::format("face {}", face_[t])},
-            fmt::format("vertex {} is wanted, but the file has {} (from 0)", mesh_.triangle[t][k], mesh_.vertices()));
-      }
-    }
-    return std::move(mesh_);
-  }
+/// Bytes and names of the types, in their order.
+struct PlyTypeInfo {
+  std::size_t bytes;
+  std::string_view name, oldName;
+};
+constexpr PlyTypeInfo plyTypes[] = {{1, "int8", "char"},     {1, "uint8", "uchar"},   {2, "int16", "short"},
+                                    {2, "uint16", "ushort"}, {4, "int32", "int"},     {4, "uint32", "uint"},
+                                    {4, "float32", "float"}, {8, "float64", "double"}};
 
- private:
-  [[noreturn]] void fail(const std::string& what) const {
-    const std::string place = header_.format == PlyFormat::ascii ? fmt::format("line {}", line_)
-                                                                 : fmt::format("{} {}", element_->name, number_);
-    throw Error(ErrorKind::damaged, Where{name_, place}, what);
-  }
+bool isWhole(PlyType type) { return type != PlyType::float32 && type != PlyType::float64; }
 
-  std::string_view nextWord() {
-    std::string_view word = words_.next();
-    while (word.empty()) {
-      if (body_.empty()) fail(fmt::format("the file ends at {} {} of {}", element_->name, number_, element_->count));
-      words_ = Words(takeLine(body_));
-      ++line_;
-      word = words_.next();
-    }
-    return word;
-  }
-
-  /// The next value; a whole number of at most 32 bits is exact in a double.
-  double next(PlyType type) {
-    if (header_.format == PlyFormat::ascii) {
-      std::string fault;
-      const double value = readFiniteNumber(nextWord(), fault);
-      if (!fault.empty()) fail(fault);
-      return value;
-    }
-    const std::size_t size = plyBytes(type);
-    if (body_.size() < size) fail(fmt::format("the file ends here, with {} wanted", element_->count));
-    std::uint64_t bits = 0;
-    for (std::size_t k = 0; k < size; ++k) {
-      const std::size_t at = header_.format == PlyFormat::littleEndian ? size - 1 - k : k;
-      bits = (bits << 8U) | static_cast<unsigned char>(body_[at]);
-    }
-    body_.remove_prefix(size);
-    switch (type) {
-      case PlyType::int8:
-        return static_cast<double>(static_cast<std::int8_t>(bits));
-      case PlyType::int16:
-        return static_cast<double>(static_cast<std::int16_t>(bits));
-      case PlyType::int32:
-        return static_cast<double>(static_cast<std::int32_t>(bits));
-      case PlyType::float32:
-        return static_cast<double>(std::bit_cast<float>(static_cast<std::uint32_t>(bits)));
-      case PlyType::float64:
-        return std::bit_cast<double>(bits);
-      case PlyType::uint8:
-      case PlyType::uint16:
-      case PlyType::uint32:
-        break;
-    }
-    return static_cast<double>(bits);
-  }
-
-  /// A whole number that is not negative.
-  std::uint32_t nextCount(PlyType type, const char* what) {
-    const double value = next(type);
-    if (!(value >= 0.0 && value <= 4294967295.0) || value != std::floor(value)) {
-      fail(fmt::format("{} is no {}", value, what));
-    }
-    return static_cast<std::uint32_t>(value);
-  }
-
-  void pass(const PlyProperty& property) {
-    const std::uint32_t count = property.list ? nextCount(property.countType, "length of a list") : 1;
-    for (std::uint32_t i = 0; i < count; ++i) {
-      // Unused values may be anything, including NaN.
-      header_.format == PlyFormat::ascii ? static_cast<void>(nextWord()) : static_cast<void>(next(property.type));
-    }
-  }
-
-  void readVertex() {
-    Vec3 p = Vec3::Zero();
-    for (const PlyProperty& property : element_->properties) {
-      const bool coordinate = property.name.size() == 1 && property.name[0] >= 'x' && property.name[0] <= 'z';
-      if (!coordinate) {
-        pass(property);
-        continue;
-      }
-      const double value = next(property.type);
-      if (!std::isfinite(value)) fail("a coordinate that is not a finite number");
-      const double length = value * scale_;
-      if (!(std::abs(length) <= farthestCoordinate)) {
-        fail(fmt::format("a coordinate of {} m: is the unit right?", length));
-      }
-      p[property.name[0] - 'x'] = length;
-    }
-    mesh_.vertex.push_back(p);
-  }
-
-  void readFace() {
-    const int corners = plyCorners(*element_);
-    for (std::size_t k = 0; k < element_->properties.size(); ++k) {
-      const PlyProperty& property = element_->properties[k];
-      if (static_cast<int>(k) != corners) {
-        pass(property);
-        continue;
-      }
-      const std::uint32_t count = nextCount(property.countType, "length of a list");
-      if (count < 3) fail(fmt::format("a face with {} corners", count));
-      const int first = nextIndex(property.type);
-      int before = nextIndex(property.type);
-      for (std::uint32_t i = 2; i < count; ++i) {
-        if (mesh_.triangle.size() >= limits_.triangles) fail(fmt::format("more than {} triangles", limits_.triangles));
-        const int last = nextIndex(property.type);
-        mesh_.triangle.emplace_back(first, before, last);
-        face_.push_back(number_);
-        before = last;
-      }
-    }
-  }
-
-  int nextIndex(PlyType type) {
-    const std::uint32_t index = nextCount(type, "index");
-    if (index >= limits_.vertices) fail(fmt::format("vertex {}, but a file has at most {}", index, limits_.vertices));
-    return static_cast<int>(index);
-  }
-
-  std::string_view body_;
-  Words words_;
-  PlyHeader header_;
-  const std::string& name_;
-  double scale_;
-  SurfaceLimits limits_;
-  TriangleMesh mesh_;
-  std::vector<std::uint64_t> face_;  ///< of each triangle
-  const PlyElement* element_ = nullptr;
-  std::uint64_t number_ = 0;  ///< of the element, from 0
-  std::size_t line_ = 0;
+struct PlyProperty {
+  std::string name;
+  PlyType type = PlyType::float32;
+  bool list = false;
+  PlyType countType = PlyType::uint8;  ///< of a list: whole numbers
 };
 
-}  // namespace
+struct PlyElement {
+  std::string name;
+  std::uint64_t count = 0;
+  std::vector<PlyProperty> properties;  ///< at least one
 
-TriangleMesh parsePly(std::span<const std::byte> bytes, const std::string& name, LengthUnit unit,
-                      const SurfaceLimits& limits) {
-  if (bytes.size() > limits.bytes) {
-    throw Error(ErrorKind::damaged, Where{name}, fmt::format("larger than {} bytes", limits.bytes));
+  /// Place of a property, or -1.
+  [[nodiscard]] int find(std::string_view property) const {
+    const auto found =
+        std::find_if(properties.begin(), properties.end(), [&](const PlyProperty& p) { return p.name == property; });
+    return found == properties.end() ? -1 : static_cast<int>(found - properties.begin());
   }
-  std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  PlyHeader header = takePlyHeader(text, name, limits);
-  return PlyBody(text, std::move(header), name, metres(unit), limits).read();
-}
+  /// Place of the property that holds a face's corners, or -1.
+  [[nodiscard]] int corners() const {
+    const int plural = find("vertex_indices");
+    return plural >= 0 ? plural : find("vertex_index");
+  }
+};
 
-namespace {
+struct PlyHeader {
+  PlyFormat format = PlyFormat::ascii;
+  std::vector<PlyElement> elements;  ///< names differ, as do those of each one's properties
+  std::size_t lines = 0;             ///< of the header
+};
 
 constexpr std::size_t maxElements = 32;
 constexpr std::size_t maxProperties = 128;
 
-constexpr std::array<std::pair<std::string_view, PlyType>, 16> typeWords{{{"char", PlyType::int8},
-                                                                          {"int8", PlyType::int8},
-                                                                          {"uchar", PlyType::uint8},
-                                                                          {"uint8", PlyType::uint8},
-                                                                          {"short", PlyType::int16},
-                                                                          {"int16", PlyType::int16},
-                                                                          {"ushort", PlyType::uint16},
-                                                                          {"uint16", PlyType::uint16},
-                                                                          {"int", PlyType::int32},
-                                                                          {"int32", PlyType::int32},
-                                                                          {"uint", PlyType::uint32},
-                                                                          {"uint32", PlyType::uint32},
-                                                                          {"float", PlyType::float32},
-                                                                          {"float32", PlyType::float32},
-                                                                          {"double", PlyType::float64},
-                                                                          {"float64", PlyType::float64}}};
-
+/// Parses and removes the header of a file's text, up to and including the line "end_header". The element `vertex` has
+/// x, y and z and `face` a list of indices, both within the limits.
 class HeaderReader {
  public:
   HeaderReader(std::string_view& text, const std::string& name, const SurfaceLimits& limits)
@@ -297,10 +149,10 @@ class HeaderReader {
   }
 
   PlyType readType(std::string_view word) const {
-    const auto* const found =
-        std::find_if(typeWords.begin(), typeWords.end(), [&](const auto& entry) { return entry.first == word; });
-    if (found == typeWords.end()) fail(fmt::format("\"{}\" is no type of PLY", shown(word)));
-    return found->second;
+    for (std::size_t i = 0; i < std::size(plyTypes); ++i) {
+      if (word == plyTypes[i].name || word == plyTypes[i].oldName) return static_cast<PlyType>(i);
+    }
+    fail(fmt::format("\"{}\" is no type of PLY", shown(word)));
   }
 
   void readProperty(Words& words) {
@@ -311,9 +163,7 @@ class HeaderReader {
     if (word == "list") {
       property.list = true;
       property.countType = readType(words.next());
-      if (property.countType == PlyType::float32 || property.countType == PlyType::float64) {
-        fail("a list is counted in whole numbers");
-      }
+      if (!isWhole(property.countType)) fail("a list is counted in whole numbers");
       word = words.next();
     }
     property.type = readType(word);
@@ -339,15 +189,15 @@ class HeaderReader {
         }
       } else if (element.name == "face") {
         hasFaces = element.count > 0;
-        const int at = plyCorners(element);
+        const int at = element.corners();
         if (at < 0) fail("faces have no property \"vertex_indices\"");
         const PlyProperty& corners = element.properties[static_cast<std::size_t>(at)];
         if (!corners.list) fail("\"vertex_indices\" is no list");
-        if (corners.type == PlyType::float32 || corners.type == PlyType::float64) fail("indices are whole numbers");
+        if (!isWhole(corners.type)) fail("indices are whole numbers");
       }
     }
     if (!hasVertices) fail("no vertex");
-    if (!hasFaces) fail("no face; a surface is wanted");
+    if (!hasFaces) fail("no face; a surface is expected");
   }
 
   std::string_view& text_;
@@ -357,39 +207,180 @@ class HeaderReader {
   bool hasFormat_ = false;
 };
 
+class PlyBody {
+ public:
+  PlyBody(std::string_view body, PlyHeader header, const std::string& name, double scale, const SurfaceLimits& limits)
+      : body_(body), words_(""), header_(std::move(header)), name_(name), scale_(scale), limits_(limits) {
+    line_ = header_.lines;
+  }
+
+  TriangleMesh read() {
+    for (const PlyElement& element : header_.elements) {
+      element_ = &element;
+      const bool vertices = element.name == "vertex";
+      const bool faces = element.name == "face";
+      for (number_ = 0; number_ < element.count; ++number_) {
+        if (vertices) {
+          readVertex();
+        } else if (faces) {
+          readFace();
+        } else {
+          for (const PlyProperty& property : element.properties) pass(property);
+        }
+      }
+    }
+    // Faces may come before the vertices.
+    for (std::size_t t = 0; t < mesh_.triangle.size(); ++t) {
+      for (int k = 0; k < 3; ++k) {
+        if (mesh_.triangle[t][k] < mesh_.vertices()) continue;
+        throw Error(
+            ErrorKind::damaged, Where{name_, fmt::format("face {}", face_[t])},
+            fmt::format("vertex {} is expected, but the file has {} (from 0)", mesh_.triangle[t][k], mesh_.vertices()));
+      }
+    }
+    return std::move(mesh_);
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& what) const {
+    const std::string place = header_.format == PlyFormat::ascii ? fmt::format("line {}", line_)
+                                                                 : fmt::format("{} {}", element_->name, number_);
+    throw Error(ErrorKind::damaged, Where{name_, place}, what);
+  }
+
+  std::string_view nextWord() {
+    std::string_view word = words_.next();
+    while (word.empty()) {
+      if (body_.empty()) fail(fmt::format("the file ends at {} {} of {}", element_->name, number_, element_->count));
+      words_ = Words(takeLine(body_));
+      ++line_;
+      word = words_.next();
+    }
+    return word;
+  }
+
+  /// The next value; a whole number of at most 32 bits is exact in a double.
+  double next(PlyType type) {
+    if (header_.format == PlyFormat::ascii) {
+      std::string fault;
+      const double value = readFiniteNumber(nextWord(), fault);
+      if (!fault.empty()) fail(fault);
+      return value;
+    }
+    const std::size_t size = plyTypes[static_cast<std::size_t>(type)].bytes;
+    if (body_.size() < size) fail(fmt::format("the file ends here, with {} wanted", element_->count));
+    std::uint64_t bits = 0;
+    for (std::size_t k = 0; k < size; ++k) {
+      const std::size_t at = header_.format == PlyFormat::littleEndian ? size - 1 - k : k;
+      bits = (bits << 8U) | static_cast<unsigned char>(body_[at]);
+    }
+    body_.remove_prefix(size);
+    switch (type) {
+      case PlyType::int8:
+        return static_cast<double>(static_cast<std::int8_t>(bits));
+      case PlyType::int16:
+        return static_cast<double>(static_cast<std::int16_t>(bits));
+      case PlyType::int32:
+        return static_cast<double>(static_cast<std::int32_t>(bits));
+      case PlyType::float32:
+        return static_cast<double>(std::bit_cast<float>(static_cast<std::uint32_t>(bits)));
+      case PlyType::float64:
+        return std::bit_cast<double>(bits);
+      case PlyType::uint8:
+      case PlyType::uint16:
+      case PlyType::uint32:
+        break;
+    }
+    return static_cast<double>(bits);
+  }
+
+  /// A whole number that is not negative.
+  std::uint32_t nextCount(PlyType type, const char* what) {
+    const double value = next(type);
+    if (!(value >= 0.0 && value <= 4294967295.0) || value != std::floor(value)) {
+      fail(fmt::format("{} is no {}", value, what));
+    }
+    return static_cast<std::uint32_t>(value);
+  }
+
+  void pass(const PlyProperty& property) {
+    const std::uint32_t count = property.list ? nextCount(property.countType, "length of a list") : 1;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      // Unused values may be anything, including NaN.
+      header_.format == PlyFormat::ascii ? static_cast<void>(nextWord()) : static_cast<void>(next(property.type));
+    }
+  }
+
+  void readVertex() {
+    Vec3 p = Vec3::Zero();
+    for (const PlyProperty& property : element_->properties) {
+      const bool coordinate = property.name.size() == 1 && property.name[0] >= 'x' && property.name[0] <= 'z';
+      if (!coordinate) {
+        pass(property);
+        continue;
+      }
+      const double value = next(property.type);
+      if (!std::isfinite(value)) fail("a coordinate that is not a finite number");
+      const double length = value * scale_;
+      if (!(std::abs(length) <= farthestCoordinate)) {
+        fail(fmt::format("a coordinate of {} m: is the unit right?", length));
+      }
+      p[property.name[0] - 'x'] = length;
+    }
+    mesh_.vertex.push_back(p);
+  }
+
+  void readFace() {
+    const int corners = element_->corners();
+    for (std::size_t k = 0; k < element_->properties.size(); ++k) {
+      const PlyProperty& property = element_->properties[k];
+      if (static_cast<int>(k) != corners) {
+        pass(property);
+        continue;
+      }
+      const std::uint32_t count = nextCount(property.countType, "length of a list");
+      if (count < 3) fail(fmt::format("a face with {} corners", count));
+      const int first = nextIndex(property.type);
+      int before = nextIndex(property.type);
+      for (std::uint32_t i = 2; i < count; ++i) {
+        if (mesh_.triangle.size() >= limits_.triangles) fail(fmt::format("more than {} triangles", limits_.triangles));
+        const int last = nextIndex(property.type);
+        mesh_.triangle.emplace_back(first, before, last);
+        face_.push_back(number_);
+        before = last;
+      }
+    }
+  }
+
+  int nextIndex(PlyType type) {
+    const std::uint32_t index = nextCount(type, "index");
+    if (index >= limits_.vertices) fail(fmt::format("vertex {}, but a file has at most {}", index, limits_.vertices));
+    return static_cast<int>(index);
+  }
+
+  std::string_view body_;
+  Words words_;
+  PlyHeader header_;
+  const std::string& name_;
+  double scale_;
+  SurfaceLimits limits_;
+  TriangleMesh mesh_;
+  std::vector<std::uint64_t> face_;  ///< of each triangle
+  const PlyElement* element_ = nullptr;
+  std::uint64_t number_ = 0;  ///< of the element, from 0
+  std::size_t line_ = 0;
+};
+
 }  // namespace
 
-std::size_t plyBytes(PlyType type) {
-  switch (type) {
-    case PlyType::int8:
-    case PlyType::uint8:
-      return 1;
-    case PlyType::int16:
-    case PlyType::uint16:
-      return 2;
-    case PlyType::int32:
-    case PlyType::uint32:
-    case PlyType::float32:
-      return 4;
-    case PlyType::float64:
-      break;
+TriangleMesh parsePly(std::span<const std::byte> bytes, const std::string& name, LengthUnit unit,
+                      const SurfaceLimits& limits) {
+  if (bytes.size() > limits.bytes) {
+    throw Error(ErrorKind::damaged, Where{name}, fmt::format("larger than {} bytes", limits.bytes));
   }
-  return 8;
-}
-
-int PlyElement::find(std::string_view property) const {
-  const auto found = std::find_if(properties.begin(), properties.end(),
-                                  [property](const PlyProperty& p) { return p.name == property; });
-  return found == properties.end() ? -1 : static_cast<int>(found - properties.begin());
-}
-
-int plyCorners(const PlyElement& face) {
-  const int plural = face.find("vertex_indices");
-  return plural >= 0 ? plural : face.find("vertex_index");
-}
-
-PlyHeader takePlyHeader(std::string_view& text, const std::string& name, const SurfaceLimits& limits) {
-  return HeaderReader(text, name, limits).read();
+  std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  PlyHeader header = HeaderReader(text, name, limits).read();
+  return PlyBody(text, std::move(header), name, metres(unit), limits).read();
 }
 
 }  // namespace calot::recorder

@@ -4,193 +4,136 @@
 
 #include <fmt/format.h>
 #include <algorithm>
-#include <limits>
-#include <map>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "recorder/base/errors.h"
-#include "recorder/base/json_faults.h"
 #include "recorder/base/json_reader.h"
-#include "recorder/formats/scene_connective.h"
-#include "recorder/formats/scene_fat.h"
-#include "recorder/formats/scene_names.h"
-#include "recorder/formats/scene_organs.h"
-#include "recorder/formats/scene_procedure.h"
-#include "recorder/formats/scene_roles.h"
+#include "recorder/base/record_reader.h"
+#include "recorder/formats/mesh_report.h"
 #include "recorder/formats/scene_rules.h"
-#include "recorder/formats/scene_vessels.h"
-#include "sim/instruments/instruments.h"
+#include "sim/geometry/surface_report.h"
+#include "sim/math/elementary.h"
 #include "sim/math/floating_point.h"
 #include "sim/scene/scene_view.h"
+#include "sim/tissue/description_fields.h"
 
 namespace calot::recorder {
+
+std::vector<Field> MeshFile::fields() {
+  using S = MeshFile;
+  static const TextRule assetName{200, R"(^(?!\.{1,2}(/|$))[^/\\:]+(/(?!\.{1,2}(/|$))[^/\\:]+)*$)",
+                                  "a path relative to the assets folder is expected, with / and without . or .."};
+  return {
+      object("mesh", "Surface file: OBJ, STL (ASCII or binary) or PLY (ASCII or binary), by the end of its name"),
+      {"file", at<S, &S::file>, assetName,
+       "Path relative to the assets folder, with / and without . or .., ending in .obj, .stl or .ply"},
+      {"unit", at<S, &S::unit>, lengthUnits(), "Unit of its coordinates"},
+      optional("scale", at<S, &S::scale>, "1", within(0.001, 1000),
+               "Factor of its coordinates, about their origin: first"),
+      optional("rotation", at<S, &S::rotation>, "rad", within(-7, 7),
+               "Rotation about the origin, after the scale: along the axis, as long as the angle"),
+      optional("translation", at<S, &S::translation>, "m", sceneCoordinate, "Translation, at last"),
+  };
+}
+
 namespace {
 
-// Camera frame C: x right, y down, z along the view.
-CameraSample readCamera(const JsonPlace& place, double& verticalFieldOfView) {
-  const JsonObject object = place.object(sceneRule("camera"));
-  CameraSample camera;
-  Vec3 target = Vec3::Zero();
-  Vec3 up = Vec3::UnitY();
-  object.read("position", camera.position);
-  object.read("target", target);
-  object.read("up", up);
-  object.read("verticalFieldOfView", verticalFieldOfView);
-  const Vec3 view = target - camera.position;
-  if (!(view.norm() > 0.001)) object.at("target").fail("the target is the camera's own position");
-  const Vec3 forward = view / view.norm();
-  const Vec3 across = forward.cross(up);
-  if (!(across.norm() > 0.01 * up.norm()) || !(up.norm() > 0.01)) place.fail("\"up\" is zero or along the view");
-  Mat3 axes;
-  axes.col(0) = across / across.norm();
-  axes.col(1) = forward.cross(axes.col(0));
-  axes.col(2) = forward;
-  camera.orientation = Quat(axes).normalized();
-  return camera;
+/// A surface as its file has it, and what the file is called in messages.
+struct NamedSurface {
+  TriangleMesh mesh;  ///< m
+  std::string file;
+};
+
+/// x' = scale R x + t, R by Rodrigues' formula from a rotation vector. Nothing is touched where nothing is asked for:
+/// scenes without these keys keep their bits. Empty where the place has faults that were noted.
+NamedSurface readMesh(const JsonPlace& place, const FetchAsset& fetch) {
+  MeshFile mesh;
+  readRecord(place, mesh);
+  if (JsonFaults::at({place.pointer()})) return {};
+  if (!isSurfaceName(mesh.file)) place.at("file").fail("surfaces are read from .obj, .stl and .ply files");
+  const Asset& asset = fetch(mesh.file, place.at("file"));
+  NamedSurface surface{parseSurface(asset.bytes, asset.name, mesh.unit), asset.name};
+  if (!place.has("scale") && !place.has("rotation") && !place.has("translation")) return surface;
+  const double angle = mesh.rotation.norm();
+  const Vec3 axis = angle > 0.0 ? Vec3(mesh.rotation / angle) : Vec3::UnitX();
+  const double c = cosine(angle), s = sine(angle);
+  for (Vec3& x : surface.mesh.vertex) {
+    const Vec3 turned = c * x + s * axis.cross(x) + (1.0 - c) * axis.dot(x) * axis;
+    x = mesh.scale * turned + mesh.translation;
+  }
+  return surface;
 }
 
-std::map<std::string, InstrumentKind> instrumentNames() {
-  std::map<std::string, InstrumentKind> names;
-  for (const InstrumentDefinition* instrument : instruments()) names.emplace(instrument->name, instrument->kind);
-  return names;
-}
-
-HandDescription readHand(const JsonPlace& place, const std::array<Vec3, 2>& workspace) {
-  const JsonObject object = place.object(sceneRule("hand"));
-  HandDescription hand;
-  object.read("port", hand.port);
-  object.read("home", hand.home);
-  hand.instrument = readWord(object, "instrument", instrumentNames());
-  object.read("shaftRadius", hand.shaftRadius);
-  object.read("couplingStiffness", hand.couplingStiffness);
-  object.read("rollStiffness", hand.rollStiffness);
-  object.read("largestForce", hand.maxForce);
-  object.read("slipForce", hand.slipForce);
-  object.read("tearForce", hand.tearForce);
-  object.read("trocarFriction", hand.trocarFriction);
-  object.read("wallStiffness", hand.wallStiffness);
-  object.read("clips", hand.clips);
-  if ((hand.home.array() < workspace[0].array()).any() || (hand.home.array() > workspace[1].array()).any()) {
-    object.at("home").fail("outside the workspace");
+/// @param what "an organ", for messages
+SurfaceDescription closedSurface(NamedSurface surface, const char* what) {
+  const SurfaceReport report = inspectSurface(surface.mesh);
+  if (!report.closedManifold()) {
+    throw Error(ErrorKind::damaged, Where{surface.file},
+                fmt::format("{} triangles with {} open edges, {} edges of more than two triangles, {} flipped edges "
+                            "and {} parts turned inside out; {} is a closed outward surface",
+                            report.triangles, report.openEdges, report.nonManifoldEdges, report.flippedEdges,
+                            report.inwardComponents, what));
   }
-  if (!((hand.home - hand.port).norm() >= 0.01)) object.at("home").fail("nearer than 0.01 m to the port");
-  const Vec3 nearest = hand.port.cwiseMax(workspace[0]).cwiseMin(workspace[1]);
-  if (!((hand.port - nearest).norm() <= 0.3)) object.at("port").fail("farther than 0.3 m from the workspace");
-  return hand;
-}
-
-void checkStructureCount(const JsonObject& object) {
-  std::size_t structures = 0;
-  for (const char* list : {"organs", "vessels", "fat"}) {
-    if (object.has(list)) structures += object.at(list).list(0, std::numeric_limits<std::size_t>::max()).size();
+  const double size = (report.box.upper - report.box.lower).maxCoeff();
+  const double farthest = std::max(report.box.lower.cwiseAbs().maxCoeff(), report.box.upper.cwiseAbs().maxCoeff());
+  if (!(size >= 0.001) || !(farthest <= 1.0)) {
+    throw Error(ErrorKind::damaged, Where{surface.file},
+                fmt::format("{:.4g} m long and up to {:.4g} m from the origin; {} is at least 0.001 m long and within "
+                            "1 m: is the scene's unit right?",
+                            size, farthest, what));
   }
-  if (structures > maxStructures) {
-    object.fail(fmt::format("{} structures (organs, vessels and bodies of fat); at most {} are allowed", structures,
-                            maxStructures));
-  }
+  return {std::move(surface.mesh.vertex), std::move(surface.mesh.triangle)};
 }
 
 }  // namespace
 
-namespace {
+SurfaceDescription readOrganSurface(const JsonPlace& mesh, const FetchAsset& fetch) {
+  NamedSurface surface = readMesh(mesh, fetch);
+  return surface.file.empty() ? SurfaceDescription{} : closedSurface(std::move(surface), "an organ");
+}
 
-/// What later tables name lies in earlier ones: where those have faults, these are not looked at.
-void readTissues(const JsonObject& object, const FetchAsset& fetch, LoadedScene& loaded) {
-  SceneDescription& scene = loaded.description;
-  const std::size_t before = JsonFaults::count();
-  JsonFaults::part([&] {
-    for (const JsonPlace& organ : object.at("organs").list(1, maxStructures))
-      JsonFaults::part([&] { scene.organs.push_back(readOrgan(organ, fetch)); });
-  });
-  if (JsonFaults::count() > before) return;
-  JsonFaults::part([&] { checkOrgans(object.at("organs"), scene.organs); });
-  JsonFaults::part([&] {
-    if (object.has("connective")) scene.connective = readConnective(object.at("connective"), scene.organs);
-  });
-  JsonFaults::part([&] {
-    if (object.has("retraction")) scene.retraction = readRetractions(object.at("retraction"), scene.organs);
-  });
-  const std::size_t beforeVessels = JsonFaults::count();
-  JsonFaults::part([&] {
-    if (object.has("vessels")) scene.vessels = readVessels(object.at("vessels"), scene.organs);
-  });
-  if (JsonFaults::count() > beforeVessels) return;
-  JsonFaults::part([&] {
-    if (object.has("fat")) {
-      scene.fat = readFat(object.at("fat"), scene.organs, scene.vessels, fetch, loaded.warnings);
+SurfaceDescription readFatSurface(const JsonPlace& mesh, const FetchAsset& fetch, std::vector<std::string>& warnings) {
+  NamedSurface surface = readMesh(mesh, fetch);
+  if (surface.file.empty()) return {};
+  const std::string file = surface.file;
+  int turned = 0;
+  // A sound surface is not repaired: the repair would treat a part that starts inside another one as a cavity.
+  if (const SurfaceReport found = inspectSurface(surface.mesh);
+      !found.closedManifold() || found.coincidentVertices + found.degenerateTriangles + found.unusedVertices > 0) {
+    SurfaceRepair repair = repairSurface(surface.mesh);
+    turned = repair.flippedTriangles;
+    if (repair.changed()) warnings.push_back(file + ": put right before use: " + repairSummary(repair));
+    surface.mesh = std::move(repair.mesh);
+  }
+  SurfaceDescription closed = closedSurface(std::move(surface), "fat");
+  const SelfCrossing crossing = findSelfCrossing({closed.vertex, closed.triangle});
+  if (crossing.pairs > 0) {
+    const std::string where = fmt::format("{}: the surface passes through itself, as at ({:.4f}, {:.4f}, {:.4f}) m",
+                                          file, crossing.where[0], crossing.where[1], crossing.where[2]);
+    if (turned > 0) {
+      throw Error(ErrorKind::damaged,
+                  where + ", and its triangles do not agree on what is outside: its inside cannot be determined");
     }
-  });
-  if (JsonFaults::count() > before) return;
-  if (!statesRoles(object)) deriveRoles(scene);
-  JsonFaults::part([&] {
-    if (object.has("procedure")) scene.procedure = readProcedure(object.at("procedure"), scene);
-  });
+    warnings.push_back(where + "; the region that it winds around is taken as its inside");
+  }
+  return closed;
 }
-
-void readSolver(const JsonObject& solver, SolverDescription& scene) {
-  solver.read("tolerance", scene.tolerance);
-  solver.read("speedTolerance", scene.speedTolerance);
-  solver.read("iterations", scene.iterations);
-  solver.read("responseTolerance", scene.responseTolerance);
-  solver.read("responseSpeedTolerance", scene.responseSpeedTolerance);
-  solver.read("contactTolerance", scene.contactTolerance);
-  solver.read("contactPasses", scene.contactPasses);
-  solver.read("gapTolerance", scene.gapTolerance);
-  solver.read("contactIterations", scene.contactIterations);
-  solver.read("sleeping", scene.sleeping);
-}
-
-}  // namespace
 
 LoadedScene parseScene(const Asset& file, const FetchAsset& fetch) {
-  const FloatingPointScope environment;  // numbers are read and the camera is turned the same in every process
+  const FloatingPointScope environment;  // numbers are read and the camera is rotated the same in every process
   const nlohmann::json json = parseStrictJson(file.bytes, file.name);
   const JsonPlace root(json, file.name);
-  const JsonObject object = root.object(sceneRule(""));
-  if (object.at("format").text(maxSceneName) != "calot-scene") object.at("format").fail("\"calot-scene\" is wanted");
-  std::uint32_t formatVersion = 0;
-  object.read("formatVersion", formatVersion);
-
   LoadedScene loaded;
   SceneDescription& scene = loaded.description;
+  readRecord(root, scene);
   const auto part = [](auto&& work) { JsonFaults::part(work); };
-  part([&] { scene.name = readName(object, "name"); });
-  part([&] {
-    const JsonObject version = object.at("version").object(sceneRule("version"));
-    version.read("major", scene.majorVersion);
-    version.read("minor", scene.minorVersion);
-  });
-  object.read("summary", loaded.summary, 500);
-  object.read("ticksPerStep", scene.ticksPerStep);
-  object.read("timeLimit", scene.timeLimit);
-  object.read("gravity", scene.gravity);
-
-  part([&] {
-    const JsonObject workspace = object.at("workspace").object(sceneRule("workspace"));
-    workspace.read("lower", scene.workspace[0]);
-    workspace.read("upper", scene.workspace[1]);
-    if (!((scene.workspace[1] - scene.workspace[0]).array() >= 0.01).all()) {
-      workspace.at("upper").fail("every side of the workspace must be at least 0.01 m long");
-    }
-  });
-  part([&] { scene.camera = readCamera(object.at("camera"), scene.verticalFieldOfView); });
-  part([&] {
-    const JsonObject hands = object.at("hands").object(sceneRule("hands"));
-    for (std::size_t h = 0; h < handCount; ++h)
-      part([&] { scene.hands[h] = readHand(hands.at(handNames[h]), scene.workspace); });
-  });
-
-  part([&] { checkStructureCount(object); });
-  readTissues(object, fetch, loaded);
-  part([&] {
-    if (object.has("clip")) scene.clip = readClip(object.at("clip"));
-  });
-  part([&] {
-    if (object.has("cautery")) scene.cautery = readCautery(object.at("cautery"));
-  });
-  part([&] {
-    if (object.has("solver")) readSolver(object.at("solver").object(sceneRule("solver")), scene.solver);
-  });
+  part([&] { loaded.summary = root.at("summary").text(500); });
+  for (std::size_t i = 0; i < scene.organs.size(); ++i)
+    part([&] { scene.organs[i].surface = readOrganSurface(root.at("organs").at(i).at("mesh"), fetch); });
+  for (std::size_t i = 0; i < scene.fat.size(); ++i)
+    part([&] { scene.fat[i].surface = readFatSurface(root.at("fat").at(i).at("mesh"), fetch, loaded.warnings); });
+  applySceneRules(root, scene);
   return loaded;
 }
 

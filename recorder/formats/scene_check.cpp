@@ -11,7 +11,7 @@
 #include <optional>
 #include <utility>
 
-#include "recorder/base/json_faults.h"
+#include "recorder/base/json_reader.h"
 #include "recorder/formats/scene_file.h"
 #include "sim/geometry/surface_distance.h"
 #include "sim/math/floating_point.h"
@@ -22,7 +22,7 @@ namespace {
 
 /// Edges of a surface that are this share of a cell follow what the cells can do.
 constexpr double sensibleEdge = 1.0 / 3.0;
-/// So many times the sensible number of triangles, and so many at all, are worth a note.
+/// Multiple of the sensible number of triangles, and absolute number, from which a note is given.
 constexpr std::size_t timesSensible = 4, fewTriangles = 20000;
 
 /// By how much an anchor misses a node (m); 0 or less: it catches it.
@@ -94,7 +94,7 @@ ContactCost costOf(const OrganModel& organ) {
   cost.cellSize = organ.cellSize;
   double area = 0.0;
   for (const double each : organ.triangleArea) area += each;
-  // Of equilateral triangles of that area: area = sqrt(3) / 4 edge^2.
+  // Edge of equilateral triangles of that area: area = sqrt(3) / 4 edge^2.
   const double equilateral = std::sqrt(3.0) / 4.0;
   cost.meanEdge = std::sqrt(area / static_cast<double>(cost.triangles) / equilateral);
   const double sensible = sensibleEdge * organ.cellSize;

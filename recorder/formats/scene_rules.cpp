@@ -1,136 +1,306 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "recorder/formats/scene_rules.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <stdexcept>
+#include <cmath>
+
+#include "recorder/base/json_reader.h"
+#include "sim/geometry/brick_lattice.h"
+#include "sim/geometry/closest_point.h"
 
 namespace calot::recorder {
 namespace {
 
-KeyRule required(const char* key) { return {key, true}; }
-KeyRule optional(const char* key) { return {key, false}; }
-KeyRule required(const char* key, double lower, double upper) { return {key, true, lower, upper}; }
-KeyRule optional(const char* key, double lower, double upper) { return {key, false, lower, upper}; }
+using EndKind = VesselEndDescription::Kind;
 
-KeyRule openBelow(KeyRule rule) {
-  rule.lowerOpen = true;
-  return rule;
+constexpr double minStep = 1e-4;                             ///< between neighbouring points of a path (m)
+constexpr double maxEnd = 0.005;                             ///< of a vessel's end from what it is grown to (m)
+constexpr double minCells = 4.0;                             ///< of fat, along a side of its box
+constexpr double maxCells = 16e6;                            ///< of fat, in its box
+constexpr double sideCells = BrickLattice::maxNodes - 16.0;  ///< along a side, with room for a margin
+
+template <class Named>
+const Named* find(const std::vector<Named>& all, const std::string& name) {
+  const auto found = std::find_if(all.begin(), all.end(), [&](const Named& one) { return one.name == name; });
+  return found == all.end() ? nullptr : &*found;
 }
-KeyRule openAbove(KeyRule rule) {
-  rule.upperOpen = true;
-  return rule;
+
+/// Does an earlier object have the same value of this member?
+template <class Object>
+bool isRepeated(const std::vector<Object>& all, std::size_t i, std::string Object::*member) {
+  return std::any_of(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(i),
+                     [&](const Object& other) { return other.*member == all[i].*member; });
 }
 
-// A scene is a part of one abdomen: nothing lies farther than this from the origin (m).
-constexpr double reach = 1.0;
+template <class Named>
+void checkKnown(const JsonPlace& place, const std::vector<Named>& all, const std::string& name, const char* what) {
+  if (find(all, name) == nullptr) place.fail(fmt::format("the scene has no {} of this name", what));
+}
 
-std::vector<ObjectRule> makeRules() {
-  return {
-      {"",
-       {required("format"),
-        required("formatVersion", 1, sceneFormatVersion),
-        required("name"),
-        required("version"),
-        required("summary"),
-        required("workspace"),
-        required("camera"),
-        required("hands"),
-        required("organs"),
-        optional("connective"),
-        optional("vessels"),
-        optional("fat"),
-        optional("procedure"),
-        optional("retraction"),
-        optional("clip"),
-        optional("cautery"),
-        optional("ticksPerStep", 1, 100),
-        optional("timeLimit", 0, 86400),
-        optional("gravity", -20, 20),
-        optional("solver")}},
-      {"version", {required("major", 1, 1000000), required("minor", 0, 1000000)}},
-      {"workspace", {required("lower", -reach, reach), required("upper", -reach, reach)}},
-      {"camera",
-       {required("position", -reach, reach), required("target", -reach, reach), optional("up", -1, 1),
-        required("verticalFieldOfView", 0.1, 2.6)}},
-      {"hands", {required("left"), required("right")}},
-      {"hand",
-       {required("port", -reach, reach), required("home", -reach, reach), required("instrument"),
-        optional("shaftRadius", 0.0005, 0.01), openBelow(optional("couplingStiffness", 0, 100000)),
-        openBelow(optional("rollStiffness", 0, 100)), openBelow(optional("largestForce", 0, 100)),
-        openBelow(optional("slipForce", 0, 100)), openBelow(optional("tearForce", 0, 100)),
-        optional("trocarFriction", 0, 20), optional("wallStiffness", 0, 20), optional("clips", 0, 100)}},
-      {"organ",
-       {required("name"), required("appearance"), optional("role"), required("mesh"),
-        required("tetrahedra", 10, 1000000), required("material"), optional("friction", 0, 2),
-        optional("burnThrough", 0, 1000), required("anchors")}},
-      {"mesh",
-       {required("file"), required("unit"), optional("scale", 0.001, 1000), optional("rotation", -7, 7),
-        optional("translation", -reach, reach)}},
-      {"material",
-       {required("youngModulus", 10, 1e9), openAbove(required("poissonRatio", 0, 0.5)), required("density", 100, 20000),
-        optional("massDamping", 0, 1000), optional("stiffnessDamping", 0, 10)}},
-      {"anchor", {optional("sphere"), optional("nearOrgan")}},
-      {"sphere", {required("centre", -reach, reach), openBelow(required("radius", 0, reach))}},
-      {"nearOrgan", {required("organ"), openBelow(required("distance", 0, 0.1))}},
-      {"connective",
-       {required("name"), optional("role"), required("first"), required("second"),
-        openBelow(required("reach", 0, 0.05)), required("strands", 1, 20000), openBelow(optional("stiffness", 0, 1e10)),
-        optional("damping", 0, 1e8), openBelow(optional("strength", 0, 1e9)),
-        openBelow(optional("fractureEnergy", 0, 1e9)), openBelow(optional("fadeTime", 0, 100))}},
-      {"vessel",
-       {required("name"), required("appearance"), optional("role"), required("path", -reach, reach),
-        optional("elements", 2, 400), required("radius", 0.0002, 0.02), required("wall", 0.00005, 0.02),
-        required("material"), openBelow(optional("ultimateStrain", 0, 10)), openBelow(optional("burnThrough", 0, 1000)),
-        optional("friction", 0, 2), required("start"), required("end")}},
-      {"vesselEnd", {required("kind"), optional("to")}},
-      {"fat",
-       {required("name"), required("appearance"), optional("role"), required("mesh"),
-        required("cellSize", 0.0001, 0.01), optional("cellsPerCube", 1, 8), required("material"),
-        optional("friction", 0, 2), required("attachments"), optional("triangle")}},
-      {"fatTriangle", {required("corners", -reach, reach), openBelow(required("depth", 0, 0.1))}},
-      {"fatAttachment",
-       {required("to"), openBelow(required("distance", 0, 0.05)), openBelow(required("stiffness", 0, 1e12)),
-        required("damping", 0, 1e10)}},
-      {"procedure", {required("specimen"), optional("bed"), optional("fat"), optional("divide"), optional("spare")}},
-      {"divide",
-       {required("vessel"), optional("patient", 0, 10), optional("specimen", 0, 10), optional("patientAtStart")}},
-      {"retraction",
-       {required("organ"), required("centre", -reach, reach), openBelow(required("radius", 0, reach)),
-        required("displacement", -reach, reach), optional("start", 0, 86400), openBelow(optional("duration", 0, 1000)),
-        optional("stage", 0, 1), optional("most", 1, 10), openBelow(optional("stiffness", 0, 100000)),
-        optional("damping", 0, 10000)}},
-      {"clip",
-       {openBelow(optional("width", 0, 0.01)), openBelow(optional("legs", 0, 0.05)), optional("leastGap", 0, 0.1),
-        optional("leastJunctionGap", 0, 0.1)}},
-      {"cautery",
-       {openBelow(optional("power", 0, 1000)), optional("reach", 0, 0.005), optional("carve", 0, 0.005),
-        openBelow(optional("spot", 0, 0.0001)), openBelow(optional("charTime", 0, 100)),
-        openBelow(optional("recession", 0, 1)), openBelow(optional("coagulationPace", 0, 10)),
-        optional("cutChar", 0, 10), optional("sealRadius", 0, 0.01), openBelow(optional("injury", 0, 1))}},
-      {"solver",
-       {openBelow(optional("tolerance", 0, 0.1)), optional("speedTolerance", 0, 0.001),
-        optional("iterations", 1, 100000), openBelow(optional("responseTolerance", 0, 0.1)),
-        optional("responseSpeedTolerance", 0, 0.001), openBelow(optional("contactTolerance", 0, 0.001)),
-        optional("contactPasses", 1, 100), optional("gapTolerance", 0, 0.001), optional("contactIterations", 1, 100000),
-        optional("sleeping")}},
-  };
+void checkWorkspace(const JsonPlace& workspace, const SceneDescription& scene) {
+  if (!((scene.workspace[1] - scene.workspace[0]).array() >= 0.01).all())
+    workspace.at("upper").fail("every side of the workspace must be at least 0.01 m long");
+}
+
+// Camera frame C: x right, y down, z along the view.
+void orientCamera(const JsonPlace& place, CameraSample& camera) {
+  const Vec3 up = place.has("up") ? place.at("up").vector(within(-1, 1)) : Vec3::UnitY();
+  const Vec3 view = place.at("target").vector(within(-1, 1)) - camera.position;
+  if (!(view.norm() > 0.001)) place.at("target").fail("the target is the camera's own position");
+  const Vec3 forward = view / view.norm();
+  const Vec3 across = forward.cross(up);
+  if (!(across.norm() > 0.01 * up.norm()) || !(up.norm() > 0.01)) place.fail("\"up\" is zero or along the view");
+  Mat3 axes;
+  axes.col(0) = across / across.norm();
+  axes.col(1) = forward.cross(axes.col(0));
+  axes.col(2) = forward;
+  camera.orientation = Quat(axes).normalized();
+}
+
+void checkHand(const JsonPlace& place, const HandDescription& hand, const std::array<Vec3, 2>& workspace) {
+  if ((hand.home.array() < workspace[0].array()).any() || (hand.home.array() > workspace[1].array()).any())
+    place.at("home").fail("outside the workspace");
+  if (!((hand.home - hand.port).norm() >= 0.01)) place.at("home").fail("nearer than 0.01 m to the port");
+  const Vec3 nearest = hand.port.cwiseMax(workspace[0]).cwiseMin(workspace[1]);
+  if (!((hand.port - nearest).norm() <= 0.3)) place.at("port").fail("farther than 0.3 m from the workspace");
+}
+
+void checkAnchors(const JsonPlace& organs, const SceneDescription& scene) {
+  for (std::size_t i = 0; i < scene.organs.size(); ++i) {
+    const OrganDescription& organ = scene.organs[i];
+    for (std::size_t a = 0; a < organ.anchors.size(); ++a) {
+      const JsonPlace place = organs.at(i).at("anchors").at(a);
+      if (place.has("sphere") == place.has("nearOrgan"))
+        JsonFaults::part([&] { place.fail("one of \"sphere\" and \"nearOrgan\" is expected"); });
+    }
+  }
+}
+
+void checkOrgans(const JsonPlace& organs, const SceneDescription& scene) {
+  for (std::size_t i = 0; i < scene.organs.size(); ++i) {
+    const OrganDescription& organ = scene.organs[i];
+    if (isRepeated(scene.organs, i, &OrganDescription::name))
+      organs.at(i).at("name").fail("another organ has this name");
+    for (std::size_t a = 0; a < organ.anchors.size(); ++a) {
+      const std::string& near = organ.anchors[a].nearOrgan;
+      if (near.empty()) continue;
+      const JsonPlace name = organs.at(i).at("anchors").at(a).at("nearOrgan").at("organ");
+      if (find(scene.organs, near) == nullptr) name.fail("the scene has no organ \"" + near + "\"");
+      if (near == organ.name) name.fail("an organ cannot be anchored to itself");
+    }
+  }
+}
+
+void checkConnective(const JsonPlace& place, const ConnectiveDescription& tissue, const SceneDescription& scene) {
+  checkKnown(place.at("first"), scene.organs, tissue.first, "organ");
+  checkKnown(place.at("second"), scene.organs, tissue.second, "organ");
+  if (tissue.first == tissue.second) place.at("second").fail("joins an organ to itself");
+  const bool onGallbladder = std::any_of(scene.organs.begin(), scene.organs.end(), [&](const OrganDescription& o) {
+    return o.role == StructureRole::gallbladder && (o.name == tissue.first || o.name == tissue.second);
+  });
+  if (tissue.role == StructureRole::cysticPlate && !onGallbladder)
+    place.at("role").fail("neither organ that it joins has the role gallbladder");
+  if (const std::string fault = cohesiveFault(tissue); !fault.empty()) place.fail(fault);
+}
+
+void checkPath(const JsonPlace& place, const std::vector<Vec3>& path) {
+  for (std::size_t i = 1; i < path.size(); ++i) {
+    const Vec3 step = path[i] - path[i - 1];
+    if (!(step.norm() >= minStep)) place.at(i).fail(fmt::format("nearer than {} m to the point before", minStep));
+    if (i > 1 && !(step.dot(path[i - 1] - path[i - 2]) > 0.0))
+      place.at(i).fail("the path turns by 90 degrees or more at the point before");
+  }
+}
+
+double distanceTo(const OrganDescription& organ, const Vec3& p) {
+  double nearest = 1e300;
+  const auto& v = organ.surface.vertex;
+  for (const Index3& t : organ.surface.triangle) {
+    nearest = std::min(nearest, closestOnTriangle(p, v[slot(t[0])], v[slot(t[1])], v[slot(t[2])]).squaredDistance);
+  }
+  return std::sqrt(nearest);
+}
+
+double distanceTo(const VesselDescription& vessel, const Vec3& p) {
+  double nearest = 1e300;
+  for (std::size_t i = 1; i < vessel.path.size(); ++i) {
+    const Vec3& a = vessel.path[i - 1];
+    const Vec3 along = vessel.path[i] - a;
+    nearest = std::min(nearest, (p - a - closestOnSegment(p, a, vessel.path[i]) * along).norm());
+  }
+  return nearest;
+}
+
+/// @param earlier vessels before that of this end
+void checkEnd(const JsonPlace& place, const VesselEndDescription& end, const Vec3& point, bool isStart,
+              const SceneDescription& scene, std::size_t earlier) {
+  if (end.kind == EndKind::free || end.kind == EndKind::fixed) {
+    if (place.has("to")) place.at("to").fail("a free or a fixed end is grown to nothing");
+    return;
+  }
+  const JsonPlace to = place.at("to");
+  double distance = 0.0;
+  if (end.kind == EndKind::organ) {
+    const OrganDescription* organ = find(scene.organs, end.to);
+    if (organ == nullptr) to.fail("the scene has no organ of this name");
+    distance = distanceTo(*organ, point);
+  } else {
+    if (!isStart) place.at("kind").fail("only a start grows out of a vessel");
+    const VesselDescription* vessel = find(scene.vessels, end.to);
+    if (vessel == nullptr || vessel >= scene.vessels.data() + earlier)
+      to.fail("no earlier vessel of the scene has this name");
+    distance = distanceTo(*vessel, point);
+  }
+  if (!(distance <= maxEnd)) to.fail(fmt::format("it lies {:.3g} m away; at most {} m is allowed", distance, maxEnd));
+}
+
+void checkVessel(const JsonPlace& place, const SceneDescription& scene, std::size_t i) {
+  const VesselDescription& vessel = scene.vessels[i];
+  if (find(scene.organs, vessel.name) != nullptr) place.at("name").fail("an organ has this name");
+  if (isRepeated(scene.vessels, i, &VesselDescription::name)) place.at("name").fail("another vessel has this name");
+  checkPath(place.at("path"), vessel.path);
+  if (!(vessel.wall < vessel.radius)) place.at("wall").fail("not thinner than the radius");
+  checkEnd(place.at("start"), vessel.start, vessel.path.front(), true, scene, i);
+  checkEnd(place.at("end"), vessel.end, vessel.path.back(), false, scene, i);
+}
+
+void checkFat(const JsonPlace& place, const SceneDescription& scene, std::size_t i) {
+  const FatDescription& fat = scene.fat[i];
+  if (find(scene.organs, fat.name) != nullptr) place.at("name").fail("an organ has this name");
+  if (find(scene.vessels, fat.name) != nullptr) place.at("name").fail("a vessel has this name");
+  if (isRepeated(scene.fat, i, &FatDescription::name)) place.at("name").fail("other fat has this name");
+  for (std::size_t a = 0; a < fat.attachments.size(); ++a) {
+    const JsonPlace one = place.at("attachments").at(a);
+    const std::string& to = fat.attachments[a].to;
+    if (find(scene.organs, to) == nullptr && find(scene.vessels, to) == nullptr)
+      one.at("to").fail("the scene has no organ and no vessel of this name");
+    if (isRepeated(fat.attachments, a, &FatAttachmentDescription::to))
+      one.fail("a second attachment to \"" + to + "\"");
+  }
+  const Vec3 normal = (fat.triangle[1] - fat.triangle[0]).cross(fat.triangle[2] - fat.triangle[0]);
+  if (place.has("triangle") && !(normal.norm() >= 1e-6))
+    place.at("triangle").at("corners").fail("its corners lie on a line, or nearly");
+  if (fat.surface.vertex.empty()) return;
+  const Box box = bounds(fat.surface.mesh());
+  const Vec3 cells = (box.upper - box.lower) / fat.cellSize;
+  if (cells.minCoeff() >= minCells && cells.maxCoeff() <= sideCells && cells.prod() <= maxCells) return;
+  place.at("cellSize")
+      .fail(fmt::format("the surface's box has {:.0f} x {:.0f} x {:.0f} cells of this size; from {} to {} along each "
+                        "side and at most {:.0f} in all are allowed",
+                        cells[0], cells[1], cells[2], minCells, sideCells, maxCells));
+}
+
+void checkProcedure(const JsonPlace& place, const SceneDescription& scene) {
+  const ProcedureDescription& procedure = scene.procedure;
+  checkKnown(place.at("specimen"), scene.organs, procedure.specimen, "organ");
+  if (place.has("bed")) {
+    checkKnown(place.at("bed"), scene.connective, procedure.bed, "connective tissue");
+    const ConnectiveDescription& bed = *find(scene.connective, procedure.bed);
+    if (bed.first != procedure.specimen && bed.second != procedure.specimen)
+      place.at("bed").fail("does not hold the specimen");
+  }
+  if (place.has("fat")) checkKnown(place.at("fat"), scene.fat, procedure.fat, "fat");
+  for (std::size_t i = 0; i < procedure.divide.size(); ++i) {
+    const JsonPlace vessel = place.at("divide").at(i).at("vessel");
+    checkKnown(vessel, scene.vessels, procedure.divide[i].vessel, "vessel");
+    if (isRepeated(procedure.divide, i, &DivideDescription::vessel)) vessel.fail("is named a second time");
+  }
+  for (std::size_t i = 0; i < procedure.spare.size(); ++i) {
+    const JsonPlace vessel = place.at("spare").at(i);
+    checkKnown(vessel, scene.vessels, procedure.spare[i], "vessel");
+    if (std::any_of(procedure.divide.begin(), procedure.divide.end(),
+                    [&](const DivideDescription& d) { return d.vessel == procedure.spare[i]; }))
+      vessel.fail("this vessel is to be divided");
+  }
+}
+
+bool statesRoles(const JsonPlace& root) {
+  const char* const lists[] = {"organs", "connective", "vessels", "fat"};
+  return std::any_of(std::begin(lists), std::end(lists), [&](const char* list) {
+    if (!root.has(list)) return false;
+    const std::vector<JsonPlace> items = root.at(list).list(0, maxStructures);
+    return std::any_of(items.begin(), items.end(), [](const JsonPlace& item) { return item.has("role"); });
+  });
+}
+
+StructureRole roleOfVessel(const VesselDescription& vessel, bool entersGallbladder) {
+  const bool duct = vessel.appearance == "duct";
+  if (entersGallbladder) return duct ? StructureRole::cysticDuct : StructureRole::cysticArtery;
+  if (duct) return StructureRole::bileDuct;
+  return vessel.appearance == "artery" ? StructureRole::artery : StructureRole::other;
 }
 
 }  // namespace
 
-const std::vector<ObjectRule>& sceneRules() {
-  static const std::vector<ObjectRule> rules = makeRules();
-  return rules;
+void deriveRoles(SceneDescription& scene) {
+  for (OrganDescription& organ : scene.organs) {
+    organ.role = organ.appearance == "liver"         ? StructureRole::liver
+                 : organ.appearance == "gallbladder" ? StructureRole::gallbladder
+                                                     : StructureRole::other;
+  }
+  const auto isGallbladder = [&](const std::string& name) {
+    const OrganDescription* organ = find(scene.organs, name);
+    return organ != nullptr && organ->role == StructureRole::gallbladder;
+  };
+  const auto entersGallbladder = [&](const VesselEndDescription& end) {
+    return end.kind == EndKind::organ && isGallbladder(end.to);
+  };
+  for (ConnectiveDescription& tissue : scene.connective) {
+    const bool bed = isGallbladder(tissue.first) || isGallbladder(tissue.second);
+    tissue.role = bed ? StructureRole::cysticPlate : StructureRole::other;
+  }
+  for (VesselDescription& vessel : scene.vessels) {
+    vessel.role = roleOfVessel(vessel, entersGallbladder(vessel.start) || entersGallbladder(vessel.end));
+  }
+  for (FatDescription& fat : scene.fat) fat.role = StructureRole::triangleFat;
 }
 
-KeyRule sceneCoordinate() { return required("", -reach, reach); }
-
-const ObjectRule& sceneRule(const std::string& definition) {
-  const std::vector<ObjectRule>& rules = sceneRules();
-  const auto found =
-      std::find_if(rules.begin(), rules.end(), [&](const ObjectRule& r) { return r.definition == definition; });
-  if (found == rules.end()) throw std::logic_error("no scene rule " + definition);
-  return *found;
+void applySceneRules(const JsonPlace& root, SceneDescription& scene) {
+  const auto rule = [](std::initializer_list<std::string_view> fields, auto&& check) {
+    if (!JsonFaults::at(fields)) JsonFaults::part(check);
+  };
+  rule({"/workspace"}, [&] { checkWorkspace(root.at("workspace"), scene); });
+  rule({"/camera"}, [&] { orientCamera(root.at("camera"), scene.camera); });
+  for (std::size_t h = 0; h < handCount; ++h) {
+    rule({"/workspace", std::string("/hands/") + handNames[h]},
+         [&] { checkHand(root.at("hands").at(handNames[h]), scene.hands[h], scene.workspace); });
+  }
+  const std::size_t structures = scene.organs.size() + scene.vessels.size() + scene.fat.size();
+  JsonFaults::part([&] {
+    if (structures > maxStructures)
+      root.fail(fmt::format("{} structures (organs, vessels and bodies of fat); at most {} are allowed", structures,
+                            maxStructures));
+  });
+  const bool surfaces = std::none_of(scene.organs.begin(), scene.organs.end(),
+                                     [](const OrganDescription& organ) { return organ.surface.vertex.empty(); });
+  if (scene.organs.empty() || !surfaces) return;
+  rule({"/organs"}, [&] { checkAnchors(root.at("organs"), scene); });
+  rule({"/organs"}, [&] { checkOrgans(root.at("organs"), scene); });
+  for (std::size_t i = 0; i < scene.connective.size(); ++i) {
+    rule({"/organs", "/connective"}, [&] {
+      const JsonPlace place = root.at("connective").at(i);
+      if (isRepeated(scene.connective, i, &ConnectiveDescription::name))
+        place.at("name").fail("a second connective tissue of this name");
+      checkConnective(place, scene.connective[i], scene);
+    });
+  }
+  for (std::size_t i = 0; i < scene.retraction.size(); ++i) {
+    rule({"/organs", "/retraction"}, [&] {
+      checkKnown(root.at("retraction").at(i).at("organ"), scene.organs, scene.retraction[i].organ, "organ");
+    });
+  }
+  for (std::size_t i = 0; i < scene.vessels.size(); ++i)
+    rule({"/organs", "/vessels"}, [&] { checkVessel(root.at("vessels").at(i), scene, i); });
+  for (std::size_t i = 0; i < scene.fat.size(); ++i)
+    rule({"/organs", "/vessels", "/fat"}, [&] { checkFat(root.at("fat").at(i), scene, i); });
+  rule({"/organs", "/connective", "/vessels", "/fat", "/retraction"}, [&] {
+    if (!statesRoles(root)) deriveRoles(scene);
+  });
+  rule({"/organs", "/connective", "/vessels", "/fat", "/retraction", "/procedure"}, [&] {
+    if (root.has("procedure")) checkProcedure(root.at("procedure"), scene);
+  });
 }
 
 }  // namespace calot::recorder

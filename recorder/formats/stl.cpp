@@ -35,10 +35,7 @@ std::uint64_t binaryLength(std::span<const std::byte> bytes) {
 bool beginsWithSolid(std::span<const std::byte> bytes) {
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), std::min<std::size_t>(bytes.size(), 256));
   const std::size_t begin = std::min(text.find_first_not_of(" \t\r\n"), text.size());
-  std::string word(text.substr(begin, 5));
-  std::transform(word.begin(), word.end(), word.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-  return word == "solid";
+  return lowerCase(text.substr(begin, 5)) == "solid";
 }
 
 /// Explains why the unit cannot be metres; empty if it can.
@@ -115,7 +112,7 @@ class StlText {
 
   std::vector<Vec3> read() {
     for (std::string word = nextWord(); !word.empty(); word = nextWord()) {
-      if (word != "solid") fail(fmt::format("\"solid\" is wanted, not \"{}\"", shown(word)));
+      if (word != "solid") fail(fmt::format("\"solid\" is expected, not \"{}\"", shown(word)));
       words_ = Words("");  // its name
       readSolid();
       words_ = Words("");
@@ -138,17 +135,14 @@ class StlText {
       words_ = Words(line);
       word = words_.next();
     }
-    std::string small(word);
-    std::transform(small.begin(), small.end(), small.begin(),
-                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-    return small;
+    return lowerCase(word);
   }
 
   void expect(std::string_view wanted) {
     const std::string word = nextWord();
     if (word == wanted) return;
-    if (word.empty()) fail(fmt::format("the file ends where \"{}\" is wanted", wanted));
-    fail(fmt::format("\"{}\" is wanted, not \"{}\"", wanted, shown(word)));
+    if (word.empty()) fail(fmt::format("the file ends where \"{}\" is expected", wanted));
+    fail(fmt::format("\"{}\" is expected, not \"{}\"", wanted, shown(word)));
   }
 
   void readSolid() {
@@ -156,7 +150,7 @@ class StlText {
       const std::string word = nextWord();
       if (word == "endsolid") return;
       if (word.empty()) fail("the file ends before \"endsolid\"");
-      if (word != "facet") fail(fmt::format("\"facet\" or \"endsolid\" is wanted, not \"{}\"", shown(word)));
+      if (word != "facet") fail(fmt::format("\"facet\" or \"endsolid\" is expected, not \"{}\"", shown(word)));
       if (corner_.size() / 3 >= limits_.triangles) fail(fmt::format("more than {} triangles", limits_.triangles));
       expect("normal");
       for (int k = 0; k < 3; ++k) {
@@ -216,7 +210,7 @@ TriangleMesh parseStl(std::span<const std::byte> bytes, const std::string& name,
                 fmt::format("{} triangles in a binary STL file take {} bytes, but it has {}",
                             littleEndian(bytes.data() + 80), binaryLength(bytes), bytes.size()));
   }
-  if (corner.empty()) throw Error(ErrorKind::damaged, Where{name}, "no triangle; a surface is wanted");
+  if (corner.empty()) throw Error(ErrorKind::damaged, Where{name}, "no triangle; a surface is expected");
   return joined(corner, name, limits);
 }
 

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Triangle surfaces by the name of their file: .obj, .stl, .ply (small or capital letters).
 // Common to the readers of triangle surfaces (OBJ, STL, PLY): the unit, which such files do not contain, and limits.
+// Wavefront OBJ surfaces. Read: `v` (3 coordinates; more numbers are ignored), `f` (v, v/vt, v//vn, v/vt/vn; negative
+// indices count back; polygons are cut into fans). Everything that only draws (`vt`, `vn`, groups, materials, lines,
+// points) is passed over; anything else is refused.
 #pragma once
 
 #include <cstddef>
@@ -8,6 +11,7 @@
 #include <string>
 
 #include "sim/geometry/triangle_mesh.h"
+#include "sim/math/record.h"
 
 namespace calot::recorder {
 
@@ -17,7 +21,10 @@ enum class LengthUnit { metre, centimetre, millimetre };
 /// Metres in one unit.
 double metres(LengthUnit unit);
 
-/// "m", "cm" or "mm". @throws Error (invalid)
+/// "m", "cm" and "mm".
+const FieldWords& lengthUnits();
+
+/// One of lengthUnits(). @throws Error (invalid)
 LengthUnit parseLengthUnit(const std::string& word);
 
 /// Limits of a file; a file that exceeds one is refused, naming the location.
@@ -35,8 +42,19 @@ bool isSurfaceName(const std::string& name);
 
 /// A surface from a file's bytes, in metres. Indices are in range and coordinates finite; nothing else is promised.
 /// @param name what messages call it; its end says the format
-/// @throws Error (damaged), naming the place, or where the name is none of a surface file
+/// @throws Error (damaged), naming the place, or if the name is not that of a surface file
 TriangleMesh parseSurface(std::span<const std::byte> bytes, const std::string& name, LengthUnit unit,
                           const SurfaceLimits& limits = {});
+
+/// A surface from an OBJ file's bytes, in metres. Indices are in range and coordinates finite; nothing else is
+/// guaranteed (surface_report.h checks the surface).
+/// @param name name for messages
+/// @throws Error (damaged): "name:line: what is wrong"
+TriangleMesh parseObj(std::span<const std::byte> bytes, const std::string& name, LengthUnit unit,
+                      const SurfaceLimits& limits = {});
+
+/// The text of an OBJ file in metres. Coordinates are written so that they are read back bit for bit.
+/// @param comment lines for the head, each without "#"
+std::string formatObj(const TriangleMesh& mesh, const std::string& comment);
 
 }  // namespace calot::recorder

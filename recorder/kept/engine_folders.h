@@ -10,7 +10,7 @@
 
 namespace calot::recorder {
 
-/// Where programs look for engines.
+/// Folders in which programs look for engines.
 struct EnginePlaces {
   /// In order: the first that holds an engine of a version gives it. A native engine goes before a module.
   std::vector<std::filesystem::path> folders;

@@ -46,8 +46,8 @@ std::string ResultReader::fault(const std::vector<wire::Column>& declared) const
   }
   if (ours == declared) return "";
   const auto differing = std::mismatch(ours.begin(), ours.end(), declared.begin(), declared.end());
-  return differing.first == ours.end() ? fmt::format("{} is no result of the recording", differing.second->path)
-                                       : fmt::format("{} is no result of the engine", differing.first->path);
+  return differing.first == ours.end() ? fmt::format("{} is not a result of the recording", differing.second->path)
+                                       : fmt::format("{} is not a result of the engine", differing.first->path);
 }
 
 std::string ResultReader::read(std::uint64_t step, std::span<const std::byte> row, StepResult& result,
@@ -67,7 +67,7 @@ template <class Request>
 void EngineProcess::send(const Request& request) {
   request_.clear();
   appendMessage(request, request_);
-  // Where it has ended, receive() says so, after what it said before.
+  // If it has ended, receive() reports it, after its earlier answers.
   static_cast<void>(child_.channel().send(request_));
 }
 
@@ -82,7 +82,7 @@ std::span<const std::byte> EngineProcess::receive(std::uint32_t kind, std::uint3
     if (fault.code == wire::FaultCode::contactSet) throw std::out_of_range(fault.message);
     fail(fault.message);
   }
-  if (kind == wire::IsHello::kind) fail("is no engine");
+  if (kind == wire::IsHello::kind) fail("is not an engine");
   if (got == nullptr) fail(fmt::format("the engine answered with a message of kind {}, not {}", parsed.kind, kind));
   return payload_;
 }
@@ -98,15 +98,15 @@ template <class Answer, class Request>
 Answer EngineProcess::ask(const Request& request) {
   Answer answer;
   if (!decode(ask(request, Answer::kind), answer))
-    fail(fmt::format("the engine's answer {} has not the bytes that it must have", Answer::kind));
+    fail(fmt::format("the engine's answer {} does not have the expected number of bytes", Answer::kind));
   return answer;
 }
 
 EngineProcess::EngineProcess(const std::vector<std::string>& command, std::uint32_t simulationVersion)
     : program_(command.back()), child_(command), where_{program_} {
   const auto answer = ask<wire::IsHello>(wire::Hello{});
-  if (answer.magic != wire::magic || answer.protocol != wire::protocol) fail("is no engine");
-  if (answer.confined > static_cast<std::uint8_t>(Confinement::byHost)) fail("is no engine");
+  if (answer.magic != wire::magic || answer.protocol != wire::protocol) fail("is not an engine");
+  if (answer.confined > static_cast<std::uint8_t>(Confinement::byHost)) fail("is not an engine");
   if (answer.simulation != simulationVersion)
     fail(fmt::format("is an engine of simulation version {}, not {}", answer.simulation, simulationVersion));
   identity_ = {answer.simulation, answer.result, answer.software, static_cast<Confinement>(answer.confined)};

@@ -79,7 +79,7 @@ class EngineProcess final : public Engine {
   EngineIdentity identity_;
   DigestLayout layout_;
   std::optional<ResultReader> results_;
-  Vec3 down_ = SceneView().down;  ///< no engine tells of it
+  Vec3 down_ = SceneView().down;  ///< no engine reports it
   std::uint64_t steps_ = 0;
   std::size_t ticksPerStep_ = 0;
   std::size_t announced_ = 0;  ///< steps whose answers were not taken yet

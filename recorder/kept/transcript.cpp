@@ -24,7 +24,7 @@ class RawEngine {
   explicit RawEngine(const std::vector<std::string>& command) : name_(command.back()), child_(command) {}
 
   std::vector<std::byte> ask(const std::vector<std::byte>& request) {
-    // Where it has ended, receiveMessage() says how.
+    // If it has ended, receiveMessage() reports how.
     static_cast<void>(child_.channel().send(request));
     MessageHead head;
     wire::Bytes answer;
@@ -128,7 +128,7 @@ Transcript readTranscript(const std::filesystem::path& file) {
   const auto next = [&] {
     if (rest.size() < messageHead || parseHead(rest).length > rest.size() - messageHead)
       throw Error(ErrorKind::damaged, Where{file.string(), fmt::format("byte {}", bytes.size() - rest.size())},
-                  "is no message of an engine's transcript");
+                  "is not a message of an engine's transcript");
     const std::size_t size = messageHead + static_cast<std::size_t>(parseHead(rest).length);
     std::vector<std::byte> message(rest.begin(), rest.begin() + static_cast<std::ptrdiff_t>(size));
     rest = rest.subspan(size);

@@ -52,7 +52,7 @@ class ControlledSource final : public WrappedSource {
   }
   /// The same as a person does it: the old instrument is drawn out through the port and the new one put in, and for so
   /// long the hand has none. Nothing happens to a hand without any, or that has this one already; a newer wish on the
-  /// way begins anew. @param ticks how long it takes (ms)
+  /// way begins again. @param ticks how long it takes (ms)
   void exchange(Hand hand, InstrumentKind instrument, std::uint32_t ticks);
   /// An exchange that is under way.
   struct Exchange {
@@ -83,7 +83,7 @@ class ControlledSource final : public WrappedSource {
   std::array<Exchanging, handCount> exchange_;
   std::atomic<Outcome> finished_{Outcome::running};
   std::atomic<std::uint32_t> more_{0}, less_{0};  ///< requests that are still to be pressed
-  bool pressed_ = false;                          ///< in the last tick: what is pressed anew was let go before
+  bool pressed_ = false;                          ///< in the last tick; a new press follows a release
 };
 
 /// A source with a watcher in a live run: one thread requests ticks, another reports steps. Sources are not

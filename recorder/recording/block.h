@@ -225,11 +225,11 @@ struct RowVisitor {
     if constexpr (std::is_floating_point_v<T>) {
       if (!std::isfinite(value)) failUnfinite();
     } else if constexpr (std::is_same_v<T, InstrumentKind>) {
-      if (!isInstrumentNumber(code)) fail("is no known instrument");
+      if (!isInstrumentNumber(code)) fail("is not a known instrument");
     } else if constexpr (std::is_same_v<T, Cautery>) {
-      if (value > Cautery::onTissue) fail("is no known state of the cautery");
+      if (value > Cautery::onTissue) fail("is not a known state of the cautery");
     } else if constexpr (std::is_same_v<T, Phase>) {
-      if (value > Phase::done) fail("is no known phase");
+      if (value > Phase::done) fail("is not a known phase");
     }
   }
   void failUnfinite() {

@@ -34,7 +34,7 @@ struct RawSample {
   bool used = false;       ///< that tick's pose was made from it: the newest valid one of its hand, no clutch held
 };
 
-/// Where the recording's writer takes raw samples from, while another thread may put them in.
+/// Queue from which the recording's writer takes raw samples, while another thread may put them in.
 class RawSampleFeed {
  public:
   RawSampleFeed() = default;

@@ -22,7 +22,7 @@ namespace {
 
 using hdf5::Id;
 
-/// What the kernel writes whole or not at all, whenever the process is killed: a page of its cache.
+/// The kernel writes a page of its cache whole or not at all, whenever the process is killed.
 constexpr hsize_t atomicBytes = 4096;
 
 Column signatureColumn() {

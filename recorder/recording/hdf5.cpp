@@ -194,7 +194,7 @@ std::string Rows::append(std::uint64_t first, std::uint64_t rows, const void* va
 
 namespace {
 
-/// What the library holds of a file. Its own part comes first.
+/// State that the library holds of a file. Its own part comes first.
 struct OpenFile {
   H5FD_t library{};
   H5FD_t* plain = nullptr;  ///< the same file by the library's own driver
@@ -253,7 +253,7 @@ herr_t calotFileTruncate(H5FD_t* file, hid_t transfer, hbool_t closing) {
 herr_t calotFileLock(H5FD_t* file, hbool_t writing) { return H5FDlock(plainOf(file), writing); }
 herr_t calotFileUnlock(H5FD_t* file) { return H5FDunlock(plainOf(file)); }
 
-/// The library ends, or begins anew: the number means nothing then.
+/// The library ends, or begins again: the number means nothing then.
 herr_t calotFileTerminate() {
   registered = H5I_INVALID_HID;
   return 0;

@@ -129,7 +129,7 @@ class HeaderReader {
       throw damaged(path_, place, hdf5::reason());
   }
 
-  /// Bytes of a fixed-length string; 0: it is none, or longer than `most`.
+  /// Bytes of a fixed-length string; 0: it is not one, or longer than `most`.
   static std::size_t sizeOfText(const Id& type, std::size_t most) {
     if (H5Tget_class(type.get()) != H5T_STRING || H5Tis_variable_str(type.get()) != 0) return 0;
     const std::size_t size = H5Tget_size(type.get());
@@ -188,7 +188,7 @@ AttemptHeader readHeader(const std::filesystem::path& path, const hdf5::Id& file
   HeaderReader reader(path, file, fileBytes);
   AttemptHeader h;
   ReadAttributes attributes{reader};
-  // What the other attributes are depends on the version.
+  // The set of the other attributes depends on the version.
   attributes.constant("format", std::string(formatName));
   attributes("format_version", h.formatVersion);
   if (h.formatVersion < oldestFormatVersion || h.formatVersion > formatVersion) {

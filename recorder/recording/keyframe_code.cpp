@@ -106,7 +106,7 @@ class Derived {
     return false;
   }
 
-  /// What word w is, but for its last bits. @pre has(w); the words that it follows from are there
+  /// Prediction of word w, but for its last bits. @pre has(w); the words that it follows from are there
   [[nodiscard]] std::uint64_t of(std::span<const std::byte> part, std::size_t w) const {
     switch (form_) {
       case PartForm::quaternions:
@@ -125,7 +125,7 @@ class Derived {
  private:
   static constexpr std::size_t lanes = 8;
 
-  /// Of a unit quaternion with w > 0 from its others.
+  /// The w > 0 of a unit quaternion from its other parts.
   static std::uint64_t fourth(std::span<const std::byte> part, std::size_t first, std::size_t apart) {
     const auto at = [&](std::size_t n) { return std::bit_cast<double>(wordAt(part, (first + n * apart) * wordBytes)); };
     const double x = at(0);
@@ -243,7 +243,7 @@ CodedKeyframe::CodedKeyframe(std::span<const std::uint64_t> words, std::uint64_t
 std::string CodedKeyframe::decode(std::span<const std::byte> base, std::uint64_t size,
                                   std::vector<std::byte>& out) const {
   out.clear();
-  // What is unchanged has no words. It comes from the base, and is no more than that.
+  // An unchanged part has no words. It comes from the base, and is no longer than that.
   if (size > base.size() && wordsOf(size - base.size()) > values_.size())
     return "claims more bytes than its words can hold";
   out.resize(static_cast<std::size_t>(size));

@@ -58,7 +58,7 @@ hdf5::Id openForReading(const std::filesystem::path& path, Access access) {
   const Superblock superblock = readSuperblock(path);
   const Id how = hdf5::fileAccess(access == Access::settled ? 1 : 0);
   const unsigned swmr = superblock.writing ? H5F_ACC_SWMR_READ : 0U;
-  // Who has the file open already in this process decides how it is closed: another library of files has the default.
+  // An existing handle of the file in this process decides how it is closed: another file library has the default.
   for (const H5F_close_degree_t degree : {H5F_CLOSE_DEFAULT, H5F_CLOSE_STRONG}) {
     H5Pset_fclose_degree(how.get(), degree);
     const auto open = [&] { return hdf5::file(H5Fopen(path.c_str(), H5F_ACC_RDONLY | swmr, how.get())); };
@@ -66,7 +66,7 @@ hdf5::Id openForReading(const std::filesystem::path& path, Access access) {
     if (!file.valid()) continue;
     checkShape(path, file, sizeOfFile(path));
     if (!superblock.writing) return file;
-    // What was looked at is remembered with the extents that it had then, and the file grows: it is forgotten.
+    // Cached objects keep the extents that they had then, and the file grows: they are discarded.
     file.reset();
     file = open();
     if (file.valid()) return file;
@@ -172,7 +172,7 @@ class ShapeCheck {
     const Id how = hdf5::properties(H5Dget_create_plist(dataset));
     if (!how.valid()) return;
     const H5D_layout_t layout = H5Pget_layout(how.get());
-    // Of such a one not even the extent may be asked: that opens what it is made of.
+    // Even querying the extent of such a data set opens its sources.
     if (layout == H5D_VIRTUAL) refuse(place, "is made of other data sets");
     for (int i = 0; i < H5Pget_nfilters(how.get()); ++i) {
       unsigned flags = 0, config = 0;

@@ -106,7 +106,7 @@ struct Request {
 
 /// Main loop of a guarding process, until its parent closes the connection.
 void serve(const Channel& parent, const GuardProcesses::Task& task) {
-  // What this process holds open (a pipe to another program, a file's lock) is not to stay open by a copy of it.
+  // Descriptors of this process (a pipe to another program, a file's lock) must not stay open in a copy of it.
   const auto own = static_cast<unsigned>(parent.descriptor());
   ::close_range(3, own - 1, 0);
   ::close_range(own + 1, ~0U, 0);

@@ -87,7 +87,7 @@ struct Recording::Impl {
     blockRow = row;
   }
 
-  /// What ran away may be no number any more; nothing else.
+  /// Only results of a runaway step may hold numbers that are not finite.
   void refuseUnfinite(const StepResult& result) const {
     if ((result.misses & miss::runaway) != 0) return;
     for (const Event& event : result.events) {

@@ -47,7 +47,7 @@ void readArray(const std::filesystem::path& file, const std::string& place, hid_
   hsize_t size = 0;
   if (H5Sget_simple_extent_ndims(space.get()) != 1 || H5Sget_simple_extent_dims(space.get(), &size, nullptr) < 0 ||
       size > (std::uint64_t{1} << 28U)) {
-    throw hdf5::damaged(file, place, "is no list of numbers");
+    throw hdf5::damaged(file, place, "is not a list of numbers");
   }
   out.resize(size);
   const hdf5::Id type = hdf5::elementType(storedAs<T>());
@@ -80,7 +80,7 @@ std::string onlyMember(const std::filesystem::path& file, const std::string& pla
 StateFile readHere(const std::filesystem::path& path) {
   const hdf5::Session session;
   const hdf5::Id file = hdf5::file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
-  if (!file.valid()) throw hdf5::damaged(path, "/", "is no state file that can be opened (" + hdf5::reason() + ")");
+  if (!file.valid()) throw hdf5::damaged(path, "/", "is not a state file that can be opened (" + hdf5::reason() + ")");
   checkShape(path, file, std::filesystem::file_size(path));
   StateFile state;
   readAttribute(path, file.get(), stateFormatName);

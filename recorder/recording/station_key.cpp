@@ -74,7 +74,7 @@ void writeStationKey(const std::filesystem::path& file, const StationKey& key) {
                .dump(2) +
            "\n";
   } catch (const nlohmann::json::exception&) {
-    throw Error(ErrorKind::invalid, "station: its name is no UTF-8 text");
+    throw Error(ErrorKind::invalid, "station: its name is not UTF-8 text");
   }
   writeSecret(file, text, false);
   sodium_memzero(text.data(), text.size());

@@ -29,7 +29,7 @@ void checkCommand(const HandCommand& command, const char* hand) {
 void checkText(const std::string& text, const char* what) {
   const bool printable = std::all_of(text.begin(), text.end(), [](char c) { return c >= ' ' && c <= '~'; });
   if (text.empty() || text.size() > maxControllerName || !printable)
-    throw Error(ErrorKind::invalid, fmt::format("the controller's {}: 1 to {} printable ASCII characters are wanted",
+    throw Error(ErrorKind::invalid, fmt::format("the controller's {}: 1 to {} printable ASCII characters are expected",
                                                 what, maxControllerName));
 }
 

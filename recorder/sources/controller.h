@@ -12,7 +12,7 @@
 
 namespace calot::recorder {
 
-/// Where a controller wants a hand at the end of the coming step. The shaft passes through the port.
+/// Pose that a controller requests for a hand at the end of the coming step. The shaft passes through the port.
 struct HandCommand {
   Vec3 tip = Vec3::Zero();                           ///< p_WI (m)
   double roll = 0.0;                                 ///< about the shaft, as pointing() has it (rad)

@@ -16,7 +16,6 @@ namespace {
 
 constexpr std::uint64_t approachTicks = 1000;
 constexpr std::uint64_t ticksPerSecond = 1000;
-constexpr double widestJaw = 1.2;  // rad
 
 // Half sides of the task region in the camera's frame (m): what the hands of one task fill around the gallbladder.
 const Vec3 taskRegion(0.030, 0.020, 0.030);

@@ -52,7 +52,7 @@ struct WorkingMind::BedStroke {
   double worth = -1e300;
   std::size_t strand = 0;
 
-  /// Where a place lies between the stroke's corners: 0 at the first.
+  /// Position between the stroke's corners: 0 at the first.
   [[nodiscard]] double cornerOf(const Vec3& d) const {
     return (d.dot(across) + sweepLead) / sweepLength * static_cast<double>(legs);
   }

@@ -80,46 +80,41 @@ void HoldingMind::decide(const Sight& sight, double freed, bool divided) {
     return;
   }
   const Vec3 shaft = hand.shaft(sight.grip);
-  HandMove move;
-  move.aiming = HandMove::Aim::hinge;
-  move.aim = tools_.scene.camera.orientation * Vec3::UnitX();
+  const auto move = [&](const Vec3& to, double speed, double jaw, std::uint8_t buttons = 0) {
+    HandMove out;
+    out.to = to;
+    out.speed = speed;
+    out.jaw = jaw;
+    out.buttons = buttons;
+    out.aiming = HandMove::Aim::hinge;
+    out.aim = tools_.scene.camera.orientation * Vec3::UnitX();
+    return out;
+  };
   if (at_ == At::pulling && !sight.hand[hand_].holds) {
     ready_ = false;
     at_ = At::away;
-    move.to = hand.meant() - gripApproach * shaft;
-    move.jaw = gripJaw;
-    move.speed = profile.motor.contactSpeed;
-    hand.add(move);
+    hand.add(move(hand.meant() - gripApproach * shaft, profile.motor.contactSpeed, gripJaw));
   }
   if (at_ == At::pulling && ready_ && random_.uniform() < profile.operation.slipShare) {
-    move.to = hand.meant();
-    move.jaw = gripJaw;
-    move.sure = true;
-    hand.add(move);
+    HandMove slip = move(hand.meant(), HandMove().speed, gripJaw);
+    slip.sure = true;
+    hand.add(slip);
     return;
   }
   switch (at_) {
-    case At::away: {
+    case At::away:
       for (int a = 0; a < 3; ++a) error_[a] = profile.perception.lateralError * random_.normal();
-      move.to = sight.grip - gripApproach * shaft + error_;
-      move.jaw = gripJaw;
-      move.speed = profile.motor.strokeSpeed;
-      hand.add(move);
+      hand.add(move(sight.grip - gripApproach * shaft + error_, profile.motor.strokeSpeed, gripJaw));
       at_ = At::before;
       break;
-    }
     case At::before: {
       error_ *= 0.5;
-      move.to = sight.grip + gripDepth * shaft + error_;
-      move.jaw = gripJaw;
-      move.speed = profile.motor.contactSpeed;
-      hand.add(move);
-      move.jaw = closedJaw;
-      move.buttons = button::lock;
-      move.dwell = 0.2;
-      move.sure = true;
-      hand.add(move);
-      held_ = move.to;
+      held_ = sight.grip + gripDepth * shaft + error_;
+      hand.add(move(held_, profile.motor.contactSpeed, gripJaw));
+      HandMove close = move(held_, profile.motor.contactSpeed, closedJaw, button::lock);
+      close.dwell = 0.2;
+      close.sure = true;
+      hand.add(close);
       at_ = At::closed;
       break;
     }
@@ -130,18 +125,14 @@ void HoldingMind::decide(const Sight& sight, double freed, bool divided) {
       [[fallthrough]];
     case At::pulling: {
       const double wanted = wantedPull(sight, freed, divided);
-      if (std::abs(wanted - pulled_) > 0.002) {
-        // Off the liver, and towards the patient's right.
-        const Vec3 way = Vec3(0.35, -0.25, -0.9) / Vec3(0.35, -0.25, -0.9).norm();
-        move.to = held_ + wanted * way;
-        move.jaw = closedJaw;
-        move.buttons = button::lock;
-        move.speed = pullSpeed;
-        hand.add(move);
-        pulled_ = wanted;
-      } else {
+      if (!(std::abs(wanted - pulled_) > 0.002)) {
         ready_ = true;
+        break;
       }
+      // Off the liver, and towards the patient's right.
+      const Vec3 way = Vec3(0.35, -0.25, -0.9) / Vec3(0.35, -0.25, -0.9).norm();
+      hand.add(move(held_ + wanted * way, pullSpeed, closedJaw, button::lock));
+      pulled_ = wanted;
       break;
     }
   }
@@ -150,14 +141,8 @@ void HoldingMind::decide(const Sight& sight, double freed, bool divided) {
 WorkingMind::WorkingMind(const OperationTools& tools, std::size_t hand, std::uint64_t seed)
     : tools_(tools), hand_(hand), random_(seed, 22) {}
 
-void WorkingMind::go(const Vec3& to, double speed, double jaw, std::uint8_t buttons, double dwell) {
-  HandMove move;
-  move.to = to;
-  move.speed = speed;
-  move.jaw = jaw;
-  move.buttons = buttons;
-  move.dwell = dwell;
-  hand().add(move);
+void WorkingMind::go(const Vec3& to, double speed, double jaw, double dwell) {
+  hand().add({.to = to, .speed = speed, .jaw = jaw, .dwell = dwell});
 }
 
 void WorkingMind::newError() {
@@ -177,14 +162,8 @@ bool WorkingMind::mount(InstrumentKind kind, double jaw) {
   const bool applier = instrumentOf(hand().instrument()).action == InstrumentAction::clip;
   const double open = applier ? 0.5 : 0.0;
   go(out, motor.contactSpeed, open);
-  go(home, motor.strokeSpeed, open, 0, exchangeRest);
-  HandMove move;
-  move.to = home;
-  move.jaw = jaw;
-  move.instrument = kind;
-  move.dwell = exchangeTime;
-  move.sure = true;
-  hand().add(move);
+  go(home, motor.strokeSpeed, open, exchangeRest);
+  hand().add({.to = home, .jaw = jaw, .dwell = exchangeTime, .instrument = kind, .sure = true});
   return true;
 }
 
@@ -214,16 +193,9 @@ bool WorkingMind::bring(const Vec3& place, const Vec3& hinge, double above_, dou
 
 void WorkingMind::closeAndLeave(double opened) {
   const PerformerProfile::Motor& motor = tools_.profile.motor;
-  HandMove move;
-  move.to = hand().meant();
-  move.sure = true;
-  move.jaw = 0.1;
-  move.dwell = 0.2;
-  hand().add(move);
-  move.jaw = opened;
-  move.dwell = 0.0;
-  hand().add(move);
   const Vec3 here = hand().meant();
+  hand().add({.to = here, .jaw = closedJaw, .dwell = 0.2, .sure = true});
+  hand().add({.to = here, .jaw = opened, .sure = true});
   go(here - leaving * hand().shaft(here), motor.contactSpeed, opened);
   stirred_ = true;
 }
@@ -237,20 +209,16 @@ double WorkingMind::freed(const Sight& sight) const {
 /// The lower part of the bed is what lies nearest to where the duct comes in.
 void WorkingMind::rankStrands(const Sight& sight) {
   const Vec3 from = sight.vessel.empty() ? tools_.anatomy.neck() : sight.vessel[0].centre.back();
-  std::vector<std::size_t> order(sight.strand.size());
-  std::vector<double> away(sight.strand.size());
-  for (std::size_t s = 0; s < order.size(); ++s) {
-    order[s] = s;
-    away[s] = (sight.strand[s].end[0] - from).norm();
-    attachedAtFirst_ += sight.strand[s].attached ? 1.0 : 0.0;
+  std::vector<std::pair<double, std::size_t>> away;
+  for (const SeenStrand& strand : sight.strand) {
+    away.emplace_back((strand.end[0] - from).norm(), away.size());
+    attachedAtFirst_ += strand.attached ? 1.0 : 0.0;
   }
-  std::sort(order.begin(), order.end(),
-            [&](std::size_t a, std::size_t b) { return away[a] != away[b] ? away[a] < away[b] : a < b; });
-  share_.resize(order.size());
-  tried_.assign(order.size(), 0);
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    share_[order[i]] = static_cast<double>(i) / static_cast<double>(order.size());
-  }
+  std::sort(away.begin(), away.end());
+  share_.resize(away.size());
+  tried_.assign(away.size(), 0);
+  for (std::size_t i = 0; i < away.size(); ++i)
+    share_[away[i].second] = static_cast<double>(i) / static_cast<double>(away.size());
 }
 
 void WorkingMind::decide(const Sight& sight) {
@@ -258,35 +226,20 @@ void WorkingMind::decide(const Sight& sight) {
   if (share_.empty() && !sight.strand.empty()) rankStrands(sight);
   const PerformerProfile::Operation& operation = tools_.profile.operation;
   if (random_.uniform() < operation.hesitationShare) {
-    HandMove rest;
-    rest.to = hand().meant();
-    rest.jaw = 0.0;
-    rest.sure = true;
-    rest.dwell = operation.hesitation * (0.5 + random_.uniform());
-    if (instrumentOf(hand().instrument()).action == InstrumentAction::burn) hand().add(rest);
+    const double dwell = operation.hesitation * (0.5 + random_.uniform());
+    if (instrumentOf(hand().instrument()).action == InstrumentAction::burn)
+      hand().add({.to = hand().meant(), .dwell = dwell, .sure = true});
   }
-  switch (stage_) {
-    case Stage::clear:
-      clear(sight);
-      break;
-    case Stage::window:
-      window(sight);
-      break;
-    case Stage::lowerThird:
-      burn(sight, true);
-      break;
-    case Stage::clip:
-      clip(sight);
-      break;
-    case Stage::cut:
-      cut(sight);
-      break;
-    case Stage::bed:
-      burn(sight, false);
-      break;
-    case Stage::done:
-      break;
-  }
+  if (stage_ == Stage::clear)
+    clear(sight);
+  else if (stage_ == Stage::window)
+    window(sight);
+  else if (stage_ == Stage::clip)
+    clip(sight);
+  else if (stage_ == Stage::cut)
+    cut(sight);
+  else if (stage_ != Stage::done)
+    burn(sight, stage_ == Stage::lowerThird);
 }
 
 }  // namespace calot::recorder

@@ -24,7 +24,7 @@ constexpr double clipApart = 0.0024;    // a clip nearer than this to another on
 constexpr double fromJunction = 0.004;  // and one nearer to where vessels meet, or to the specimen (m)
 constexpr std::uint32_t maxTries = 10;
 
-/// Where a vessel is cut, as a share of its length.
+/// Position of a vessel's cut, as a share of its length.
 constexpr double cutAt = 0.52;
 
 /// The station of a vessel's course that is nearest to an arc length (m).
@@ -35,7 +35,7 @@ std::size_t stationAt(double place, std::size_t stations) {
 
 }  // namespace
 
-/// Where the next clip on a side of the cut goes (m from the first station); below zero where there is none to set.
+/// Position of the next clip on a side of the cut (m from the first station); below zero if there is none to set.
 /// Clips that sit badly are made good while there are enough for what is still to be clipped.
 double WorkingMind::placeForClip(const Sight& sight, std::size_t side) const {
   const std::vector<PerformerSight::VesselPlan>& plans = tools_.anatomy.vessels();
@@ -65,16 +65,27 @@ double WorkingMind::placeForClip(const Sight& sight, std::size_t side) const {
   return -1.0;
 }
 
+/// Brings the jaws to a place of a vessel, closes them there and leaves.
+void WorkingMind::closeAt(const SeenVessel& vessel, double place, double depth, double jaw) {
+  const std::size_t station = stationAt(place, vessel.centre.size());
+  if (!bring(vessel.centre[station], vessel.along[station], clipHover, depth, jaw)) return;
+  closeAndLeave(jaw);
+  looks_ = 0;
+  ++tries_;
+}
+
+void WorkingMind::nextVessel() {
+  ++vessel_;
+  tries_ = 0;
+  looks_ = 0;
+}
+
 void WorkingMind::clip(const Sight& sight) {
   if (!tools_.anatomy.divides() || vessel_ >= sight.vessel.size()) {
     vessel_ = 0;
     tries_ = 0;
     stage_ = tools_.anatomy.divides() ? Stage::cut : Stage::bed;
-    if (stage_ == Stage::cut) {
-      cut(sight);
-    } else {
-      burn(sight, false);
-    }
+    stage_ == Stage::cut ? cut(sight) : burn(sight, false);
     return;
   }
   if (mount(InstrumentKind::clipApplier, clipJaw)) {
@@ -86,19 +97,12 @@ void WorkingMind::clip(const Sight& sight) {
   clipped_ = place < 0.0 ? 0 : 1;
   if (place < 0.0) place = placeForClip(sight, 0);
   if (place < 0.0 || tries_ >= maxTries) {
-    ++vessel_;
-    tries_ = 0;
+    nextVessel();
     badClips_ = {0, 0};
-    looks_ = 0;
     clip(sight);
     return;
   }
-  const std::size_t station = stationAt(place, vessel.centre.size());
-  if (bring(vessel.centre[station], vessel.along[station], clipHover, clipDepth, clipJaw)) {
-    closeAndLeave(clipJaw);
-    looks_ = 0;
-    ++tries_;
-  }
+  closeAt(vessel, place, clipDepth, clipJaw);
 }
 
 void WorkingMind::cut(const Sight& sight) {
@@ -116,9 +120,7 @@ void WorkingMind::cut(const Sight& sight) {
   const SeenVessel& vessel = sight.vessel[vessel_];
   if (vessel.partings > 0 || tries_ >= maxTries) {
     failed_ = failed_ || vessel.partings == 0;
-    ++vessel_;
-    tries_ = 0;
-    looks_ = 0;
+    nextVessel();
     cut(sight);
     return;
   }
@@ -130,13 +132,7 @@ void WorkingMind::cut(const Sight& sight) {
     if (c >= cutAt * length) to = std::min(to, c);
   }
   const double place = vessel.clip.empty() ? cutAt * length : 0.5 * (from + to);
-  const std::size_t station = stationAt(place, vessel.centre.size());
-  const double depth = bladeDepth - bladeTrial * static_cast<double>(tries_ % 3U);
-  if (bring(vessel.centre[station], vessel.along[station], clipHover, depth, bladeJaw)) {
-    closeAndLeave(bladeJaw);
-    looks_ = 0;
-    ++tries_;
-  }
+  closeAt(vessel, place, bladeDepth - bladeTrial * static_cast<double>(tries_ % 3U), bladeJaw);
 }
 
 namespace {
@@ -195,7 +191,7 @@ void WorkingMind::window(Sight sight) {
     for (const Vec3& centre : sight.vessel[v].centre) vessels.emplace_back(centre, tools_.anatomy.vessels()[v].radius);
   }
   const double off = windowWire + operation.keepOff;
-  // What cannot be taken without harm to a vessel does not count.
+  // Tissue that cannot be removed without harm to a vessel does not count.
   for (std::size_t c = 0; c < plan.size() && c < sight.column.size(); ++c) {
     SeenColumn& column = sight.column[c];
     const bool next = c + 1 < plan.size() && plan[c + 1].row == plan[c].row;

@@ -193,22 +193,14 @@ Vec3 StrokePlan::seenError() {
 }
 
 void StrokePlan::strokeTo(const Vec3& goal, double speed, double jaw, double roll) {
-  Stroke stroke;
   const double length = (goal - tip_).norm();
   const double noise = profile_.motor.endpointNoise * length;
-  stroke.start = time_;
-  stroke.duration = std::max(length / speed, profile_.motor.minStroke);
-  stroke.from = tip_;
-  stroke.to.x() = normal(goal.x(), noise);
-  stroke.to.y() = normal(goal.y(), noise);
-  stroke.to.z() = normal(goal.z(), noise);
-  stroke.jawFrom = jaw_;
-  stroke.jawTo = jaw;
-  stroke.rollFrom = roll_;
-  stroke.rollTo = roll;
-  strokes_.push_back(stroke);
-  time_ += stroke.duration;
-  tip_ = stroke.to;
+  Vec3 end;
+  for (int axis = 0; axis < 3; ++axis) end[axis] = normal(goal[axis], noise);
+  const double duration = std::max(length / speed, profile_.motor.minStroke);
+  strokes_.push_back({time_, duration, tip_, end, jaw_, jaw, roll_, roll});
+  time_ += duration;
+  tip_ = end;
   jaw_ = jaw;
   roll_ = roll;
 }

@@ -10,9 +10,7 @@
 
 #include "recorder/engine/observer.h"
 #include "recorder/sources/operation_mind.h"
-#include "recorder/sources/performer_hand.h"
 #include "recorder/sources/performer_profile.h"
-#include "recorder/sources/performer_sight.h"
 #include "recorder/sources/scene_surfaces.h"
 #include "recorder/sources/source.h"
 #include "recorder/sources/unsteadiness.h"

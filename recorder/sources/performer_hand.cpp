@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim/math/no_fused_pairs.h"  // first
 
-#include "recorder/sources/performer_hand.h"
+#include "recorder/sources/operation_mind.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,134 +3,145 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <set>
-#include <stdexcept>
 
 #include "recorder/base/errors.h"
 #include "recorder/base/file_bytes.h"
 #include "recorder/base/nearest_word.h"
+#include "recorder/base/record_reader.h"
 #include "sim/math/floating_point.h"
 
 namespace calot::recorder {
 namespace fs = std::filesystem;
-namespace {
 
-KeyRule bounded(const char* key, double lower, double upper) { return {key, true, lower, upper}; }
-
-std::vector<ObjectRule> makeRules() {
+std::vector<Field> PerformerProfile::Motor::fields() {
+  using S = Motor;
   return {
-      {"",
-       {KeyRule{"format"}, bounded("formatVersion", 1, 1), KeyRule{"name"}, KeyRule{"version"}, KeyRule{"summary"},
-        KeyRule{"motor"}, KeyRule{"perception"}, KeyRule{"decision"}, KeyRule{"operation"}, KeyRule{"scope", false}}},
-      {"motor",
-       {bounded("strokeSpeed", 0.001, 1), bounded("contactSpeed", 0.001, 0.5), bounded("shortestStroke", 0.05, 5),
-        bounded("endpointNoise", 0, 0.3), bounded("tremorAmplitude", 0, 0.002), bounded("tremorLower", 2, 20),
-        bounded("tremorUpper", 2, 20), bounded("wanderAmplitude", 0, 0.005), bounded("rollSpread", 0, 1.5),
-        bounded("workSpeed", 0.001, 0.5), bounded("overshootShare", 0, 1), bounded("overshoot", 0, 0.5)}},
-      {"perception",
-       {bounded("reactionTime", 0, 3), bounded("reactionSpread", 0, 1), bounded("lateralError", 0, 0.01),
-        bounded("depthError", 0, 0.02), bounded("finestError", 0, 0.005)}},
-      {"decision",
-       {bounded("touches", 1, 50), bounded("pressDepth", 0, 0.02), bounded("pressSpread", 0, 0.01),
-        bounded("dwell", 0, 30), bounded("pause", 0, 30), bounded("pauseSpread", 0, 10), bounded("corrections", 0, 10),
-        bounded("pullBack", 0.005, 0.1), KeyRule{"bimanual"}}},
-      {"operation",
-       {bounded("hesitationShare", 0, 1), bounded("hesitation", 0, 10), bounded("pedalLag", 0, 2),
-        bounded("keepOff", 0, 0.005), bounded("layer", 0.0001, 0.005), bounded("cleared", 0.1, 1),
-        bounded("bareShare", 0, 1), bounded("strokes", 0, 200), bounded("burnSpeed", 0.0005, 0.1),
-        bounded("pull", 0, 0.05), bounded("stretch", 0.001, 0.05), bounded("slipShare", 0, 1),
-        bounded("anticipation", 0, 1), bounded("series", 1, 20), bounded("window", 0, 200),
-        bounded("patience", 10, 3600)}},
-      {"scope", {bounded("reaction", 0.05, 5), bounded("deadZone", 0, 1), bounded("horizonError", 0, 0.5)}},
+      object("motor", "Motor control of a hand"),
+      {"strokeSpeed", at<S, &S::strokeSpeed>, "m/s", within(0.001, 1),
+       "Mean speed of a free stroke, whose greatest is 1.875 times that"},
+      {"contactSpeed", at<S, &S::contactSpeed>, "m/s", within(0.001, 0.5), "Mean speed of a stroke near tissue"},
+      {"shortestStroke", at<S, &S::minStroke>, "s", within(0.05, 5), "Shortest duration of a stroke"},
+      {"endpointNoise", at<S, &S::endpointNoise>, "1", within(0, 0.3),
+       "Standard deviation of a stroke's end on each axis, per length of the stroke"},
+      {"tremorAmplitude", at<S, &S::tremorAmplitude>, "m", within(0, 0.002),
+       "Tremor at the tip, root mean square of each axis"},
+      {"tremorLower", at<S, &S::tremorLower>, "Hz", within(2, 20), "Lower end of the tremor's band"},
+      {"tremorUpper", at<S, &S::tremorUpper>, "Hz", within(2, 20), "Upper end of the tremor's band"},
+      {"wanderAmplitude", at<S, &S::wanderAmplitude>, "m", within(0, 0.005),
+       "Slow movement (0.1 to 0.8 Hz) at the tip, root mean square of each axis"},
+      {"rollSpread", at<S, &S::rollSpread>, "rad", within(0, 1.5), "Standard deviation of the roll at a target"},
+      {"workSpeed", at<S, &S::workSpeed>, "m/s", within(0.001, 0.5), "Mean speed of the energised hook in tissue"},
+      {"overshootShare", at<S, &S::overshootShare>, "1", within(0, 1), "Share of strokes that go too far"},
+      {"overshoot", at<S, &S::overshoot>, "1", within(0, 0.5), "Overshoot, per length of the stroke"},
   };
 }
 
-const ObjectRule& ruleOf(const std::string& definition) {
-  const std::vector<ObjectRule>& rules = performerRules();
-  const auto found =
-      std::find_if(rules.begin(), rules.end(), [&](const ObjectRule& r) { return r.definition == definition; });
-  if (found == rules.end()) throw std::logic_error("no performer rule " + definition);
-  return *found;
+std::vector<Field> PerformerProfile::Perception::fields() {
+  using S = Perception;
+  return {
+      object("perception", "Perception"),
+      {"reactionTime", at<S, &S::reactionTime>, "s", within(0, 3),
+       "Mean reaction time before each stroke that a look corrects"},
+      {"reactionSpread", at<S, &S::reactionSpread>, "s", within(0, 1), "Standard deviation of the reaction time"},
+      {"lateralError", at<S, &S::lateralError>, "m", within(0, 0.01),
+       "Standard deviation of a target's perceived position across the view"},
+      {"depthError", at<S, &S::depthError>, "m", within(0, 0.02),
+       "Standard deviation of a target's perceived position along the view"},
+      {"finestError", at<S, &S::finestError>, "m", within(0, 0.005),
+       "Error on each axis that repeated observation does not reduce"},
+  };
 }
 
-}  // namespace
+std::vector<Field> PerformerProfile::Decision::fields() {
+  using S = Decision;
+  return {
+      object("decision", "Decisions in the task"),
+      {"touches", at<S, &S::touches>, "", within(1, 50), "Targets for each hand"},
+      {"pressDepth", at<S, &S::pressDepth>, "m", within(0, 0.02),
+       "Mean depth to which the tip is pressed below the surface in the reference configuration"},
+      {"pressSpread", at<S, &S::pressSpread>, "m", within(0, 0.01), "Standard deviation of that depth"},
+      {"dwell", at<S, &S::dwell>, "s", within(0, 30), "Time for which the tip stays pressed in"},
+      {"pause", at<S, &S::pause>, "s", within(0, 30), "Mean pause before each target"},
+      {"pauseSpread", at<S, &S::pauseSpread>, "s", within(0, 10), "Standard deviation of the pause"},
+      {"corrections", at<S, &S::corrections>, "", within(0, 10),
+       "Further strokes before the press, each after a look that halves the seen error"},
+      {"pullBack", at<S, &S::pullBack>, "m", within(0.005, 0.1),
+       "Distance from a target, towards the port, at which its approach begins"},
+      {"bimanual", at<S, &S::bimanual>, "Both hands at once; otherwise alternating"},
+  };
+}
 
-const std::vector<ObjectRule>& performerRules() {
-  static const std::vector<ObjectRule> rules = makeRules();
-  return rules;
+std::vector<Field> PerformerProfile::Operation::fields() {
+  using S = Operation;
+  return {
+      object("operation", "Clearing, dividing and freeing of tissue"),
+      {"hesitationShare", at<S, &S::hesitationShare>, "1", within(0, 1), "Share of decisions that a pause precedes"},
+      {"hesitation", at<S, &S::hesitation>, "s", within(0, 10), "Mean duration of that pause"},
+      {"pedalLag", at<S, &S::pedalLag>, "s", within(0, 2),
+       "Mean delay of releasing the pedal after the end of the hook's stroke"},
+      {"keepOff", at<S, &S::keepOff>, "m", within(0, 0.005), "Intended distance between the hook's metal and a vessel"},
+      {"layer", at<S, &S::layer>, "m", within(0.0001, 0.005), "Fat taken off by one stroke"},
+      {"cleared", at<S, &S::cleared>, "1", within(0.1, 1),
+       "Share of a vessel's length, from 22 % on, that is to be cleared"},
+      {"bareShare", at<S, &S::bareShare>, "1", within(0, 1),
+       "Share of a vessel's stations that must be bare before it counts as cleared"},
+      {"strokes", at<S, &S::strokes>, "", within(0, 200), "Largest number of strokes to clear one vessel"},
+      {"burnSpeed", at<S, &S::burnSpeed>, "m/s", within(0.0005, 0.1),
+       "Mean speed of the energised hook through connective tissue"},
+      {"pull", at<S, &S::pull>, "m", within(0, 0.05), "Pull on the specimen by the hand that holds it"},
+      {"stretch", at<S, &S::stretch>, "m", within(0.001, 0.05),
+       "Length of a strand of the bed that looks too taut, so that the holding hand eases off"},
+      {"slipShare", at<S, &S::slipShare>, "1", within(0, 1), "Share of looks at which the hold is released by mistake"},
+      {"anticipation", at<S, &S::anticipation>, "1", within(0, 1),
+       "Share of the reaction time by which it looks before a stroke is over"},
+      {"series", at<S, &S::series>, "", within(1, 20), "Strokes through fat made by one picture"},
+      {"window", at<S, &S::window>, "", within(0, 200),
+       "Largest number of strokes to clear the triangle between the vessels"},
+      {"patience", at<S, &S::patience>, "s", within(10, 3600), "Time after which the attempt is given up"},
+  };
+}
+
+std::vector<Field> ScopeSkill::fields() {
+  using S = ScopeSkill;
+  return {
+      object("scope", "The assistant who holds the endoscope, where it moves"),
+      {"reaction", at<S, &S::reaction>, "s", within(0.05, 5), "Time from one look at the picture to the next"},
+      {"deadZone", at<S, &S::deadZone>, "1", within(0, 1),
+       "Distance that the work may leave the picture's centre, in halves of the picture's height"},
+      {"horizonError", at<S, &S::horizonError>, "rad", within(0, 0.5),
+       "Root mean square of the camera head's rotation from level"},
+  };
+}
+
+std::vector<Field> PerformerProfile::fields() {
+  using S = PerformerProfile;
+  return {
+      object(
+          "",
+          "Profile of a synthetic operator: motor control, perception, decisions. It never holds a checkpoint's value"),
+      fileFormat("calot-performer"),
+      fileFormatVersion(),
+      {"name", at<S, &S::name>, TextRule{64}, "The profile's name; logged in every recording"},
+      {"version", at<S, &S::version>, TextRule{32}, "Changes with every change of a value; logged in every recording"},
+      {"summary", at<S, &S::summary>, TextRule{500}, "One sentence for people"},
+      {"motor", at<S, &S::motor>, "Motor control of a hand"},
+      {"perception", at<S, &S::perception>, "Perception"},
+      {"decision", at<S, &S::decision>, "Decisions in the task"},
+      {"operation", at<S, &S::operation>, "Clearing, dividing and freeing of tissue"},
+      optional("scope", at<S, &S::scope>, "The assistant who holds the endoscope, where it moves"),
+  };
 }
 
 PerformerProfile loadPerformer(const fs::path& file) {
   const FloatingPointScope environment;
   const std::string name = file.filename().string();
   const nlohmann::json json = parseStrictJson(readFileBytes(file, name, std::size_t{4} << 20U), name);
-  const JsonObject object = JsonPlace(json, name).object(ruleOf(""));
-  if (object.at("format").text(64) != "calot-performer") object.at("format").fail("\"calot-performer\" is wanted");
-  std::uint32_t formatVersion = 0;
-  object.read("formatVersion", formatVersion);
+  const JsonPlace root(json, name);
   PerformerProfile profile;
-  object.read("name", profile.name, 64);
-  object.read("version", profile.version, 32);
-  object.read("summary", profile.summary, 500);
-
-  const JsonObject motor = object.at("motor").object(ruleOf("motor"));
-  motor.read("strokeSpeed", profile.motor.strokeSpeed);
-  motor.read("contactSpeed", profile.motor.contactSpeed);
-  motor.read("shortestStroke", profile.motor.minStroke);
-  motor.read("endpointNoise", profile.motor.endpointNoise);
-  motor.read("tremorAmplitude", profile.motor.tremorAmplitude);
-  motor.read("tremorLower", profile.motor.tremorLower);
-  motor.read("tremorUpper", profile.motor.tremorUpper);
-  motor.read("wanderAmplitude", profile.motor.wanderAmplitude);
-  motor.read("rollSpread", profile.motor.rollSpread);
-  motor.read("workSpeed", profile.motor.workSpeed);
-  motor.read("overshootShare", profile.motor.overshootShare);
-  motor.read("overshoot", profile.motor.overshoot);
-  if (profile.motor.tremorUpper < profile.motor.tremorLower) motor.at("tremorUpper").fail("below \"tremorLower\"");
-
-  const JsonObject perception = object.at("perception").object(ruleOf("perception"));
-  perception.read("reactionTime", profile.perception.reactionTime);
-  perception.read("reactionSpread", profile.perception.reactionSpread);
-  perception.read("lateralError", profile.perception.lateralError);
-  perception.read("depthError", profile.perception.depthError);
-  perception.read("finestError", profile.perception.finestError);
-
-  const JsonObject decision = object.at("decision").object(ruleOf("decision"));
-  decision.read("touches", profile.decision.touches);
-  decision.read("pressDepth", profile.decision.pressDepth);
-  decision.read("pressSpread", profile.decision.pressSpread);
-  decision.read("dwell", profile.decision.dwell);
-  decision.read("pause", profile.decision.pause);
-  decision.read("pauseSpread", profile.decision.pauseSpread);
-  decision.read("corrections", profile.decision.corrections);
-  decision.read("pullBack", profile.decision.pullBack);
-  decision.read("bimanual", profile.decision.bimanual);
-
-  const JsonObject operation = object.at("operation").object(ruleOf("operation"));
-  operation.read("hesitationShare", profile.operation.hesitationShare);
-  operation.read("hesitation", profile.operation.hesitation);
-  operation.read("pedalLag", profile.operation.pedalLag);
-  operation.read("keepOff", profile.operation.keepOff);
-  operation.read("layer", profile.operation.layer);
-  operation.read("cleared", profile.operation.cleared);
-  operation.read("bareShare", profile.operation.bareShare);
-  operation.read("strokes", profile.operation.strokes);
-  operation.read("burnSpeed", profile.operation.burnSpeed);
-  operation.read("pull", profile.operation.pull);
-  operation.read("stretch", profile.operation.stretch);
-  operation.read("slipShare", profile.operation.slipShare);
-  operation.read("anticipation", profile.operation.anticipation);
-  operation.read("series", profile.operation.series);
-  operation.read("window", profile.operation.window);
-  operation.read("patience", profile.operation.patience);
-
-  if (object.has("scope")) {
-    const JsonObject scope = object.at("scope").object(ruleOf("scope"));
-    scope.read("reaction", profile.scope.reaction);
-    scope.read("deadZone", profile.scope.deadZone);
-    scope.read("horizonError", profile.scope.horizonError);
-  }
+  readRecord(root, profile);
+  if (profile.motor.tremorUpper < profile.motor.tremorLower)
+    root.at("motor").at("tremorUpper").fail("below \"tremorLower\"");
   return profile;
 }
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "recorder/base/json_reader.h"
-#include "recorder/sources/scope/scope_skill.h"
+#include "recorder/sources/scope/scope_source.h"
 
 namespace calot::recorder {
 
@@ -31,6 +31,8 @@ struct PerformerProfile {
     double workSpeed = 0.0;        ///< mean speed of the energised hook in tissue (m/s)
     double overshootShare = 0.0;   ///< of strokes that go too far
     double overshoot = 0.0;        ///< by how much, per length of the stroke
+
+    static std::vector<Field> fields();
   } motor;
 
   struct Perception {
@@ -39,6 +41,8 @@ struct PerformerProfile {
     double lateralError = 0.0;    ///< standard deviation of where a target seems to be, across the view (m)
     double depthError = 0.0;      ///< the same along the view (m)
     double finestError = 0.0;     ///< error on each axis that repeated observation does not reduce (m)
+
+    static std::vector<Field> fields();
   } perception;
 
   struct Decision {
@@ -51,6 +55,8 @@ struct PerformerProfile {
     std::uint32_t corrections = 0;  ///< further strokes that bring the tip onto a target
     double pullBack = 0.0;          ///< towards the port between targets (m)
     bool bimanual = false;          ///< both hands at once; else alternating
+
+    static std::vector<Field> fields();
   } decision;
 
   /// In scenes in which tissue is to be cleared, divided or freed.
@@ -71,13 +77,15 @@ struct PerformerProfile {
     std::uint32_t series = 1;      ///< strokes through fat made by one picture
     std::uint32_t window = 0;      ///< strokes at most, to clear the triangle between the vessels
     double patience = 0.0;         ///< after which the attempt is given up (s)
+
+    static std::vector<Field> fields();
   } operation;
 
   /// Profile of the assistant who holds the endoscope, where it moves (ScopeAssistant).
   ScopeSkill scope;
-};
 
-const std::vector<ObjectRule>& performerRules();
+  static std::vector<Field> fields();
+};
 
 /// @throws Error (damaged) naming file and JSON pointer.
 PerformerProfile loadPerformer(const std::filesystem::path& file);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Fat as a performer sees it: on the vessels, and in the triangle between them.
 
-#include "recorder/sources/performer_sight.h"
+#include "recorder/sources/operation_mind.h"
 
 #include <algorithm>
 #include <cmath>
@@ -73,7 +73,7 @@ PerformerSight::PerformerSight(const SceneDescription& scene, std::size_t worker
   if (hasSpecimen()) findSpecimen(scene);
 }
 
-/// What the procedure says is to be divided; without a procedure, the cystic vessels.
+/// The structures that the procedure divides; without a procedure, the cystic vessels.
 void PerformerSight::planVessels(const SceneDescription& scene) {
   std::vector<DivideDescription> divide = scene.procedure.divide;
   for (const VesselDescription& v : scene.vessels) {
@@ -127,7 +127,7 @@ void PerformerSight::seeVessel(const SceneView& view, const VesselPlan& plan, Se
   const SurfaceView* skin = surfaceNamed(view, plan.name);
   seen.centre = plan.rest;
   if (skin != nullptr) {
-    // What lay around a station at rest shows where it is now.
+    // The tissue around a station at rest locates it now.
     for (std::size_t s = 0; s < plan.rest.size(); ++s) {
       Vec3 moved = Vec3::Zero();
       double count = 0.0;

@@ -7,6 +7,9 @@
 
 namespace calot::recorder {
 
+/// Widest opening of an instrument's jaw, as devices and motion files may ask for it (rad).
+constexpr double widestJaw = 1.2;
+
 /// Unit vector along the shaft; W's -y (straight into the abdomen) where port and tip are less than a micrometre apart.
 Vec3 shaftDirection(const Vec3& port, const Vec3& tip);
 

@@ -20,7 +20,7 @@ enum class SourceStatus : std::uint8_t {
   failed,  ///< the device is gone and the attempt ends with it
 };
 
-/// Where instrument samples come from: a kinematics file, a performer, a recording, a device. Live, scripted and
+/// Source of instrument samples: a kinematics file, a performer, a recording, a device. Live, scripted and
 /// replayed runs differ in nothing else.
 ///
 /// Every source rounds its output with roundedToGrid(), so that the log contains exactly what was simulated.

@@ -321,7 +321,7 @@ ConnectiveBed makeBed(const BedOrgan& first, const BedOrgan& second, double reac
     strand.b = pointOf(inSecond.anchors()[s], elementsOfSecond);
     const Vec3 way = ends[s] - feet[s];
     strand.restLength = way.norm();
-    // Where organs touch or overlap at rest, strands still point out of the second one.
+    // If organs touch or overlap at rest, strands still point out of the second one.
     const Index3& t = second.surface.triangle[slot(distance.closest(ends[s]).triangle)];
     const Vec3& a = second.surface.vertex[slot(t[0])];
     const Vec3 outward = (second.surface.vertex[slot(t[1])] - a).cross(second.surface.vertex[slot(t[2])] - a);

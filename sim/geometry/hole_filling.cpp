@@ -90,7 +90,7 @@ void divideLoop(const std::vector<int>& loop, std::vector<SurfaceHole>& holes) {
   if (!path.empty()) holes.emplace_back().vertex = std::move(path);
 }
 
-/// Of the best triangulation of the vertices from i to j of a loop: its sharpest edge, its area, and the third corner
+/// The best triangulation of the vertices from i to j of a loop: its sharpest edge, its area, and the third corner
 /// of the triangle on (i, j).
 struct Best {
   double bend = std::numeric_limits<double>::infinity();
@@ -142,7 +142,7 @@ class Triangulation {
     return crossOf(mesh_.vertex[slot(loop_[slot(i)])], mesh_.vertex[slot(loop_[slot(k)])],
                    mesh_.vertex[slot(loop_[slot(j)])]);
   }
-  /// Of what lies beyond the edge from i to j.
+  /// Normal beyond the edge from i to j.
   [[nodiscard]] Vec3 beyond(int i, int j) const { return j == i + 1 ? outside_[slot(i)] : normal(i, at(i, j).apex, j); }
 
   void consider(int i, int k, int j, bool closing) {

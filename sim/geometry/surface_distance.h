@@ -43,6 +43,21 @@ class SurfaceDistance {
   /// Generalized winding number of p: 1 inside, 0 outside a closed outward surface.
   [[nodiscard]] double windingNumber(const Vec3& p) const;
 
+  /// Calls visit(t) for the triangles of every group whose box meets(box), in no particular order.
+  template <class Meets, class Visit>
+  void forEachNear(const Meets& meets, const Visit& visit) const {
+    std::vector<int> waiting;
+    if (!node_.empty()) waiting.push_back(0);
+    while (!waiting.empty()) {
+      const int at = waiting.back();
+      waiting.pop_back();
+      const Node& node = node_[static_cast<std::size_t>(at)];
+      if (!meets(node.box)) continue;
+      for (int i = node.first; i < node.first + node.count; ++i) visit(order_[static_cast<std::size_t>(i)]);
+      if (node.count == 0) waiting.insert(waiting.end(), {node.right, at + 1});
+    }
+  }
+
   [[nodiscard]] const TriangleMesh& mesh() const { return mesh_; }
   [[nodiscard]] InsideRule rule() const { return rule_; }
 

@@ -37,7 +37,7 @@ struct Capsule {
   std::uint8_t piece = 0;  ///< unique within the instrument and the same at every jaw angle and length
 };
 
-/// Fixed capacity, no allocation: a value to be made anew whenever the jaw or the insertion changes.
+/// Fixed capacity, no allocation: a value to be rebuilt whenever the jaw or the insertion changes.
 class InstrumentShape {
  public:
   static constexpr std::size_t maxPieces = 15;  ///< of the shaft; the last takes the rest of it

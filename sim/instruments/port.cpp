@@ -12,7 +12,7 @@ namespace calot {
 Quat alongAxis(const Vec3& axis, const Vec3& roll) {
   Vec3 x = roll - axis * axis.dot(roll);
   if (x.norm() < 1e-6) {
-    // Of the three directions of W the one that the axis is farthest from.
+    // The direction of W that the axis is farthest from.
     const Vec3 size = axis.cwiseAbs();
     const int k = size[0] <= size[1] && size[0] <= size[2] ? 0 : (size[1] <= size[2] ? 1 : 2);
     x = Vec3::Unit(k) - axis * axis[k];

@@ -13,7 +13,7 @@ namespace calot {
 
 // Judgement of an attempt at a step, as opposed to the step's raw facts: phase, critical view of safety, errors
 // (docs/explanation/procedure.md). Judged from StepResult alone, so that recordings of any simulation version can be
-// judged anew.
+// judged again.
 
 /// Rises when a rule or a threshold below changes: figures that stand on it then have a new version.
 inline constexpr std::uint32_t judgementVersion = 1;

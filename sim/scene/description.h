@@ -29,21 +29,7 @@ struct HandDescription {
   double trocarFriction = 0.0;        ///< of the trocar's seal on the shaft, felt by the hand alone (N)
   double wallStiffness = 0.0;         ///< of the abdominal wall to tilting the shaft, felt alone (N m/rad)
 
-  template <class Self, class Visitor>
-  static void fields(Self& self, Visitor& visit) {
-    visit("port", self.port);
-    visit("home", self.home);
-    visit("instrument", self.instrument);
-    visit("shaftRadius", self.shaftRadius);
-    visit("couplingStiffness", self.couplingStiffness);
-    visit("rollStiffness", self.rollStiffness);
-    visit("largestForce", self.maxForce);
-    visit("slipForce", self.slipForce);
-    visit("clips", self.clips);
-    visit("tearForce", self.tearForce);
-    visit("trocarFriction", self.trocarFriction);
-    visit("wallStiffness", self.wallStiffness);
-  }
+  static std::vector<Field> fields();
 };
 
 /// Clips, and from how near on they are too near.
@@ -53,13 +39,7 @@ struct ClipDescription {
   double minGap = 0.001;          ///< between two clips (m)
   double minJunctionGap = 0.002;  ///< to a place where vessels meet (m)
 
-  template <class Self, class Visitor>
-  static void fields(Self& self, Visitor& visit) {
-    visit("width", self.width);
-    visit("legs", self.legs);
-    visit("leastGap", self.minGap);
-    visit("leastJunctionGap", self.minJunctionGap);
-  }
+  static std::vector<Field> fields();
 };
 
 /// Effect of the energised hook on the tissue that it touches. Times are those at full power: where more than `spot` is
@@ -75,18 +55,7 @@ struct CauteryDescription {
   double sealRadius = 0.001;       ///< largest outer radius of an artery that coagulation seals (m)
   double injury = 0.3;             ///< a vessel's wall counts as injured by heat from this share of its burnThrough on
 
-  template <class Self, class Visitor>
-  static void fields(Self& self, Visitor& visit) {
-    visit("power", self.power);
-    visit("reach", self.reach);
-    visit("spot", self.spot);
-    visit("charTime", self.charTime);
-    visit("recession", self.recession);
-    visit("coagulationPace", self.coagulationPace);
-    visit("cutChar", self.cutChar);
-    visit("sealRadius", self.sealRadius);
-    visit("injury", self.injury);
-  }
+  static std::vector<Field> fields();
 };
 
 /// A vessel that is to be clipped and cut, and how many clips should close it on each side of the cut.
@@ -96,13 +65,7 @@ struct DivideDescription {
   std::uint32_t specimen = 1;  ///< clips on the side that goes
   bool patientAtStart = true;  ///< the vessel's start is on the side that stays
 
-  template <class Self, class Visitor>
-  static void fields(Self& self, Visitor& visit) {
-    visit("vessel", self.vessel);
-    visit("patient", self.patient);
-    visit("specimen", self.specimen);
-    visit("patientAtStart", self.patientAtStart);
-  }
+  static std::vector<Field> fields();
 };
 
 /// Task of a scene (docs/explanation/procedure.md). Scenes without a specimen have no task.
@@ -113,14 +76,7 @@ struct ProcedureDescription {
   std::vector<DivideDescription> divide;  ///< the first ends where the bed's lower third begins
   std::vector<std::string> spare;         ///< vessels that must be neither clipped nor opened
 
-  template <class Self, class Visitor>
-  static void fields(Self& self, Visitor& visit) {
-    visit("specimen", self.specimen);
-    visit("bed", self.bed);
-    visit("fat", self.fat);
-    visit("divide", self.divide);
-    visit("spare", self.spare);
-  }
+  static std::vector<Field> fields();
 };
 
 /// An assistant's pull on an organ, by springs on its nodes inside a sphere.
@@ -136,19 +92,7 @@ struct RetractionDescription {
   double stiffness = 200.0;  ///< of all springs together (N/m)
   double damping = 2.0;      ///< (N s/m)
 
-  template <class Self, class Visitor>
-  static void fields(Self& self, Visitor& visit) {
-    visit("organ", self.organ);
-    visit("centre", self.centre);
-    visit("radius", self.radius);
-    visit("displacement", self.displacement);
-    visit("start", self.start);
-    visit("duration", self.duration);
-    visit("stage", self.stage);
-    visit("most", self.most);
-    visit("stiffness", self.stiffness);
-    visit("damping", self.damping);
-  }
+  static std::vector<Field> fields();
 };
 
 struct SolverDescription {
@@ -158,7 +102,7 @@ struct SolverDescription {
   double responseTolerance = 1e-3;  ///< relative residual of the solves that carry out changes of contact forces
   double responseSpeedTolerance = 3e-6;  ///< as speedTolerance, of those (m/s)
   double contactTolerance = 1e-8;        ///< residual of the contact problem (m)
-  std::uint32_t contactPasses = 3;       ///< at most so often is it posed anew with the gaps that its forces left
+  std::uint32_t contactPasses = 3;       ///< maximum repetitions with the gaps that its forces left
   double gapTolerance = 2e-6;            ///< not any more where these are this small (m)
   std::uint32_t contactIterations = 25;  ///< sweeps, before Newton's method takes over
   bool sleeping = true;                  ///< untouched organs at rest are not solved
@@ -166,19 +110,7 @@ struct SolverDescription {
   /// the mesh alone can.
   bool dimples = true;
 
-  template <class Self, class Visitor>
-  static void fields(Self& self, Visitor& visit) {
-    visit("tolerance", self.tolerance);
-    visit("speedTolerance", self.speedTolerance);
-    visit("iterations", self.iterations);
-    visit("responseTolerance", self.responseTolerance);
-    visit("responseSpeedTolerance", self.responseSpeedTolerance);
-    visit("contactTolerance", self.contactTolerance);
-    visit("contactPasses", self.contactPasses);
-    visit("gapTolerance", self.gapTolerance);
-    visit("contactIterations", self.contactIterations);
-    visit("sleeping", self.sleeping);
-  }
+  static std::vector<Field> fields();
 };
 
 struct SceneDescription : Tissues::Descriptions {
@@ -198,26 +130,7 @@ struct SceneDescription : Tissues::Descriptions {
   CauteryDescription cautery;
   SolverDescription solver;
 
-  template <class Self, class Visitor>
-  static void fields(Self& self, Visitor& visit) {
-    visit("name", self.name);
-    visit("majorVersion", self.majorVersion);
-    visit("minorVersion", self.minorVersion);
-    visit("ticksPerStep", self.ticksPerStep);
-    visit("gravity", self.gravity);
-    visit("timeLimit", self.timeLimit);
-    visit("workspace", self.workspace);
-    Tissues::Descriptions::fields(self, visit);
-    visit("procedure", self.procedure);
-    visit("retraction", self.retraction);
-    visit("hands", self.hands);
-    visit("cameraPosition", self.camera.position);
-    visit("cameraOrientation", self.camera.orientation);
-    visit("verticalFieldOfView", self.verticalFieldOfView);
-    visit("clip", self.clip);
-    visit("cautery", self.cautery);
-    visit("solver", self.solver);
-  }
+  static std::vector<Field> fields();
 };
 
 inline constexpr double tickLength = 0.001;  ///< s

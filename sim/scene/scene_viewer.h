@@ -13,7 +13,7 @@
 namespace calot {
 
 /// Makes views of one Model's States and keeps from one to the next what stays the same: the surface of fat, which is
-/// made anew only where something was carved since the last view (or anew in full where the State went back), and
+/// rebuilt only where something was carved since the last view (or in full where the State went back), and
 /// vessels at rest. What it returns depends on the State alone: viewOf() gives the same. Use it where frames follow
 /// each other.
 class SceneViewer {

@@ -77,7 +77,7 @@ class Skin {
   Skin& operator=(const Skin&) = delete;
   virtual ~Skin() = default;
 
-  /// Takes up the state's topology. @return true when it is not that of the last call
+  /// Adopts the state's topology. @return true if it differs from the last call's
   virtual bool follow(const State& state) = 0;
   /// @pre follow(), as for all that comes
   [[nodiscard]] virtual const ContactSurface& surface() const = 0;

@@ -74,7 +74,7 @@ void ContactDetection::findInstrumentContacts(Surfaces& surfaces, const Bodies& 
       for (const Capsule& c : instrument_[h].capsule) {
         const double allowed = allowedDepth(model_, state, h, c, s);
         const std::size_t before = found_.size();
-        // Where its dimple is, the skin has given way: the capsule meets the mesh as much farther out.
+        // In its dimple the skin has given way: the capsule meets the mesh that much farther out.
         const Vec3 dimple = dimpleOf(hand, s, c.piece);
         const Vec3 p0 = c.p0 + dimple;
         const Vec3 p1 = c.p1 + dimple;
@@ -123,7 +123,7 @@ void ContactDetection::run(Surfaces& surfaces, Bodies& bodies, const InstrumentT
                                 vessels_.run(surfaces, travel_, state, bodies.step(), activity.awake, contact.blocks));
   result.tissueDepth =
       std::max(result.tissueDepth, fat_.run(surfaces, bodies, travel_, state, activity.awake, contact.blocks));
-  // What sleeps on both sides needs no force.
+  // A contact that sleeps on both sides needs no force.
   std::erase_if(contact.blocks, [&](const ContactBlock& block) {
     if (block.isClash()) return false;
     return !activity.awake[block.body] && (block.other == ContactBlock::none || !activity.awake[block.other]);

@@ -177,7 +177,7 @@ void evaluateDimpleGaps(std::span<const double> lambda, ContactSystem& contact) 
 void storeDimples(const Model& model, double step, const ContactSystem& contact, State& state) {
   for (std::size_t h = 0; h < handCount; ++h) {
     HandState& hand = state.hand[h];
-    // What nothing presses fades.
+    // An unloaded dimple fades.
     std::size_t kept = 0;
     for (std::size_t k = 0; k < hand.dimpleKey.size(); ++k) {
       const std::uint64_t key = hand.dimpleKey[k];

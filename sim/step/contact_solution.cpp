@@ -132,7 +132,7 @@ void ContactSolution::updateComplianceEstimate(Bodies& bodies, const Activity& a
   sumCompliances(contact);
 }
 
-/// Forces for the present free gaps. Dimples are not linear in the forces: their compliance is taken anew at those that
+/// Forces for the present free gaps. Dimples are not linear in the forces: their compliance is evaluated at those that
 /// come out (Newton's method) until it fits them.
 void ContactSolution::solve(const ContactProblem& problem, ContactSystem& contact, ContactResult& result) {
   const SolverDescription& scene = model_.scene().solver;

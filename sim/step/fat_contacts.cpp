@@ -143,7 +143,7 @@ void FatContacts::invalidate() {
   }
 }
 
-/// Where the cubes are, how far they have moved since the last run, and which may touch.
+/// Positions of the cubes, their motion since the last run, and the pairs that may touch.
 void FatContacts::follow(const FatBody& body, const State& state, bool awake, Fat& fat) {
   const std::vector<Index8>& cubes = body.model().solid().cubes();
   const SolidState& solid = state.fat[fat.index].solid;

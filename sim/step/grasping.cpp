@@ -14,7 +14,7 @@ namespace {
 /// The ratchet holds this much harder than a hand that just closes. Larger: tissue tears before it slips. Assumed.
 constexpr double ratchetGrip = 2.0;
 constexpr double weakestGrip = 0.2;  ///< share of the slip force that barely closed jaws hold. Assumed
-/// Of a point to grasp, about each station along the jaws (m): reaches all that lies between them.
+/// Search radius for a point to grasp, about each station along the jaws (m): reaches all that lies between them.
 constexpr double searchRadius = 0.004;
 /// Skin that jaws press on rises between them; that of a mesh does not, and is taken when it is no farther before the
 /// tips (m). Larger: tissue is taken without being touched; smaller: jaws close on nothing. Assumed.

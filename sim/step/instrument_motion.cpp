@@ -19,7 +19,7 @@ namespace calot {
 namespace {
 
 constexpr int maxAdvances = 16;  ///< conservative advancements a step; each halves the way at worst
-/// Of a jaw near a surface (rad/s). Larger: jaws jump through thin tissue; smaller: they lag behind the hand. Assumed.
+/// Maximum speed of a jaw near a surface (rad/s). Larger: jaws jump through thin tissue; smaller: they lag. Assumed.
 constexpr double maxJawSpeed = 5.0;
 
 }  // namespace

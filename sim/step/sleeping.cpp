@@ -35,7 +35,7 @@ void wakeTied(const Model& model, const Bodies& bodies, const State& state, std:
   }
 }
 
-/// Of two structures that press on each other, wakes the one that sleeps where the other moves: two that rest against
+/// Wakes the sleeping one of two structures that press on each other if the other moves: two that rest against
 /// each other fall asleep together.
 void wakePressed(const Model& model, const Bodies& bodies, std::uint64_t pair, State& state) {
   const auto [a, b] = structuresOfPair(model, pair);

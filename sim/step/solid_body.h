@@ -84,7 +84,7 @@ class FatMotion final : public SolidBody {
 
   /// To be called when the State was replaced.
   void invalidate() { stale_ = true; }
-  /// Takes up a replaced State; remembers where the tissue is for the strokes of this step.
+  /// Adopts a replaced State; stores the tissue's position for the strokes of this step.
   void beginStep(const State& state);
   FatStroke stroke(State& state, std::span<const SweptCapsule> tool, double rise);
   [[nodiscard]] const FatBody& fat() const { return fat_; }

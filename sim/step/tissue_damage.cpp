@@ -93,7 +93,7 @@ constexpr double gripRoom = 0.0005;  ///< between blades and vessel where they c
 
 }  // namespace
 
-/// Of the vessels whose centre line runs between the jaws, that which is nearest to the line in their middle.
+/// The vessel whose centre line runs between the jaws, nearest to the line in their middle.
 /// @param length of that line, from the tips backwards (m)
 VesselTools::Crossing VesselTools::vesselBetween(const State& state, std::size_t hand, double length) const {
   Crossing best;

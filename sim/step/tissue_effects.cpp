@@ -16,7 +16,7 @@ namespace {
 /// W.
 constexpr double smokePortion = 15.0;
 
-/// What lies nearer to a parting than this is burned with it and is not parted once more (m). Larger: a second burn
+/// Tissue nearer to a parting than this is burned with it and is not parted once more (m). Larger: a second burn
 /// close by is lost; smaller: one burn leaves crumbs. Assumed: a little more than the wire's reach.
 constexpr double stumpsEnd = 0.002;
 
@@ -50,7 +50,7 @@ void CauteryEffects::emitSmoke(std::size_t hand, std::uint32_t source, double en
   if (h.burnedEnergy >= smokePortion) emit();
 }
 
-/// What smoke is reported of, of all that is touched: connective tissue, fat, then structures in their order.
+/// The source that smoke is reported of, among all touched: connective tissue, fat, then structures in their order.
 std::uint32_t CauteryEffects::firstTouched(const HookTouches& touches, const Tissue& tissue) const {
   for (std::size_t c = 0; c < touches.strand.size(); ++c) {
     if (!touches.strand[c].empty()) return static_cast<std::uint32_t>(smokeOfConnective + c);
@@ -227,7 +227,7 @@ void ConnectiveEffects::run(const HookSweeps& sweeps, const std::array<HookTouch
       log.emit(EventKind::connectiveFreed, StepLog::noHand, c, Vec3::Zero(), shares.torn);
     }
     if (!activity.frayed[c]) continue;
-    // What was released moves.
+    // Released tissue moves.
     activity.disturb(bodies, state, tie.a);
     activity.disturb(bodies, state, tie.b);
   }

@@ -5,7 +5,7 @@
 
 namespace calot {
 
-/// Where an end of a tie is (m).
+/// Position of an end of a tie (m).
 Vec3 UnconstrainedMotion::endOf(const Bodies& bodies, const State& state, const Tie& tie, std::size_t side) const {
   const std::size_t which = tie.body[side];
   const Vec3 place = tie.place[side].of(bodies[which].position(state));

@@ -20,7 +20,7 @@ constexpr double searchMargin = 0.003;
 constexpr double rounding = 1e-9;   ///< of a motion (m)
 constexpr double wholeOrgan = 0.3;  ///< no point inside an organ is farther from its surface (m)
 constexpr unsigned pairShift = 40;  ///< of a contact's key: below, the capsules; from here up, the pair
-/// Of a capsule, nearer to an end than this share of it, a contact is that of the end. Assumed.
+/// A contact nearer to a capsule's end than this share of the capsule is that of the end. Assumed.
 constexpr double endShare = 0.05;
 
 Box boxOf(const VesselCapsule& c) {
@@ -30,7 +30,7 @@ Box boxOf(const VesselCapsule& c) {
   return box;
 }
 
-/// Where on a capsule a contact is.
+/// Position of a contact on a capsule.
 enum class Place : std::uint8_t { start, between, end };
 
 std::uint64_t keyOf(const VesselCapsule& c, Place place) {

@@ -16,6 +16,8 @@
 
 namespace calot {
 
+struct Field;
+
 /// Position of a kind of tissue in the list of kinds (sim/tissue/tissues.h).
 using TissueId = std::uint8_t;
 
@@ -56,11 +58,7 @@ struct SurfaceDescription {
 
   [[nodiscard]] TriangleMesh mesh() const { return {vertex, triangle}; }
 
-  template <class Self, class Visitor>
-  static void fields(Self& self, Visitor& visit) {
-    visit("vertex", self.vertex);
-    visit("triangle", self.triangle);
-  }
+  static std::vector<Field> fields();
 };
 
 /// Isotropic material of a co-rotational solid.
@@ -71,14 +69,7 @@ struct MaterialDescription {
   double massDamping = 0.0;        ///< Rayleigh alpha (1/s)
   double stiffnessDamping = 0.01;  ///< Rayleigh beta (s)
 
-  template <class Self, class Visitor>
-  static void fields(Self& self, Visitor& visit) {
-    visit("youngModulus", self.youngModulus);
-    visit("poissonRatio", self.poissonRatio);
-    visit("density", self.density);
-    visit("massDamping", self.massDamping);
-    visit("stiffnessDamping", self.stiffnessDamping);
-  }
+  static std::vector<Field> fields();
 };
 
 inline SolidModel::Material solidMaterial(const MaterialDescription& m) {

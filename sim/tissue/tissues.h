@@ -8,6 +8,7 @@
 //                                                  the names that a recording stores: plain structs, inherited by those
 //   Result              what a step reports of one of them, with its list of fields (sim/tissue/result_field.h)
 //   results             the group of the recording that holds them
+//   sceneKey()          its list in SceneDescription, as a field of scene files (sim/math/record.h)
 //   componentPrefix     of its digests' names
 //   hasStructures       whether it can be touched
 //   components()        calls visit(prefix, index, part) for each component of State
@@ -37,12 +38,7 @@ template <class... Kind>
 struct TissueList {
   static constexpr std::size_t count = sizeof...(Kind);
 
-  struct Descriptions : Kind::Descriptions... {
-    template <class Self, class Visitor>
-    static void fields(Self& self, Visitor& visit) {
-      (Kind::Descriptions::fields(self, visit), ...);
-    }
-  };
+  struct Descriptions : Kind::Descriptions... {};
   struct Models : Kind::Models... {};
   struct States : Kind::States... {};
   struct Results : Kind::Results... {};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "analytics/share.h"
+#include "analytics/cohort_files.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "analytics/checkpoints/checkpoint.h"
+#include "analytics/checkpoints/collector.h"
 #include "analytics/checkpoints/force.h"
-#include "analytics/checkpoints/motion_track.h"
 #include "analytics/checkpoints/phases.h"
-#include "analytics/checkpoints/registry.h"
 #include "sim/math/random.h"
 #include "tests/bench/benchmarks.h"
 #include "tests/bench/figures.h"

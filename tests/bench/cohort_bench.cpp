@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "analytics/checkpoints/registry.h"
+#include "analytics/checkpoints/checkpoint.h"
 #include "analytics/cohort/cohort_database.h"
 #include "analytics/report/study.h"
 #include "tests/bench/benchmarks.h"

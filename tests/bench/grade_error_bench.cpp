@@ -14,7 +14,6 @@
 #include <utility>
 #include <vector>
 
-#include "analytics/uncertainty/scene_variants.h"
 #include "analytics/uncertainty/uncertainty.h"
 #include "recorder/attempt.h"
 #include "recorder/formats/scene_file.h"

@@ -45,10 +45,10 @@ class Dashboard(ProgramTest):
         self.declined(2, "--pictures")
 
     def test_pictures_want_a_folder_that_takes_them(self):
-        self.assertIn("is no folder", self.declined(2, "--pictures", self.folder / "missing"))
+        self.assertIn("is not a folder", self.declined(2, "--pictures", self.folder / "missing"))
         file = self.folder / "file"
         file.write_text("")
-        self.assertIn("is no folder", self.declined(2, "--pictures", file))
+        self.assertIn("is not a folder", self.declined(2, "--pictures", file))
         # Nobody makes files there, not even an administrator.
         self.assertIn("cannot be written", self.declined(1, "--pictures", "/proc"))
 

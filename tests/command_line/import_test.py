@@ -430,7 +430,7 @@ class BadFiles(program.ProgramTest):
         self.bad("one.txt", good[0], names=("at least 2",))
         self.bad("nan.txt", with_word(40, "NaN"), names=("line 5", "column 41"))
         self.bad("text.txt", with_word(57, "left"), names=("line 5", "column 58"))
-        self.bad("cut.txt", "".join(good)[:-300], names=("line 60", "columns; 76 are wanted"))
+        self.bad("cut.txt", "".join(good)[:-300], names=("line 60", "columns; 76 are expected"))
         self.bad("metres.txt", with_word(38, "41.5"), names=("line 5", "metres"))
         self.bad("binary.txt", bytes(range(256)) * 50, names=("line 1",))
         self.refused(4, "import", self.path("none.txt"), "--cohort", self.cohort, names=("none.txt",))

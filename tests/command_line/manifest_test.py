@@ -173,7 +173,7 @@ class Motion(Manifest):
         self.write(rows)
         answer = calot("import", "--manifest", self.table, "--cohort", self.cohort)
         self.assertEqual(answer.code, 4, answer)
-        self.assertOneLine(answer, self.table, "line 3", "p0-1.txt", "76 are wanted")
+        self.assertOneLine(answer, self.table, "line 3", "p0-1.txt", "76 are expected")
         self.assertIn("4 files: 3 added, 1 not stored", answer.out)
         # Mended, the rest is taken in; what was there is not stored again.
         self.path(rows[1]["file"]).write_text("\n".join(lines[:-1]) + "\n")

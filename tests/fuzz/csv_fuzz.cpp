@@ -4,7 +4,7 @@
 #include <string>
 
 #include "recorder/base/csv.h"
-#include "recorder/sources/column_map.h"
+#include "recorder/sources/tracked_motion.h"
 
 #include "tests/fuzz/support/fuzz_target.h"
 

@@ -2,7 +2,7 @@
 // A stream of OpenIGTLink messages, as it arrives in pieces: the first byte says how long they are.
 #include <algorithm>
 
-#include "recorder/sources/devices/openigtlink_wire.h"
+#include "recorder/sources/devices/openigtlink_device.h"
 
 #include "tests/fuzz/support/fuzz_target.h"
 

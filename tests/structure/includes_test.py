@@ -167,7 +167,7 @@ def self_test():
         ("recorder/live/a.cpp", "#include <QTimer>"), ("analytics/cohort/a.cpp", '#include "gui/render/renderer.h"'),
         ("analytics/report/a.cpp", "#include <QString>"), ("analytics/checkpoints/a.cpp", "#include <thread>"),
         ("gui/render/a.cpp", '#include "analytics/cohort/cohort.h"'), ("gui/render/a.cpp", "#include <QImage>"),
-        ("gui/dashboard/a.cpp", '#include "apps/calot/commands.h"'), ("gui/dashboard/a.cpp", "#include <sqlite3.h>"),
+        ("gui/dashboard/a.cpp", '#include "apps/calot/command.h"'), ("gui/dashboard/a.cpp", "#include <sqlite3.h>"),
         ("recorder/sources/a.cpp", '#include "recorder/replay.h"'), ("misc/a.cpp", ""),
     )
     for path, text in good:

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Refuses retired words (docs/glossary.md): old names of functions and types anywhere, most/least/largest/smallest in names of the mechanics, and
-words with several meanings in its comments and in the documents. Only words that can be detected reliably are listed.
+"""Refuses retired words (docs/glossary.md): old names of functions and types anywhere, most/least/largest/smallest in names of the mechanics,
+words with several meanings in its comments and in the documents; and in the comments and messages of every module, fragments that begin with a
+relative word ("What it does", "Of a mouse alone") and phrases that no engineer writes. Only what can be detected reliably is listed.
 
 usage: words_test.py ROOT | --self-test
 """
@@ -39,6 +40,47 @@ COMMENT_WORD = re.compile(r"(?<![\w`/-])(" + "|".join(COMMENT_WORDS) + r")(?![\w
 DOCUMENT_WORD = re.compile(r"(?<![\w`/-])(" + "|".join(DOCUMENT_WORDS) + r")(?![\w`(-])")
 COMMENT = re.compile(r"//.*")
 
+# Comments and messages of every module: a subject, a verb, an object.
+MODULES = ("sim", "recorder", "analytics", "gui", "apps", "python", "packaging")
+FRAGMENT = re.compile(r"(?:Of|What|Whether|Why|Who|Which|Where)\b(?![^.:;]*\?)")
+PHRASES = ((re.compile(r"(?<!\bthere )\b(?:is|are) none\b"), "is not one, is invalid, is unknown"),
+           (re.compile(r"\btell(?:s|ing)? of\b"), "report, contain"), (re.compile(r"\btold\b"), "reported, counted, distinguished"),
+           (re.compile(r"\b(?:takes?|taking|taken|took) up\b(?! to\b)"), "gather, continue, adopt"),
+           (re.compile(r"\bso many\b"), "this number of, at most N"), (re.compile(r"\bsuch as there (?:is|are)\b"), "all of them"),
+           (re.compile(r"\banew\b"), "again"))
+WHOLE_COMMENT = re.compile(r"\s*//[/!]?<?(?: |$)(.*)")
+TRAILING_COMMENT = re.compile(r"///?< ?(.*)|[;{},)\\]\s*// (.*)")
+# A statement that prints, throws or describes an option.
+MESSAGE_SITE = re.compile(r"\b(?:throw|Error|print\w*|cout|cerr|fail\w*|refuse\w*|fault|warn\w*|add_option|add_flag|add_subcommand"
+                          r"|addChoice|addNumber|addList|addThreads|addCommand)\b")
+
+
+def prose_faults(text):
+    """(line number, message) of each fault of the comments and messages of a C++ file."""
+    def phrases(number, prose):
+        for pattern, better in PHRASES:
+            for m in pattern.finditer(prose):
+                yield number, f'"{m.group()}": say {better}'
+    code = cpp_text.code_only(text)
+    follows = False
+    for number, (line, rest) in enumerate(zip(text.split("\n"), code.split("\n")), 1):
+        whole = WHOLE_COMMENT.match(line)
+        trailing = None if whole or "//" not in line or "//" in rest else TRAILING_COMMENT.search(line)
+        prose = whole.group(1) if whole else (trailing.group(1) or trailing.group(2) or "") if trailing else ""
+        if prose and not follows and (m := FRAGMENT.match(prose)):
+            yield number, f'a comment that begins with "{m.group()}": begin with the subject'
+        yield from phrases(number, prose)
+        follows = whole is not None
+    for start, literal in cpp_text.strings(text):
+        prose = literal.strip('"')
+        if " " not in prose:
+            continue
+        number = text.count("\n", 0, start) + 1
+        yield from phrases(number, prose)
+        statement = code[max(code.rfind(c, 0, start) for c in ";{}") + 1:start]
+        if not re.search(r'"\s*$', text[:start]) and MESSAGE_SITE.search(statement) and (m := FRAGMENT.match(prose)):
+            yield number, f'a message that begins with "{m.group()}": begin with the subject'
+
 
 def is_document(path):
     return path.suffix == ".md" and (path.parts[0] == "docs" or len(path.parts) == 1)
@@ -65,6 +107,8 @@ def faults_of(root, path):
         if document:
             for m in DOCUMENT_WORD.finditer(line):
                 found.append((number, f'"{m.group(1)}": say {DOCUMENT_WORDS[m.group(1)]}'))
+    if cpp and path.parts[0] in MODULES:
+        found.extend(prose_faults(text))
     if cpp and name.startswith(MECHANICS):
         for number, line in enumerate(cpp_text.code_only(text).split("\n"), 1):
             for m in EXTREME.finditer(line):
@@ -87,12 +131,17 @@ def self_test():
     refused = {
         "sim/contact/a.h": ["double mostSwept = 0.0;", "/// Is told of nothing more.", "int n = 0;  // room for what comes", "SolidPlace place;"],
         "sim/step/b.cpp": ["withdraw(state);", "carryOut(problem);", "// see poseProblem()"],
+        "recorder/e.cpp": ["/// Whether it may be used.", "int a;  ///< Of a mouse alone", "// What is released moves.", "// a name that is none",
+                           "// so many steps", "// nobody is told", "// takes up the topology", 'throw Error(kind, "What was written is lost");',
+                           'throw Error(kind, fmt::format("{} is none", name));', 'command->add_option("--by", by, "Who decides");'],
         "docs/c.md": ["the room to its left", "a lean recording", "`forceRest` decays"],
     }
     allowed = {
         "sim/contact/a.h": ["double maxSwept = 0.0;", 'visit("largestDisplacement", self.largestDisplacement);', "// at most, at least, the rest of it",
                             "std::size_t room = 0;"],
         "sim/step/b.cpp": ["// tells the world", "double largestSpeed = 0.0;"],
+        "recorder/e.cpp": ["// empty where there is none", "// What does a step cost?", "// The file,\n// of which only part is read.", "// takes up to ten",
+                           'label("Where it stands");', 'const char* title = "Who finishes sooner";', "// https://example.org/so/many"],
         "analytics/cohort/d.cpp": ["withdraw(participant);"],
         "docs/c.md": ["a classroom of trainees, `room()`", "the operating-room lights"],
         "docs/glossary.md": ["room: not used"],

@@ -114,7 +114,6 @@ std::vector<CheckpointEntry> attemptRows() {
                       .title = "Steps that missed a tolerance",
                       .unit = "1",
                       .displayUnit = "%",
-                      .displayFactor = 100.0,
                       .definition = "#{steps whose linear solve or contact problem was left above its tolerance, or "
                                     "that held tissue back} / #{steps}",
                       .notOutcome = "it describes the simulation"},

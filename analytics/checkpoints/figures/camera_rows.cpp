@@ -8,7 +8,7 @@
 #include <numbers>
 #include <optional>
 
-#include "recorder/sources/scope/picture_geometry.h"
+#include "recorder/sources/scope/endoscope.h"
 #include "sim/scene/measurement.h"
 
 namespace calot::analytics {
@@ -204,7 +204,6 @@ std::vector<CheckpointEntry> cameraRows() {
                       .title = "Deviation of the horizon",
                       .unit = "rad",
                       .displayUnit = "deg",
-                      .displayFactor = 180.0 / std::numbers::pi,
                       .direction = Direction::lower,
                       .window = whereItMoves,
                       .instruments = endoscope,
@@ -217,7 +216,6 @@ std::vector<CheckpointEntry> cameraRows() {
                       .title = "Time with the active tip in the middle of the picture",
                       .unit = "1",
                       .displayUnit = "%",
-                      .displayFactor = 100.0,
                       .direction = Direction::higher,
                       .window = "steps with an active tip, where the camera moves in the attempt",
                       .instruments = "the active one",
@@ -231,7 +229,6 @@ std::vector<CheckpointEntry> cameraRows() {
                       .title = "Path length of the endoscope's lens",
                       .unit = "m",
                       .displayUnit = "mm",
-                      .displayFactor = 1000.0,
                       .direction = Direction::lower,
                       .window = whereItMoves,
                       .instruments = endoscope,

@@ -48,10 +48,12 @@ struct Holding {
   }
 };
 
-/// Steps at whose end instruments touch or hold some of a scene's vessels.
+/// Time at whose steps' ends instruments touch or hold some of a scene's vessels.
 class VesselContact {
  public:
-  VesselContact(const AttemptContext& context, bool SceneFacts::Vessel::*chosen) : context_(context) {
+  /// @param sum over instruments and vessels: two at once count twice; else any instrument on any of the vessels
+  VesselContact(const AttemptContext& context, bool SceneFacts::Vessel::*chosen, bool sum)
+      : context_(context), sum_(sum) {
     const std::vector<SceneFacts::Vessel>& vessels = context.scene.vessel;
     for (std::size_t v = 0; v < vessels.size(); ++v) {
       if (vessels[v].*chosen)
@@ -70,20 +72,16 @@ class VesselContact {
     }
     united_ += any ? 1 : 0;
   }
-  /// Seconds with any instrument on any of the vessels.
-  [[nodiscard]] Measured united(const AttemptEnd& end) const {
-    return Measured::of(context_.seconds(united_), stretchNote(end));
-  }
-  /// Seconds, summed over instruments and vessels: two at once count twice. The note lists the vessels' parts:
-  /// "cystic-duct 0.50 s, cystic-artery 0.25 s".
-  [[nodiscard]] Measured sum(const AttemptEnd& end) const {
+  /// The note of a sum lists the vessels' parts: "cystic-duct 0.50 s, cystic-artery 0.25 s".
+  [[nodiscard]] Measured figure(const AttemptEnd& end) const {
+    const std::string stretch = stretchNote(end);
+    if (!sum_) return Measured::of(context_.seconds(united_), stretch);
     std::uint64_t steps = 0;
     std::string parts;
     for (const Vessel& vessel : vessel_) {
       steps += vessel.steps;
       parts += fmt::format("{}{} {:.2f} s", parts.empty() ? "" : ", ", vessel.name, context_.seconds(vessel.steps));
     }
-    const std::string stretch = stretchNote(end);
     return Measured::of(context_.seconds(steps), parts + (stretch.empty() ? "" : "; ") + stretch);
   }
 
@@ -94,38 +92,9 @@ class VesselContact {
     std::uint64_t steps = 0;  ///< over both hands
   };
   const AttemptContext& context_;
+  bool sum_;
   std::vector<Vessel> vessel_;
   std::uint64_t united_ = 0;
-};
-
-struct CysticContactTime {
-  const AttemptContext& context;
-  VesselContact contact{context, &SceneFacts::Vessel::cystic};
-
-  void add(const StepResult& result) { contact.add(result); }
-  [[nodiscard]] Measured figure(const AttemptEnd& end) const { return contact.sum(end); }
-};
-
-struct PhaseCysticContactTime {
-  std::vector<CysticContactTime> window;
-
-  explicit PhaseCysticContactTime(const AttemptContext& context)
-      : window(windowPhases.size(), CysticContactTime{context}) {}
-
-  void add(const recorder::StepRecord& record, const Judgement& judgement) {
-    const std::size_t w = windowOf(judgement.phase);
-    if (w < window.size()) window[w].add(record.result);
-  }
-  [[nodiscard]] Measured figure(const AttemptEnd& end, std::size_t w) const { return window[w].figure(end); }
-};
-
-struct SparedContactTime {
-  const AttemptContext& context;
-  bool sum;
-  VesselContact contact{context, &SceneFacts::Vessel::spared};
-
-  void add(const StepResult& result) { contact.add(result); }
-  [[nodiscard]] Measured figure(const AttemptEnd& end) const { return sum ? contact.sum(end) : contact.united(end); }
 };
 
 /// How often, and for how long, one instrument touched the other.
@@ -168,10 +137,10 @@ std::vector<CheckpointEntry> contactRows() {
                          "instruments, and this is the sum over both"},
       .needs = {hasCystic},
       .results = 3,
-      .accumulate = accumulating<CysticContactTime>()};
+      .accumulate = accumulating<VesselContact>(&SceneFacts::Vessel::cystic, true)};
   return {
       cystic,
-      phaseRow(cystic, 140, "steps", accumulating<PhaseCysticContactTime>(), 2),
+      phaseRow(cystic, 140, "steps", accumulating<PerPhase<VesselContact>>(&SceneFacts::Vessel::cystic, true), 2),
       {.place = {CheckpointFamily::contact, 10},
        .definition = {.name = "contact-time-union",
                       .title = "Contact time with the organ (any instrument)",
@@ -224,7 +193,7 @@ std::vector<CheckpointEntry> contactRows() {
                                     "any vessel that the scene's procedure tells to spare}"},
        .needs = {hasProcedure, hasSpared},
        .results = 3,
-       .accumulate = accumulating<SparedContactTime>(false)},
+       .accumulate = accumulating<VesselContact>(&SceneFacts::Vessel::spared, false)},
       {.place = {CheckpointFamily::contact, 40},
        .definition = {.name = "spared-contact-time-sum",
                       .title = "Time touching vessels that are to be spared (summed over instruments)",
@@ -236,7 +205,7 @@ std::vector<CheckpointEntry> contactRows() {
                                     "to spare #{steps at whose end the one exerts a force on the other or holds it}"},
        .needs = {hasProcedure, hasSpared},
        .results = 3,
-       .accumulate = accumulating<SparedContactTime>(true)},
+       .accumulate = accumulating<VesselContact>(&SceneFacts::Vessel::spared, true)},
       {.place = {CheckpointFamily::contact, 41},
        .definition = {.name = "instrument-clashes",
                       .title = "Times that the instruments touched each other",

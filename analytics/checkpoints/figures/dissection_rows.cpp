@@ -86,7 +86,7 @@ struct GallbladderBed {
   }
 };
 
-/// What is left of the connective tissue once the gallbladder is off its bed: strands that tore instead of being
+/// Connective tissue that remains once the gallbladder is off its bed: strands that tore instead of being
 /// burned.
 struct ConnectiveRemaining {
   const AttemptContext& context;
@@ -237,7 +237,7 @@ struct FatRemaining {
     const double share = left / first;
     std::string note;
     if (clipped) {
-      // What was taken later is no part of identification, though the operator went back to it.
+      // Later grasps are not part of identification, even if the operator returned to it.
       const double later = (left - last) / first;
       if (later > 0.0) note = fmt::format("{:.1f} % more were taken after the first clip", later * 100.0);
     } else if (end.outcome == recorder::Outcome::completed) {
@@ -258,7 +258,6 @@ CheckpointEntry fatRow(int rank, std::string_view summaryTitle, const char* name
                      .title = title,
                      .unit = "1",
                      .displayUnit = "%",
-                     .displayFactor = 100.0,
                      .direction = direction,
                      .window = "from the first step to the end of the step that sets the first clip; without a clip, "
                                "to the end of a completed attempt",
@@ -292,7 +291,6 @@ std::vector<CheckpointEntry> dissectionRows() {
                       .title = "Connective tissue left after the gallbladder's removal",
                       .unit = "1",
                       .displayUnit = "%",
-                      .displayFactor = 100.0,
                       .direction = Direction::lower,
                       .window = "whole attempt, those in which the gallbladder came free only",
                       .instruments = "union over instruments: what any of them burned or tore",
@@ -309,7 +307,6 @@ std::vector<CheckpointEntry> dissectionRows() {
                       .title = "Share of the organ burned",
                       .unit = "1",
                       .displayUnit = "%",
-                      .displayFactor = 100.0,
                       .direction = Direction::lower,
                       .aggregation = Aggregation::organ,
                       .instruments = "union over instruments: what any of them charred",
@@ -326,7 +323,6 @@ std::vector<CheckpointEntry> dissectionRows() {
                       .title = "Area charred in the phase",
                       .unit = "m^2",
                       .displayUnit = "cm^2",
-                      .displayFactor = 1e4,
                       .direction = Direction::lower,
                       .window = "each phase of the procedure, as often as it recurs",
                       .aggregation = Aggregation::phase,
@@ -341,7 +337,6 @@ std::vector<CheckpointEntry> dissectionRows() {
                       .title = "Connective tissue torn so far",
                       .unit = "1",
                       .displayUnit = "%",
-                      .displayFactor = 100.0,
                       .direction = Direction::lower,
                       .window = "whole attempt, whatever came of it",
                       .instruments = "union over instruments: what any of them tore",
@@ -355,7 +350,6 @@ std::vector<CheckpointEntry> dissectionRows() {
                       .title = "Area charred for a whole bed freed",
                       .unit = "m^2",
                       .displayUnit = "cm^2",
-                      .displayFactor = 1e4,
                       .direction = Direction::lower,
                       .window = "whole attempt, those in which at least 1 % of the bed came free only",
                       .instruments = "union over instruments: what any of them charred or freed",
@@ -369,7 +363,6 @@ std::vector<CheckpointEntry> dissectionRows() {
                       .title = "Area charred for the volume of fat removed",
                       .unit = "1/m",
                       .displayUnit = "cm^2/ml",
-                      .displayFactor = 0.01,
                       .direction = Direction::lower,
                       .window = "the phase of identification, as often as it recurs, where at least 1 % of the fat "
                                 "went in it",

@@ -3,6 +3,7 @@
 #include "analytics/checkpoints/force.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "analytics/checkpoints/figures/rows.h"
 #include "analytics/statistics/descriptive.h"
@@ -15,46 +16,39 @@ double quantileOf(std::vector<double> values, double p) {
   return quantileOfSorted(values, p);
 }
 
-double largest(const ForceTrack& track, int hand) { return track.largest(hand); }
-double percentile(const ForceTrack& track, int hand) { return quantileOf(track.felt(hand), 0.99); }
-double mean(const ForceTrack& track, int hand) {
-  double sum = 0.0;
-  for (const double f : track.felt(hand)) sum += f;
-  return sum / static_cast<double>(track.felt(hand).size());
-}
-double impulse(const ForceTrack& track, int hand) { return track.impulse(hand); }
-/// A force that was felt at the first or the last tick alone has no rate of change.
-double rate(const ForceTrack& track, int hand) {
-  return track.rates(hand).empty() ? 0.0 : quantileOf(track.rates(hand), 0.95);
-}
-
 /// A figure of one hand's haptic force.
 struct ForceMeasure {
-  double (*figure)(const ForceTrack& track, int hand);
-  bool needsFelt;  ///< there is no value without a force of minForce
+  double (*figure)(const HandForces& forces, double tickSeconds);
+  bool needsFelt;  ///< there is no value without a force of leastForce
 
-  [[nodiscard]] Measured of(const ForceTrack& track, int hand) const {
-    if (!track.mounted(hand)) return Measured::none(Availability::absentHand, "no instrument in this hand");
-    if (needsFelt && track.felt(hand).empty()) return Measured::notApplicable("no force of 0.01 N or more");
-    return Measured::of(figure(track, hand));
+  [[nodiscard]] Measured of(const HandForces& forces, double tickSeconds) const {
+    if (!forces.mounted) return Measured::none(Availability::absentHand, "no instrument in this hand");
+    if (needsFelt && forces.felt.empty()) return Measured::notApplicable("no force of 0.01 N or more");
+    return Measured::of(figure(forces, tickSeconds));
   }
 };
+
+constexpr ForceMeasure maximum{[](const HandForces& f, double) { return f.largest; }, false};
+constexpr ForceMeasure p99{[](const HandForces& f, double) { return quantileOf(f.felt, 0.99); }, true};
+constexpr ForceMeasure meanFelt{[](const HandForces& f, double) {
+                                  const double sum = std::accumulate(f.felt.begin(), f.felt.end(), 0.0);
+                                  return sum / static_cast<double>(f.felt.size());
+                                },
+                                true};
+constexpr ForceMeasure impulse{[](const HandForces& f, double tickSeconds) { return f.sum * tickSeconds; }, false};
+/// A force that was felt at the first or the last tick alone has no rate of change.
+constexpr ForceMeasure rate{
+    [](const HandForces& f, double) { return f.rates.empty() ? 0.0 : quantileOf(f.rates, 0.95); }, true};
 
 struct HandForce {
-  const AttemptContext& context;
   ForceMeasure measure;
 
-  [[nodiscard]] Measured figure(const AttemptEnd& end, std::size_t hand) const {
-    return measure.of(*end.force, static_cast<int>(hand));
-  }
-};
-
-struct PhaseHandForce {
-  const AttemptContext& context;
-  ForceMeasure measure;
-
-  [[nodiscard]] Measured figure(const AttemptEnd& end, std::size_t subject) const {
-    return measure.of(end.phaseForce->of(subject / handCount), static_cast<int>(subject % handCount));
+  /// The figure of a hand, or of a hand in a phase.
+  [[nodiscard]] Measured figure(const AttemptEnd& end, std::size_t subject,
+                                const CheckpointDefinition& declared) const {
+    const bool inPhase = declared.aggregation == Aggregation::handAndPhase;
+    const ForceTrack& track = inPhase ? end.phaseForce->of(subject / handCount) : *end.force;
+    return measure.of(track.of(subject % handCount), track.tickSeconds());
   }
 };
 
@@ -102,16 +96,15 @@ CheckpointEntry handForce(int rank, const char* name, const char* title, const c
 
 std::vector<CheckpointEntry> forceRows() {
   constexpr const char* felt = "ticks of at least 0.01 N";
-  constexpr ForceMeasure maximum{largest, false}, p99{percentile, true}, dose{impulse, false};
   std::vector<CheckpointEntry> rows{
       handForce(50, "force-maximum", "Largest haptic force", "N", maximum, "none", "max |f_W| over all ticks"),
       handForce(60, "force-p99", "99th percentile of the haptic force", "N", p99, felt,
                 "quantile of type 7 at 0.99 of |f_W| over the ticks with |f_W| >= 0.01 N"),
-      handForce(70, "force-mean", "Mean non-zero haptic force", "N", {mean, true}, felt,
+      handForce(70, "force-mean", "Mean non-zero haptic force", "N", meanFelt, felt,
                 "mean of |f_W| over the ticks with |f_W| >= 0.01 N"),
-      handForce(80, "force-impulse", "Impulse of the haptic force", "N s", dose, "none",
+      handForce(80, "force-impulse", "Impulse of the haptic force", "N s", impulse, "none",
                 "tick length * sum of |f_W| over all ticks"),
-      handForce(90, "force-rate-p95", "95th percentile of the haptic force's rate of change", "N/s", {rate, true},
+      handForce(90, "force-rate-p95", "95th percentile of the haptic force's rate of change", "N/s", rate,
                 "ticks of at least 0.01 N; central differences",
                 "quantile of type 7 at 0.95 of |f_W(t+1) - f_W(t-1)| / (2 ticks) over the ticks t with |f_W(t)| >= "
                 "0.01 N"),
@@ -138,9 +131,9 @@ std::vector<CheckpointEntry> forceRows() {
                       .definition = "step length * sum over steps of F(o), F as in structure-force-p99"},
        .results = 2,
        .accumulate = accumulating<StructureForce>(true)}};
-  rows.push_back(phaseRow(rows[0], 110, "ticks", accumulating<PhaseHandForce>(maximum)));
-  rows.push_back(phaseRow(rows[1], 120, "ticks", accumulating<PhaseHandForce>(p99)));
-  rows.push_back(phaseRow(rows[3], 130, "ticks", accumulating<PhaseHandForce>(dose)));
+  rows.push_back(phaseRow(rows[0], 110, "ticks", accumulating<HandForce>(maximum)));
+  rows.push_back(phaseRow(rows[1], 120, "ticks", accumulating<HandForce>(p99)));
+  rows.push_back(phaseRow(rows[3], 130, "ticks", accumulating<HandForce>(impulse)));
   return rows;
 }
 

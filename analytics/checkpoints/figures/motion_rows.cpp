@@ -9,10 +9,10 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "analytics/checkpoints/figures/rows.h"
 #include "analytics/checkpoints/movements.h"
-#include "analytics/checkpoints/two_hands.h"
 #include "analytics/statistics/descriptive.h"
 #include "sim/math/elementary.h"
 #include "sim/math/linear.h"
@@ -102,20 +102,14 @@ Measured workingVolumeOf(const Motion& motion) {
 }
 
 Measured meanSpeed(const Motion& motion) {
-  double sum = 0.0;
-  for (const MotionSegment& segment : motion.segments) {
-    for (const double v : segment.speed) sum += v;
-  }
-  return Measured::of(sum / static_cast<double>(motion.points()));
+  const std::vector<double> speeds = speedsOf(motion.segments);
+  return Measured::of(std::accumulate(speeds.begin(), speeds.end(), 0.0) / static_cast<double>(speeds.size()));
 }
 
 Measured speedPercentile(const Motion& motion) {
-  std::vector<double> all;
-  all.reserve(motion.points());
-  for (const MotionSegment& segment : motion.segments)
-    all.insert(all.end(), segment.speed.begin(), segment.speed.end());
-  std::sort(all.begin(), all.end());
-  return Measured::of(quantileOfSorted(all, 0.95));
+  std::vector<double> speeds = speedsOf(motion.segments);
+  std::sort(speeds.begin(), speeds.end());
+  return Measured::of(quantileOfSorted(speeds, 0.95));
 }
 
 Measured count(const Motion& motion) {
@@ -130,8 +124,7 @@ Measured straightness(const Motion& motion) {
   double chord = 0.0, path = 0.0;
   for (const MotionSegment& segment : motion.segments) {
     for (const Stretch& movement : movementsOf(segment, motion.movementSpeed)) {
-      const Vec3 d = segment.filtered[movement.end - 1] - segment.filtered[movement.begin];
-      chord += std::sqrt(d.x() * d.x() + d.y() * d.y() + d.z() * d.z());
+      chord += lengthOf(segment.filtered[movement.end - 1] - segment.filtered[movement.begin]);
       path += pathLength(segment, movement.begin, movement.end);
     }
   }
@@ -194,183 +187,157 @@ Measured motionRateOf(const Motion& motion) {
 }  // namespace
 
 std::vector<CheckpointEntry> motionRows() {
-  const CheckpointEntry path =
-      perHand({.place = {CheckpointFamily::paper, 20, "path"},
-               .definition = {.name = "path-length",
-                              .title = "Path length of the instrument's tip",
-                              .unit = "m",
-                              .displayUnit = "mm",
-                              .displayFactor = 1000.0,
-                              .direction = Direction::lower,
-                              .version = 3,
-                              .definition = "L = sum |p(k+1) - p(k)| over the filtered points of the real tip p_WI, "
-                                            "within segments",
-                              .paperReading = "Total trajectory dist. (left), (right) (mm): path of the real tip in "
-                                              "the world, not of the device's handle nor of the simulated tip"}},
-              pathLengthOf);
-  const CheckpointEntry depth =
-      perHand({.place = {CheckpointFamily::motion, 20},
-               .definition = {.name = "depth-path",
-                              .title = "Path along the instrument's axis",
-                              .unit = "m",
-                              .displayUnit = "mm",
-                              .displayFactor = 1000.0,
-                              .direction = Direction::lower,
-                              .version = 2,
-                              .definition = "sum |(p(k+1) - p(k)) . (z(k) + z(k+1)) / 2|, p the filtered tip, z the "
-                                            "instrument's axis towards the tip (third column of the filtered "
-                                            "orientation), within segments"}},
-              depthPathOf);
-  const CheckpointEntry angle =
-      perHand({.place = {CheckpointFamily::motion, 30},
-               .definition = {.name = "angular-path",
-                              .title = "Angular path of the instrument",
-                              .unit = "rad",
-                              .displayUnit = "deg",
-                              .displayFactor = 180.0 / std::numbers::pi,
-                              .direction = Direction::lower,
-                              .version = 2,
-                              .definition = "sum angle(R(k)^T R(k+1)) over the filtered orientations (quaternion "
-                                            "components filtered like coordinates, then normalised), within "
-                                            "segments"}},
-              angularPathOf);
-  const CheckpointEntry mean =
-      perHand({.place = {CheckpointFamily::motion, 40},
-               .definition = {.name = "speed-mean",
-                              .title = "Mean speed of the instrument's tip",
-                              .unit = "m/s",
-                              .displayUnit = "mm/s",
-                              .displayFactor = 1000.0,
-                              .version = 2,
-                              .definition = "mean of v(k) over all points; v(k) = |p(k+1) - p(k-1)| * 50 Hz of the "
-                                            "filtered tip, one-sided at the ends of a segment"}},
-              meanSpeed);
-  const CheckpointEntry percentile =
-      perHand({.place = {CheckpointFamily::motion, 50},
-               .definition = {.name = "speed-p95",
-                              .title = "95th percentile of the tip's speed",
-                              .unit = "m/s",
-                              .displayUnit = "mm/s",
-                              .displayFactor = 1000.0,
-                              .version = 2,
-                              .definition = "quantile of type 7 at 0.95 of v(k) over all points, v as in speed-mean"}},
-              speedPercentile);
-  const CheckpointEntry movements =
-      perHand({.place = {CheckpointFamily::motion, 60},
-               .definition = {.name = "movements",
-                              .title = "Number of movements",
-                              .unit = "1",
-                              .direction = Direction::lower,
-                              .version = 2,
-                              .definition = "#{maximal stretches of points with v(k) >= max(v_95 / 2, 5 mm/s) that "
-                                            "last 0.2 s or longer}, v as in speed-mean, v_95 the hand's speed-p95 over "
-                                            "the attempt, a point lasting 10 ms"}},
-              count);
-  const CheckpointEntry straight =
-      perHand({.place = {CheckpointFamily::motion, 70},
-               .definition = {.name = "movement-straightness",
-                              .title = "Straightness of the movements",
-                              .unit = "1",
-                              .direction = Direction::higher,
-                              .version = 2,
-                              .definition = "sum over movements of |p(last) - p(first)| / sum over movements of their "
-                                            "path length; movements as in movements"}},
-              straightness);
-  const CheckpointEntry idleTime =
-      perHand({.place = {CheckpointFamily::motion, 80},
-               .definition = {.name = "idle-time",
-                              .title = "Time at rest",
-                              .unit = "s",
-                              .direction = Direction::lower,
-                              .version = 2,
-                              .definition = "sum of the lengths of the maximal stretches of points with v(k) < 5 mm/s "
-                                            "that last 0.5 s or longer, v as in speed-mean, a point lasting 10 ms"}},
-              idle);
-  const CheckpointEntry volume =
-      perHand({.place = {CheckpointFamily::motion, 160},
-               .definition = {.name = "working-volume",
-                              .title = "Working volume of the instrument's tip",
-                              .unit = "m^3",
-                              .displayUnit = "ml",
-                              .displayFactor = 1e6,
-                              .direction = Direction::lower,
-                              .version = 2,
-                              .definition = "4/3 pi (7.814727903)^(3/2) sqrt(det S): the ellipsoid of normally "
-                                            "distributed points that holds 95 % of them; S the covariance (divisor n - "
-                                            "1) of all filtered points"}},
-              workingVolumeOf);
-  CheckpointEntry rate =
-      perHand({.place = {CheckpointFamily::motion, 170},
-               .definition = {.name = "motion-rate",
-                              .title = "Effective rate of the tracker",
-                              .unit = "Hz",
-                              .filter = "none",
-                              .version = 2,
-                              .definition = "intervals between samples by the time that they fill, those over 1.5 of "
-                                            "the tracker's own intervals left out (in a file of motion: over 2.5); a "
-                                            "sample is a measured tick whose pose differs from the one before, or a "
-                                            "row of the file",
-                              .notOutcome = "it describes the tracker"}},
-              motionRateOf);
-  rate.definition.minCoverage = 0.0;
-  rate.definition.finality = Finality::running;
-  return {
-      path,
-      depth,
-      angle,
-      mean,
-      percentile,
-      movements,
-      straight,
-      idleTime,
-      volume,
-      rate,
-      perHandAndPhase(path, 20, pathLengthOf),
-      perHandAndPhase(depth, 30, depthPathOf),
-      perHandAndPhase(angle, 40, angularPathOf),
-      perHandAndPhase(mean, 50, meanSpeed),
-      perHandAndPhase(movements, 60, count),
-      perHandAndPhase(idleTime, 70, idle),
-      perHandAndPhase(volume, 100, workingVolumeOf),
-      ofBothHands({.place = {CheckpointFamily::motion, 90},
-                   .definition = {.name = "idle-time-both",
-                                  .title = "Time at rest of both hands at once",
-                                  .unit = "s",
-                                  .direction = Direction::lower,
-                                  .instruments = "both hands at the same time",
-                                  .version = 2,
-                                  .definition = "as idle-time, of the points at which both hands are measured and v(k) "
-                                                "< 5 mm/s for both"}},
-                  idleOfBoth),
-      ofBothHands({.place = {CheckpointFamily::motion, 130},
-                   .definition = {.name = "bimanual-correlation",
-                                  .title = "Correlation of both hands' speeds",
-                                  .unit = "1",
-                                  .version = 2,
-                                  .definition = "Pearson's correlation of v_left(k) and v_right(k), v as in "
-                                                "speed-mean, over the points at which both hands are measured"}},
-                  correlation),
-      ofBothHands({.place = {CheckpointFamily::motion, 140},
-                   .definition = {.name = "bimanual-lag",
-                                  .title = "Lag of the right hand behind the left",
-                                  .unit = "s",
-                                  .version = 2,
-                                  .definition = "the l within 1 s either way for which the correlation of v_left(t) "
-                                                "and v_right(t + l) is greatest, if above 0; positive: the right hand "
-                                                "follows"}},
-                  lag),
-      ofBothHands({.place = {CheckpointFamily::motion, 150},
-                   .definition = {.name = "hand-ratio",
-                                  .title = "Right hand's share of both paths",
-                                  .unit = "1",
-                                  .displayUnit = "%",
-                                  .displayFactor = 100.0,
-                                  .window = "whole attempt, while an instrument is mounted and measured",
-                                  .version = 2,
-                                  .definition = "L_right / (L_left + L_right), L as in path-length; the value's note "
-                                                "gives the handedness"}},
-                  handRatioOf),
+  std::vector<CheckpointEntry> rows;
+  const auto addHand = [&](CheckpointEntry row, MotionMeasure measure, int rankInPhases = 0) {
+    row = perHand(std::move(row), measure);
+    if (rankInPhases > 0) rows.push_back(perHandAndPhase(row, rankInPhases, measure));
+    rows.push_back(std::move(row));
   };
+  const auto addBoth = [&](CheckpointEntry row, TwoHandMeasure measure) {
+    rows.push_back(ofBothHands(std::move(row), measure));
+  };
+  addHand({.place = {CheckpointFamily::paper, 20, "path"},
+           .definition = {.name = "path-length",
+                          .title = "Path length of the instrument's tip",
+                          .unit = "m",
+                          .displayUnit = "mm",
+                          .direction = Direction::lower,
+                          .version = 3,
+                          .definition = "L = sum |p(k+1) - p(k)| over the filtered points of the real tip p_WI, "
+                                        "within segments",
+                          .paperReading = "Total trajectory dist. (left), (right) (mm): path of the real tip in "
+                                          "the world, not of the device's handle nor of the simulated tip"}},
+          pathLengthOf, 20);
+  addHand({.place = {CheckpointFamily::motion, 20},
+           .definition = {.name = "depth-path",
+                          .title = "Path along the instrument's axis",
+                          .unit = "m",
+                          .displayUnit = "mm",
+                          .direction = Direction::lower,
+                          .version = 2,
+                          .definition = "sum |(p(k+1) - p(k)) . (z(k) + z(k+1)) / 2|, p the filtered tip, z the "
+                                        "instrument's axis towards the tip (third column of the filtered "
+                                        "orientation), within segments"}},
+          depthPathOf, 30);
+  addHand({.place = {CheckpointFamily::motion, 30},
+           .definition = {.name = "angular-path",
+                          .title = "Angular path of the instrument",
+                          .unit = "rad",
+                          .displayUnit = "deg",
+                          .direction = Direction::lower,
+                          .version = 2,
+                          .definition = "sum angle(R(k)^T R(k+1)) over the filtered orientations (quaternion "
+                                        "components filtered like coordinates, then normalised), within "
+                                        "segments"}},
+          angularPathOf, 40);
+  addHand({.place = {CheckpointFamily::motion, 40},
+           .definition = {.name = "speed-mean",
+                          .title = "Mean speed of the instrument's tip",
+                          .unit = "m/s",
+                          .displayUnit = "mm/s",
+                          .version = 2,
+                          .definition = "mean of v(k) over all points; v(k) = |p(k+1) - p(k-1)| * 50 Hz of the "
+                                        "filtered tip, one-sided at the ends of a segment"}},
+          meanSpeed, 50);
+  addHand({.place = {CheckpointFamily::motion, 50},
+           .definition = {.name = "speed-p95",
+                          .title = "95th percentile of the tip's speed",
+                          .unit = "m/s",
+                          .displayUnit = "mm/s",
+                          .version = 2,
+                          .definition = "quantile of type 7 at 0.95 of v(k) over all points, v as in speed-mean"}},
+          speedPercentile);
+  addHand({.place = {CheckpointFamily::motion, 60},
+           .definition = {.name = "movements",
+                          .title = "Number of movements",
+                          .unit = "1",
+                          .direction = Direction::lower,
+                          .version = 2,
+                          .definition = "#{maximal stretches of points with v(k) >= max(v_95 / 2, 5 mm/s) that "
+                                        "last 0.2 s or longer}, v as in speed-mean, v_95 the hand's speed-p95 over "
+                                        "the attempt, a point lasting 10 ms"}},
+          count, 60);
+  addHand({.place = {CheckpointFamily::motion, 70},
+           .definition = {.name = "movement-straightness",
+                          .title = "Straightness of the movements",
+                          .unit = "1",
+                          .direction = Direction::higher,
+                          .version = 2,
+                          .definition = "sum over movements of |p(last) - p(first)| / sum over movements of their "
+                                        "path length; movements as in movements"}},
+          straightness);
+  addHand({.place = {CheckpointFamily::motion, 80},
+           .definition = {.name = "idle-time",
+                          .title = "Time at rest",
+                          .unit = "s",
+                          .direction = Direction::lower,
+                          .version = 2,
+                          .definition = "sum of the lengths of the maximal stretches of points with v(k) < 5 mm/s "
+                                        "that last 0.5 s or longer, v as in speed-mean, a point lasting 10 ms"}},
+          idle, 70);
+  addHand({.place = {CheckpointFamily::motion, 160},
+           .definition = {.name = "working-volume",
+                          .title = "Working volume of the instrument's tip",
+                          .unit = "m^3",
+                          .displayUnit = "ml",
+                          .direction = Direction::lower,
+                          .version = 2,
+                          .definition = "4/3 pi (7.814727903)^(3/2) sqrt(det S): the ellipsoid of normally "
+                                        "distributed points that holds 95 % of them; S the covariance (divisor n - "
+                                        "1) of all filtered points"}},
+          workingVolumeOf, 100);
+  addHand({.place = {CheckpointFamily::motion, 170},
+           .definition = {.name = "motion-rate",
+                          .title = "Effective rate of the tracker",
+                          .unit = "Hz",
+                          .filter = "none",
+                          .version = 2,
+                          .definition = "intervals between samples by the time that they fill, those over 1.5 of "
+                                        "the tracker's own intervals left out (in a file of motion: over 2.5); a "
+                                        "sample is a measured tick whose pose differs from the one before, or a "
+                                        "row of the file",
+                          .notOutcome = "it describes the tracker"}},
+          motionRateOf);
+  rows.back().definition.minCoverage = 0.0;
+  rows.back().definition.finality = Finality::running;
+  addBoth({.place = {CheckpointFamily::motion, 90},
+           .definition = {.name = "idle-time-both",
+                          .title = "Time at rest of both hands at once",
+                          .unit = "s",
+                          .direction = Direction::lower,
+                          .instruments = "both hands at the same time",
+                          .version = 2,
+                          .definition = "as idle-time, of the points at which both hands are measured and v(k) "
+                                        "< 5 mm/s for both"}},
+          idleOfBoth);
+  addBoth({.place = {CheckpointFamily::motion, 130},
+           .definition = {.name = "bimanual-correlation",
+                          .title = "Correlation of both hands' speeds",
+                          .unit = "1",
+                          .version = 2,
+                          .definition = "Pearson's correlation of v_left(k) and v_right(k), v as in "
+                                        "speed-mean, over the points at which both hands are measured"}},
+          correlation);
+  addBoth({.place = {CheckpointFamily::motion, 140},
+           .definition = {.name = "bimanual-lag",
+                          .title = "Lag of the right hand behind the left",
+                          .unit = "s",
+                          .version = 2,
+                          .definition = "the l within 1 s either way for which the correlation of v_left(t) "
+                                        "and v_right(t + l) is greatest, if above 0; positive: the right hand "
+                                        "follows"}},
+          lag);
+  addBoth({.place = {CheckpointFamily::motion, 150},
+           .definition = {.name = "hand-ratio",
+                          .title = "Right hand's share of both paths",
+                          .unit = "1",
+                          .displayUnit = "%",
+                          .window = "whole attempt, while an instrument is mounted and measured",
+                          .version = 2,
+                          .definition = "L_right / (L_left + L_right), L as in path-length; the value's note "
+                                        "gives the handedness"}},
+          handRatioOf);
+  return rows;
 }
 
 }  // namespace calot::analytics

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "analytics/checkpoints/checkpoint.h"
+#include "analytics/checkpoints/phases.h"
 
 namespace calot::analytics {
 
@@ -40,6 +41,35 @@ inline std::vector<std::string> organNames(const AttemptContext& context) {
   for (const SceneFacts::Organ& organ : context.scene.organ) names.push_back(organ.name);
   return names;
 }
+
+/// An accumulator A of each phase, which takes the steps of its phase alone, in windowPhases' order; A by hands, if so.
+template <class A>
+struct PerPhase {
+  std::vector<A> window;
+  Phase phase = Phase::none;
+
+  template <class... Arguments>
+  explicit PerPhase(const AttemptContext& context, Arguments... arguments)
+      : window(windowPhases.size(), A{context, arguments...}) {}
+
+  void add(const recorder::StepRecord& record, const Judgement& judgement) {
+    if constexpr (requires(A & a) { a.leavePhase(); }) {
+      if (judgement.phase != phase) {
+        for (A& a : window) a.leavePhase();
+      }
+    }
+    phase = judgement.phase;
+    const std::size_t w = windowOf(phase);
+    if (w < window.size()) window[w].add(record.result);
+  }
+  [[nodiscard]] Measured figure(const AttemptEnd& end, std::size_t subject) const {
+    if constexpr (requires { window[0].figure(end, subject); }) {
+      return window[subject / handCount].figure(end, subject % handCount);
+    } else {
+      return window[subject].figure(end);
+    }
+  }
+};
 
 /// The row of a figure in each phase of the procedure: declared as phaseDefinition() of the whole attempt's says, and
 /// with its requirements. @param rank among the figures of phases @param version without the judgement's

@@ -102,30 +102,11 @@ struct CauteryWithoutContact {
   void add(const StepResult& result) {
     for (std::size_t h = 0; h < hand.size(); ++h) hand[h].add(result.hand[h]);
   }
+  /// A stretch that continues into the next phase counts with each of its parts that is long enough.
+  void leavePhase() {
+    for (CurrentInTheAir& one : hand) one.endStretch();
+  }
   [[nodiscard]] Measured figure(const AttemptEnd& end, std::size_t h) const { return hand[h].figure(end); }
-};
-
-/// A stretch that continues into the next phase counts with each of its parts that is long enough.
-struct PhaseCauteryWithoutContact {
-  std::vector<CauteryWithoutContact> window;
-  Phase phase = Phase::none;
-
-  explicit PhaseCauteryWithoutContact(const AttemptContext& context)
-      : window(windowPhases.size(), CauteryWithoutContact{context}) {}
-
-  void add(const recorder::StepRecord& record, const Judgement& judgement) {
-    if (judgement.phase != phase) {
-      for (CauteryWithoutContact& hands : window) {
-        for (CurrentInTheAir& hand : hands.hand) hand.endStretch();
-      }
-    }
-    phase = judgement.phase;
-    const std::size_t w = windowOf(phase);
-    if (w < window.size()) window[w].add(record.result);
-  }
-  [[nodiscard]] Measured figure(const AttemptEnd& end, std::size_t subject) const {
-    return window[subject / handCount].figure(end, subject % handCount);
-  }
 };
 
 /// Organs opened by cautery or by tearing: a perforated gallbladder spills bile.
@@ -227,7 +208,7 @@ std::vector<CheckpointEntry> safetyRows() {
       .accumulate = accumulating<CauteryWithoutContact>()};
   return {
       cautery,
-      phaseRow(cautery, 150, "steps", accumulating<PhaseCauteryWithoutContact>()),
+      phaseRow(cautery, 150, "steps", accumulating<PerPhase<CauteryWithoutContact>>()),
       {.place = {CheckpointFamily::motion, 210},
        .definition = {.name = "retraction-requests",
                       .title = "Times that the assistant was asked to retract more or less",
@@ -274,7 +255,6 @@ std::vector<CheckpointEntry> safetyRows() {
                       .title = "Spared vessels' walls injured by heat",
                       .unit = "m",
                       .displayUnit = "mm",
-                      .displayFactor = 1000.0,
                       .direction = Direction::lower,
                       .definition = "sum over the vessels that the scene's procedure tells to spare of the length of "
                                     "wall whose cautery reached the scene's share `injury` of what parts it"},

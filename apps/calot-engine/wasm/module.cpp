@@ -54,7 +54,7 @@ __attribute__((export_name("calot_fault"))) const std::byte* calot_fault() {
   return lastWords().empty() ? nullptr : lastWords().data();
 }
 
-// What the C++ runtime would do with an exception, in a module that cannot unwind: everything that the engine throws is
+// Replaces the C++ runtime's throw in a module that cannot unwind: everything that the engine throws is
 // a std::exception, and its first base.
 void* __cxa_allocate_exception(std::size_t bytes) noexcept { return std::malloc(bytes); }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// OpenGL as the renderer calls it (gui/render/gl_functions.h), over WebGL 2: numbers stand for its objects.
+// OpenGL as the renderer calls it (gui/render/gl_objects.h), over WebGL 2: numbers stand for its objects.
 
 const precision = ['float', 'int', 'sampler2D', 'sampler3D', 'sampler2DShadow'].map((type) => `precision highp ${type};\n`).join('');
 
@@ -50,7 +50,6 @@ export function glImports(gl, memory) {
   const out = {
     GetError: () => gl.getError(),
     ClearColor: (r, g, b, a) => gl.clearColor(r, g, b, a),
-    ColorMask: (r, g, b, a) => gl.colorMask(r !== 0, g !== 0, b !== 0, a !== 0),
     DepthMask: (on) => gl.depthMask(on !== 0),
     ActiveTexture: (unit) => gl.activeTexture(unit),
     BindTexture: (target, n) => gl.bindTexture(target, tables.Texture.get(n)),
@@ -96,14 +95,13 @@ export function glImports(gl, memory) {
     Uniform1f: (n, x) => gl.uniform1f(locations.get(n), x),
     Uniform2f: (n, x, y) => gl.uniform2f(locations.get(n), x, y),
     Uniform3f: (n, x, y, z) => gl.uniform3f(locations.get(n), x, y, z),
-    UniformMatrix4fv: (n, count, transpose, at) => gl.uniformMatrix4fv(locations.get(n), transpose !== 0, new Float32Array(memory().buffer, at >>> 0, 16 * count)),
     VertexAttribPointer: (n, size, type, normalized, stride, offset) => gl.vertexAttribPointer(n, size, type, normalized !== 0, stride, offset >>> 0),
   };
   for (const [kind, table] of Object.entries(tables)) {
     out[`Gen${kind}s`] = (n, at) => { for (let i = 0; i < n; ++i) u4(at, n)[i] = table.add(gl[`create${kind}`]()); };
     out[`Delete${kind}s`] = (n, at) => { for (const number of u4(at, n)) gl[`delete${kind}`](table.remove(number)); };
   }
-  for (const name of ['BlendFunc', 'Clear', 'CullFace', 'DepthFunc', 'Disable', 'DrawArrays', 'Enable', 'FrontFace', 'PixelStorei', 'Scissor',
+  for (const name of ['BlendFunc', 'Clear', 'DepthFunc', 'Disable', 'DrawArrays', 'Enable', 'FrontFace', 'PixelStorei', 'Scissor',
     'TexParameteri', 'Viewport', 'CheckFramebufferStatus', 'EnableVertexAttribArray', 'GenerateMipmap', 'TexStorage2D']) {
     const method = gl[name[0].toLowerCase() + name.slice(1)].bind(gl);
     out[name] = (...values) => method(...values);

@@ -121,7 +121,7 @@ Attempt& attempt() {
 
 extern "C" {
 
-/// Takes what is placed: a Begin. @return 1, or 0 where it is none
+/// Takes the placed payload, a Begin. @return 1, or 0 if it is invalid
 __attribute__((export_name("calot_begin"))) int calot_begin() {
   Attempt& a = attempt();
   a = {};

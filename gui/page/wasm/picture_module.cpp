@@ -6,27 +6,50 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "gui/page/wasm/thrown.h"
-#include "gui/page/wasm/web_context.h"
 #include "gui/render/draw_list.h"
+#include "gui/render/gl_objects.h"
+#include "gui/render/graphics.h"
 #include "gui/render/scene_painter.h"
-#include "gui/render/smoke.h"
+#include "gui/render/translucent.h"
 #include "gui/render/view_check.h"
 #include "recorder/engine/wire.h"
 #include "sim/scene/scene_view.h"
+
+extern "C" {
+#define CALOT_GL_IMPORT(Name) __attribute__((import_module("gl"), import_name(#Name))) decltype(gl##Name) gl##Name;
+CALOT_GL_FUNCTIONS(CALOT_GL_IMPORT)
+#undef CALOT_GL_IMPORT
+}
 
 namespace {
 
 using namespace calot;
 
+/// A context whose functions are the host's: WebGL 2, under the names that OpenGL has for them.
+class WebContext final : public gui::GraphicsContext {
+ public:
+  void makeCurrent() override {}
+  [[nodiscard]] Function function(const char* name) const override {
+    const std::string_view wanted = name;
+#define CALOT_GL_FIND(Name) \
+  if (wanted == "gl" #Name) return reinterpret_cast<Function>(&gl##Name);
+    CALOT_GL_FUNCTIONS(CALOT_GL_FIND)
+#undef CALOT_GL_FIND
+    return nullptr;
+  }
+  [[nodiscard]] const char* way() const override { return "WebGL"; }
+};
+
 struct Pictures {
-  std::unique_ptr<gui::GraphicsContext> context = page::createWebContext();
-  gui::ScenePainter painter{*context};
+  WebContext context;
+  gui::ScenePainter painter{context};
   std::array<gui::DrawListMaker, 2> lists;  ///< the endoscope's, and another camera's: both remember surfaces
   SceneView view;
-  Vec3 down = SceneView().down;  ///< of the scene, which no view of an engine tells
+  Vec3 down = SceneView().down;  ///< of the scene, which no view of an engine contains
   std::vector<gui::Puff> smoke;
 };
 
@@ -35,7 +58,7 @@ Pictures& pictures() {
   return one;
 }
 
-/// Where another camera's turning point is, and how far what is to be seen reaches around it.
+/// Pivot of another camera, and the radius of the visible scene around it.
 std::array<double, 4>& extent() {
   static std::array<double, 4> centreAndRadius{};
   return centreAndRadius;
@@ -77,7 +100,7 @@ __attribute__((export_name("calot_gravity"))) void calot_gravity(double x, doubl
   pictures().down = downOf(Vec3(x, y, z));
 }
 
-/// Takes the placed payload of an engine's scene view. @return 1, or 0 if it is none
+/// Takes the placed payload of an engine's scene view. @return 1, or 0 if it is invalid
 __attribute__((export_name("calot_view"))) int calot_view() {
   recorder::wire::View wire;
   SceneView view;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the page's modules have in common: a place for the host's bytes, and what becomes of an exception in a module
-// that cannot unwind. Its text is kept and the module traps; the host reads the text and makes the module anew.
+// that cannot unwind. Its text is kept and the module traps; the host reads the text and makes a new module.
 #include "gui/page/wasm/thrown.h"
 
 #include <cstdlib>

@@ -44,15 +44,14 @@ struct DeviceCapabilities {
   int hands = 1;  ///< that it can drive at the same time
   int sensedRotations = 3;
   bool sensesGripper = false;
-  int actuated = 0;               ///< degrees of freedom with a motor; 0: it shows no force
-  double maxForce = 0.0;          ///< N, each hand
-  double maxTorque = 0.0;         ///< N m
-  std::array<Vec3, 2> workspace;  ///< lower and upper corner in D (m); both zero: without bounds
-  double rate = 0.0;              ///< nominal, samples a second and hand; 0: the sender decides
-  bool realTime = true;           ///< false: its clock is the tick clock, so that a run is the same every time
-  bool absolute = true;           ///< false: its frame begins where the device was when it was opened
-
-  DeviceCapabilities() { workspace.fill(Vec3::Zero()); }
+  int actuated = 0;        ///< degrees of freedom with a motor; 0: it shows no force
+  double maxForce = 0.0;   ///< N, each hand
+  double maxTorque = 0.0;  ///< N m
+  /// Lower and upper corner in D (m); both zero: without bounds.
+  std::array<Vec3, 2> workspace{Vec3::Zero(), Vec3::Zero()};
+  double rate = 0.0;     ///< nominal, samples a second and hand; 0: the sender decides
+  bool realTime = true;  ///< false: its clock is the tick clock, so that a run is the same every time
+  bool absolute = true;  ///< false: its frame begins where the device was when it was opened
 };
 
 struct DeviceInfo {
@@ -76,15 +75,16 @@ struct Wrench {
 using DeviceClock = std::function<std::int64_t()>;
 std::int64_t monotonicNanoseconds();
 
-/// A device that is open. One thread at a time may call it. Nothing here throws.
+/// A device that is open. One thread at a time may call it. Nothing here throws, except constructors.
 class Device {
  public:
-  Device() = default;
+  /// @param clock that stamps samples and events
+  explicit Device(DeviceClock clock = monotonicNanoseconds) : clock_(std::move(clock)) {}
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;
   virtual ~Device() = default;
 
-  [[nodiscard]] virtual const DeviceInfo& info() const = 0;
+  [[nodiscard]] const DeviceInfo& info() const { return info_; }
 
   /// Appends what came in. Also connects, and connects again after a loss.
   /// @param wait blocks at most so long for the first new sample; 0: not at all.
@@ -105,6 +105,40 @@ class Device {
 
   /// Closes the device; further polls return nothing.
   virtual void close() = 0;
+
+ protected:
+  void tell(DeviceEvent::Kind kind, std::string text, DeviceInput& out) const {
+    out.events.push_back({kind, clock_(), std::move(text)});
+  }
+
+  DeviceInfo info_;  ///< filled by the constructor
+  DeviceClock clock_;
+};
+
+/// A device that may be lost and come back: it is looked for every half second.
+class ReopeningDevice : public Device {
+ public:
+  void poll(std::chrono::nanoseconds wait, DeviceInput& out) final;
+  void close() override;
+
+ protected:
+  using Device::Device;
+  /// Connects. @returns what is wrong, or an empty text
+  virtual std::string connect() = 0;
+  /// Reads a connected device.
+  virtual void read(std::chrono::nanoseconds wait, DeviceInput& out) = 0;
+  virtual void disconnect() = 0;
+  /// Reports the loss of the device, and looks for it again later.
+  virtual void lose(const std::string& why, DeviceInput& out);
+  /// The constructor's connection. @param called name for the message @throws Error (failure)
+  void connectFirst(const std::string& called);
+
+  const char* gone_ = "unplugged";  ///< reason for a loss that nothing else explains
+
+ private:
+  std::int64_t nextAttempt_ = 0;  ///< ns
+  std::string refusal_;           ///< why it is not connected, as the last event said
+  bool open_ = true, greeted_ = false, welcomed_ = false;
 };
 
 struct Calibration;
@@ -122,6 +156,9 @@ struct DeviceRequest {
   const Calibration* calibration = nullptr;  ///< of the device, where one was given: a camera's lens is in it
   std::optional<Hand> hand = std::nullopt;   ///< the one hand that it is to drive, beside another device
 
+  /// Reads HOST, HOST:PORT or [IPv6]:PORT from the argument; what is missing stays as it is.
+  /// @throws Error (invalid)
+  void readAddress(std::string& host, int& port) const;
   /// @throws Error (invalid) that names the request and says why
   [[noreturn]] void refuse(const std::string& why) const;
 };
@@ -146,11 +183,15 @@ struct DeviceKind {
   const char* usage;         ///< how to ask for one: "gamepad[:NAME]"
   const char* help;          ///< one line for people
   bool needsWindow = false;  ///< its input comes from a window, which opens it; `open` refuses
-  /// Lists devices that are, or could be, available. Does not throw.
-  std::vector<ListedDevice> (*list)();
+  /// Its row of `calot devices`: name, detail, hands, senses, rate. Unused where `list` is set.
+  std::array<const char*, 5> row{};
+  /// Lists devices that are, or could be, available. Does not throw. Null: the row.
+  std::vector<ListedDevice> (*list)() = nullptr;
   /// @throws Error: invalid, for a request that makes no sense; damaged, for a bad file; failure, where it is not
   /// there.
   OpenedDevice (*open)(const DeviceRequest& request);
+
+  [[nodiscard]] std::vector<ListedDevice> listed() const;
 };
 
 }  // namespace calot::recorder

@@ -13,6 +13,74 @@
 #include "sim/math/linear.h"
 
 namespace calot::recorder {
+namespace {}
+
+DeviceMapping::DeviceMapping(const HandDescription& hand, const CameraSample& camera,
+                             const HandCalibration* calibration, const HandCalibration* shared)
+    : hand_(hand), axes_(camera.orientation) {
+  for (const HandCalibration* c : {calibration, shared}) {
+    if (c == nullptr || !c->axes || !c->scale) continue;
+    axes_ = camera.orientation * *c->axes;
+    scale_ = *c->scale;
+    break;
+  }
+  if (calibration != nullptr && calibration->tipOffset) tipOffset_ = *calibration->tipOffset;
+}
+
+void DeviceMapping::anchor(const DeviceSample& sample, const Vec3& position, const Quat& orientation) {
+  tip0_ = sample.position + sample.orientation * tipOffset_;
+  turn0_ = sample.orientation;
+  anchor_ = position;
+  orientation_ = orientation;
+  anchored_ = true;
+}
+
+void DeviceMapping::anchorAtHome(const DeviceSample& sample) {
+  anchor(sample, hand_.home, pointing(hand_.port, hand_.home));
+}
+
+InstrumentSample DeviceMapping::map(const DeviceSample& sample) const {
+  InstrumentSample out;
+  out.instrument = hand_.instrument;
+  const Vec3 tip = sample.position + sample.orientation * tipOffset_;
+  out.position = anchor_ + scale_ * (axes_ * (tip - tip0_));
+  const Quat turn = axes_ * (sample.orientation * turn0_.conjugate()) * axes_.conjugate();
+  out.orientation = alignedToShaft(turn * orientation_, shaftDirection(hand_.port, out.position));
+  out.jaw = std::min(notNegative(sample.gripper), widestJaw);
+  out.buttons = static_cast<std::uint8_t>(sample.buttons & ~clutchButton);
+  return out;
+}
+
+DevicePump::DevicePump(Device& device) : device_(device), thread_([this] { run(); }) {}
+
+DevicePump::~DevicePump() {
+  stop_ = true;
+  thread_.join();
+}
+
+void DevicePump::run() {
+  // A motor wants its command every millisecond; a device that only speaks is waited for longer.
+  const std::chrono::milliseconds wait(device_.info().capabilities.actuated > 0 ? 1 : 20);
+  DeviceInput input;
+  Command command;
+  while (!stop_) {
+    while (commands_.pop(command)) device_.setWrench(command.hand, command.wrench);
+    device_.poll(wait, input);
+    for (DeviceEvent& event : input.events) events_.push(std::move(event));
+    for (const DeviceSample& sample : input.samples) samples_.push(sample);
+    input.events.clear();
+    input.samples.clear();
+    if (device_.ended()) ended_.store(true, std::memory_order_release);
+  }
+}
+
+void DevicePump::drain(DeviceInput& out) {
+  DeviceEvent event;
+  while (events_.pop(event)) out.events.push_back(std::move(event));
+  DeviceSample sample;
+  while (samples_.pop(sample)) out.samples.push_back(sample);
+}
+
 namespace {
 
 constexpr std::int64_t tickNanoseconds = 1'000'000;
@@ -78,7 +146,7 @@ void DeviceSource::gather() {
       }
       lost_ = event.text;
     } else if (event.kind == DeviceEvent::Kind::connected) {
-      // What failed stays failed, and keeps its reason.
+      // A failed source stays failed, and keeps its reason.
       if (!failed_) lost_.clear();
     }
   }

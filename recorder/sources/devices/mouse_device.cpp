@@ -7,7 +7,6 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <linux/input.h>
-#include <poll.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 #include <algorithm>
@@ -15,36 +14,25 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
-#include <thread>
 #include <utility>
 
-#include "recorder/base/errors.h"
-#include "sim/math/elementary.h"
+#include "recorder/sources/devices/evdev.h"
 #include "sim/math/linear.h"
 
 namespace calot::recorder {
 namespace {
 
-constexpr std::int64_t period = 4'000'000;          // ns from sample to sample
 constexpr std::int64_t restingPeriod = 20'000'000;  // ns, of the hand that holds
-constexpr double maxStep = 0.05;                    // s; after a longer gap the keys do not leap
-constexpr double pixel = 0.00015;                   // m
+constexpr double pixel = 0.00015;                   // m, also of a count
 constexpr double notch = 0.003;                     // m
+constexpr double tilt = 0.1;                        // rad, of a tilting wheel's notch
 constexpr double keySpeed = 0.03;                   // m/s
 constexpr double fastest = 0.5;                     // m/s
-constexpr double rollSpeed = 1.5, jawSpeed = 1.8;
-constexpr double largestJaw = 1.2;  // rad
+constexpr double rollSpeed = 1.5, jawSpeed = 1.8;   // rad/s
 constexpr double fineShare = 0.25;
-constexpr double leastInside = 0.01;     // m from the port to the tip
-constexpr double leastBeforeEye = 0.02;  // m from the endoscope's eye to the tip
-const Vec3 reach(0.2, 0.2, 0.2);         // m
-
-/// Takes from what is asked for as much as may be done now.
-double drawn(double& asked, double most) {
-  const double now = std::clamp(asked, -most, most);
-  asked -= now;
-  return now;
-}
+constexpr double leastInside = 0.01;              // m from the port to the tip
+constexpr double leastBeforeEye = 0.02;           // m from the endoscope's eye to the tip
+constexpr double reach = 0.2, evdevReach = 0.15;  // m
 
 /// Direction and distance of a point.
 struct Line {
@@ -60,102 +48,70 @@ Line lineFrom(const Vec3& origin, const Vec3& to) {
 }  // namespace
 
 MouseDevice::MouseDevice(std::shared_ptr<MouseInput> input, DeviceClock clock)
-    : input_(std::move(input)), clock_(std::move(clock)) {
-  info_.name = mouseKind.name;
+    : PointerDevice(std::move(clock), mouseKind.name, reach), input_(std::move(input)) {
   info_.identity = "mouse";
   info_.detail = mouseKind.help;
-  DeviceCapabilities& c = info_.capabilities;
-  c.hands = 2;  // both are there; one is moved at a time
-  c.sensedRotations = 1;
-  c.sensesGripper = true;
-  c.workspace = {Vec3(-reach), reach};
-  c.rate = 250.0;
-  c.absolute = false;
-  last_ = clock_();
+  info_.capabilities.hands = 2;  // both are there; one is moved at a time
 }
 
-void MouseDevice::advance(Pointer& p, const MouseInput::Wish& wish, double seconds) {
+std::string MouseDevice::find() {
+  there_ = true;
+  return readControls();  // motion from before is dropped
+}
+
+std::string MouseDevice::readControls() {
+  wish_ = input_->take();
+  return {};
+}
+
+void MouseDevice::move(Pointer& p, double seconds) {
   const auto either = [&](MouseControl more, MouseControl less) {
-    return (wish.holds(more) ? 1.0 : 0.0) - (wish.holds(less) ? 1.0 : 0.0);
+    return between(wish_.holds(more), wish_.holds(less));
   };
-  const double share = wish.holds(MouseControl::fine) ? fineShare : 1.0;
+  const double share = wish_.holds(MouseControl::fine) ? fineShare : 1.0;
   const double keys = share * keySpeed * seconds;
-  p.right += share * pixel * wish.pixels[0] + keys * either(MouseControl::right, MouseControl::left);
-  p.down += share * pixel * wish.pixels[1] + keys * either(MouseControl::down, MouseControl::up);
-  p.in += keys * either(MouseControl::in, MouseControl::out);
-  p.away += share * notch * wish.notches;
+  asked_.right += share * pixel * wish_.pixels[0] + keys * either(MouseControl::right, MouseControl::left);
+  asked_.down += share * pixel * wish_.pixels[1] + keys * either(MouseControl::down, MouseControl::up);
+  asked_.in += keys * either(MouseControl::in, MouseControl::out);
+  asked_.away += share * notch * wish_.notches;
   const double most = fastest * seconds;
-  const Vec3& port = wish.port[static_cast<std::size_t>(wish.hand)];
+  const Vec3& port = wish_.port[static_cast<std::size_t>(wish_.hand)];
   const auto [shaft, length] = lineFrom(port, p.position);
-  const double right = drawn(p.right, most);
-  const double down = drawn(p.down, most);
-  const double in = std::max(drawn(p.in, most), notPositive(leastInside - length));
+  const double right = drawn(asked_.right, most);
+  const double down = drawn(asked_.down, most);
+  const double in = std::max(drawn(asked_.in, most), notPositive(leastInside - length));
   p.position += Vec3(right, down, 0.0) + in * shaft;
-  const auto [sight, distance] = lineFrom(wish.eye[static_cast<std::size_t>(wish.hand)], p.position);
-  const double away = std::max(drawn(p.away, most), notPositive(leastBeforeEye - distance));
+  const auto [sight, distance] = lineFrom(wish_.eye[static_cast<std::size_t>(wish_.hand)], p.position);
+  const double away = std::max(drawn(asked_.away, most), notPositive(leastBeforeEye - distance));
   const Vec3 seen = p.position + away * sight;
   // Towards the eye may be towards the port, too.
   const double inside = (seen - port).norm();
   if (inside >= leastInside || inside >= (p.position - port).norm()) p.position = seen;
-  p.position = p.position.cwiseMax(-reach).cwiseMin(reach);
+  p.move(Vec3::Zero(), reach);
   p.roll += share * rollSpeed * seconds * either(MouseControl::rollRight, MouseControl::rollLeft);
-  p.jaw =
-      std::min(notNegative(p.jaw + share * jawSpeed * seconds * either(MouseControl::openJaw, MouseControl::closeJaw)),
-               largestJaw);
+  p.openJaw(share * jawSpeed * seconds * either(MouseControl::openJaw, MouseControl::closeJaw));
 }
 
-void MouseDevice::put(Hand hand, const MouseInput::Wish& wish, std::uint8_t momentary, std::int64_t now,
-                      DeviceInput& out) {
-  Pointer& p = pointer_[static_cast<std::size_t>(hand)];
-  DeviceSample sample;
-  sample.hostTime = now;
-  sample.sequence = p.sequence++;
-  sample.hand = hand;
-  sample.position = p.position;
-  sample.orientation = Quat(cosine(0.5 * p.roll), 0.0, 0.0, sine(0.5 * p.roll));
-  sample.gripper = p.jaw;
+void MouseDevice::put(Hand hand, std::uint8_t momentary, std::int64_t now, DeviceInput& out) {
+  DeviceSample& sample = out.samples.emplace_back(pointer_[static_cast<std::size_t>(hand)].sample(hand, now));
   sample.buttons = momentary;
-  if (wish.locked[static_cast<std::size_t>(hand)])
-    sample.buttons = static_cast<std::uint8_t>(sample.buttons | button::lock);
-  out.samples.push_back(sample);
+  press(sample.buttons, wish_.locked[static_cast<std::size_t>(hand)], button::lock);
 }
 
-void MouseDevice::poll(std::chrono::nanoseconds wait, DeviceInput& out) {
-  if (!open_) return;
-  std::int64_t now = clock_();
-  if (!greeted_) {
-    greeted_ = true;
-    out.events.push_back({DeviceEvent::Kind::connected, now, "mouse and keyboard: there"});
-    const MouseInput::Wish wish = input_->take();
-    for (const Hand hand : {Hand::left, Hand::right}) put(hand, wish, 0, now, out);
-    last_ = lastResting_ = now;
-    return;
-  }
-  if (now < last_ + period && wait.count() > 0) {
-    std::this_thread::sleep_for(std::min(wait, std::chrono::nanoseconds(last_ + period - now)));
-    now = clock_();
-  }
-  if (now < last_ + period) return;
-  const MouseInput::Wish wish = input_->take();
-  const Hand other = wish.hand == Hand::right ? Hand::left : Hand::right;
-  Pointer& resting = pointer_[static_cast<std::size_t>(other)];
-  resting.right = resting.down = resting.in = resting.away = 0.0;
-  advance(pointer_[static_cast<std::size_t>(wish.hand)], wish,
-          std::min(maxStep, 1e-9 * static_cast<double>(now - last_)));
+void MouseDevice::advance(double seconds, std::int64_t now, DeviceInput& out) {
+  const bool left = wish_.hand != hand_;
+  if (left) asked_ = {};
+  hand_ = wish_.hand;
+  move(pointer_[static_cast<std::size_t>(hand_)], seconds);
   std::uint8_t momentary = 0;
-  const auto bit = [&](MouseControl control, std::uint8_t mask) {
-    if (wish.holds(control)) momentary = static_cast<std::uint8_t>(momentary | mask);
-  };
-  bit(MouseControl::cut, button::cutPedal);
-  bit(MouseControl::coagulate, button::coagulatePedal);
-  bit(MouseControl::fire, button::fire);
-  put(wish.hand, wish, momentary, now, out);
-  last_ = now;
-  // At once where it has just been left.
-  if (wish.hand == hand_ && now < lastResting_ + restingPeriod) return;
-  hand_ = wish.hand;
+  press(momentary, wish_.holds(MouseControl::cut), button::cutPedal);
+  press(momentary, wish_.holds(MouseControl::coagulate), button::coagulatePedal);
+  press(momentary, wish_.holds(MouseControl::fire), button::fire);
+  put(hand_, momentary, now, out);
+  // The hand that holds: at once where it has just been left.
+  if (!left && now < lastResting_ + restingPeriod) return;
   lastResting_ = now;
-  put(other, wish, 0, now, out);
+  put(hand_ == Hand::right ? Hand::left : Hand::right, 0, now, out);
 }
 
 constinit const DeviceKind mouseKind{
@@ -182,25 +138,13 @@ constinit const DeviceKind mouseKind{
 
 namespace {
 
-constexpr std::int64_t samplePeriod = 4'000'000;    // ns
-constexpr std::int64_t searchPeriod = 500'000'000;  // ns, of a lost mouse
-constexpr double maxGap = 0.05;                     // s; after a longer one the tip does not leap
-constexpr double aCount = 0.00015, aNotch = 0.003;  // m
-constexpr double aTilt = 0.1, jawRate = 1.8;        // rad, rad/s
-constexpr double widestJaw = 1.2;                   // rad
-constexpr double fastestMotion = 0.5;               // m/s
-constexpr double mouseReach = 0.15;                 // m, each axis
-
 bool hasBit(const std::array<unsigned char, KEY_MAX / 8 + 1>& bits, unsigned bit) {
   return (bits[bit / 8] & (1U << (bit % 8))) != 0;
 }
 
 std::string nameOf(int descriptor) {
   std::array<char, 128> text{};
-  if (::ioctl(descriptor, EVIOCGNAME(text.size() - 1), text.data()) < 0) return "mouse";
-  std::string out;
-  for (const char* c = text.data(); *c != '\0' && out.size() < 64; ++c) out += *c >= 0x20 && *c < 0x7f ? *c : '?';
-  return out;
+  return ::ioctl(descriptor, EVIOCGNAME(text.size() - 1), text.data()) < 0 ? "mouse" : nameFrom(text.data());
 }
 
 bool isMouse(int descriptor) {
@@ -211,12 +155,6 @@ bool isMouse(int descriptor) {
 }
 
 int openFile(const std::filesystem::path& path) { return ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC); }
-
-double takeUpTo(double& wish, double most) {
-  const double part = std::clamp(wish, -most, most);
-  wish -= part;
-  return part;
-}
 
 }  // namespace
 
@@ -241,62 +179,50 @@ std::vector<ListedMouse> listMice() {
 }
 
 EvdevMouse::EvdevMouse(std::string which, Hand hand, DeviceClock clock)
-    : which_(std::move(which)), hand_(hand), clock_(std::move(clock)) {
-  const std::string fault = open();
-  if (!fault.empty())
-    throw Error(ErrorKind::failure, fmt::format("mouse \"{}\": {}", which_, fault), {Remedy::listDevices});
-  name_ = nameOf(descriptor_);
-  info_.name = "mouse";
+    : PointerDevice(std::move(clock), mouseKind.name, evdevReach), which_(std::move(which)), hand_(hand) {
+  connectFirst(fmt::format("mouse \"{}\"", which_));
   info_.identity = fmt::format("mouse:{}", name_);
-  info_.detail = fmt::format("{}, {}", name_, path_.string());
-  DeviceCapabilities& c = info_.capabilities;
-  c.hands = 1;
-  c.sensedRotations = 1;
-  c.sensesGripper = true;
-  c.workspace = {Vec3::Constant(-mouseReach), Vec3::Constant(mouseReach)};
-  c.rate = 250.0;
-  c.absolute = false;
-  last_ = clock_();
 }
 
-EvdevMouse::~EvdevMouse() { close(); }
+EvdevMouse::~EvdevMouse() { EvdevMouse::disconnect(); }
 
-std::string EvdevMouse::open() {
-  path_.clear();
+std::string EvdevMouse::find() {
+  std::filesystem::path path;
   if (which_.starts_with("/")) {
-    path_ = which_;
+    path = which_;
   } else {
     const std::vector<ListedMouse> mice = listMice();
     std::size_t number = mice.size();
     const auto [end, fault] = std::from_chars(which_.data(), which_.data() + which_.size(), number);
     const bool numbered = fault == std::errc() && end == which_.data() + which_.size();
-    for (std::size_t i = 0; i < mice.size() && path_.empty(); ++i) {
-      if (numbered ? i == number : mice[i].name.find(which_) != std::string::npos) path_ = mice[i].path;
+    for (std::size_t i = 0; i < mice.size() && path.empty(); ++i) {
+      if (numbered ? i == number : mice[i].name.find(which_) != std::string::npos) path = mice[i].path;
     }
-    if (path_.empty())
+    if (path.empty())
       return fmt::format("there is none such among {} that may be read; reading /dev/input needs the group input",
                          mice.size());
   }
-  descriptor_ = openFile(path_);
-  if (descriptor_ < 0) return fmt::format("{}: {}", path_.string(), std::strerror(errno));
+  descriptor_ = openFile(path);
+  if (descriptor_ < 0) return fmt::format("{}: {}", path.string(), std::strerror(errno));
+  const auto refuse = [&](const char* why) {
+    disconnect();
+    return fmt::format("{}: {}", path.string(), why);
+  };
   // A stream that is no device has no grab; a mouse that another program has grabbed gives nothing.
-  if (::ioctl(descriptor_, EVIOCGRAB, 1) < 0 && errno == EBUSY) {
-    ::close(std::exchange(descriptor_, -1));
-    return fmt::format("{}: another program has grabbed it", path_.string());
-  }
+  if (::ioctl(descriptor_, EVIOCGRAB, 1) < 0 && errno == EBUSY) return refuse("another program has grabbed it");
   // Numbers of mice change when one is unplugged: another one is not taken for it.
-  if (!name_.empty() && nameOf(descriptor_) != name_) {
-    ::close(std::exchange(descriptor_, -1));
-    return fmt::format("{}: another mouse", path_.string());
-  }
-  held_.fill(false);
-  skipping_ = false;
+  const std::string name = nameOf(descriptor_);
+  if (!name_.empty() && name != name_) return refuse("another mouse");
+  name_ = name;
+  info_.detail = fmt::format("{}, {}", name_, path.string());
   return {};
 }
 
-void EvdevMouse::close() {
-  open_ = false;
+void EvdevMouse::disconnect() {
   if (descriptor_ >= 0) ::close(std::exchange(descriptor_, -1));  // which ends the grab, too
+  held_.fill(false);
+  skipping_ = false;
+  right_ = down_ = in_ = 0.0;
 }
 
 void EvdevMouse::take(std::uint16_t type, std::uint16_t code, std::int32_t value) {
@@ -309,83 +235,30 @@ void EvdevMouse::take(std::uint16_t type, std::uint16_t code, std::int32_t value
   if (type == EV_SYN && code == SYN_REPORT) skipping_ = false;
   if (skipping_) return;
   if (type == EV_REL) {
-    if (code == REL_X) right_ += aCount * value;
-    if (code == REL_Y) down_ += aCount * value;
-    if (code == REL_WHEEL) in_ += aNotch * value;
-    if (code == REL_HWHEEL) roll_ += aTilt * value;
+    if (code == REL_X) right_ += pixel * value;
+    if (code == REL_Y) down_ += pixel * value;
+    if (code == REL_WHEEL) in_ += notch * value;
+    if (code == REL_HWHEEL) pointer_.roll += tilt * value;
   } else if (type == EV_KEY && code >= BTN_MOUSE && code < BTN_MOUSE + held_.size()) {
     held_[static_cast<std::size_t>(code - BTN_MOUSE)] = value != 0;
   }
 }
 
-void EvdevMouse::read() {
-  std::array<input_event, 64> events;
-  for (;;) {
-    const ssize_t n = ::read(descriptor_, events.data(), sizeof events);
-    if (n < 0 && errno == EINTR) continue;
-    if (n < 0 && (errno == EAGAIN || errno == EWOULDBLOCK)) return;
-    if (n <= 0) {
-      lost_ = true;
-      return;
-    }
-    const std::size_t count = static_cast<std::size_t>(n) / sizeof(input_event);
-    for (std::size_t i = 0; i < count; ++i) take(events[i].type, events[i].code, events[i].value);
-    if (count < events.size()) return;
-  }
+std::string EvdevMouse::readControls() {
+  const bool there = readEvents(descriptor_, [this](const input_event& e) { take(e.type, e.code, e.value); });
+  return there ? "" : "unplugged";
 }
 
-void EvdevMouse::advance(double seconds) {
-  const double most = fastestMotion * seconds;
-  position_ += Vec3(takeUpTo(right_, most), takeUpTo(down_, most), takeUpTo(in_, most));
-  position_ = position_.cwiseMax(-mouseReach).cwiseMin(mouseReach);
-  const double open = (held_[BTN_RIGHT - BTN_MOUSE] ? 1.0 : 0.0) - (held_[BTN_LEFT - BTN_MOUSE] ? 1.0 : 0.0);
-  jaw_ = std::min(notNegative(jaw_ + seconds * jawRate * open), widestJaw);
-}
+bool EvdevMouse::holds(unsigned button) const { return held_[button - BTN_MOUSE]; }
 
-void EvdevMouse::poll(std::chrono::nanoseconds wait, DeviceInput& out) {
-  if (!open_) return;
-  std::int64_t now = clock_();
-  if (descriptor_ < 0) {
-    if (now < nextAttempt_) {
-      std::this_thread::sleep_for(std::min<std::chrono::nanoseconds>(wait, std::chrono::milliseconds(20)));
-      return;
-    }
-    nextAttempt_ = now + searchPeriod;
-    if (!open().empty()) return;
-    last_ = now;
-    out.events.push_back({DeviceEvent::Kind::connected, now, info_.identity + ": there again"});
-  } else if (!std::exchange(greeted_, true)) {
-    out.events.push_back({DeviceEvent::Kind::connected, now, info_.identity + ": there"});
-  }
-  if (now < last_ + samplePeriod && wait.count() > 0) {
-    std::this_thread::sleep_for(std::min(wait, std::chrono::nanoseconds(last_ + samplePeriod - now)));
-    now = clock_();
-  }
-  if (now < last_ + samplePeriod) return;
-  read();
-  if (std::exchange(lost_, false)) {
-    ::close(std::exchange(descriptor_, -1));
-    nextAttempt_ = now + searchPeriod;
-    right_ = down_ = in_ = 0.0;
-    out.events.push_back({DeviceEvent::Kind::disconnected, now, info_.identity + ": unplugged"});
-    return;
-  }
-  advance(std::min(maxGap, 1e-9 * static_cast<double>(now - last_)));
-  last_ = now;
-  DeviceSample sample;
-  sample.hostTime = now;
-  sample.sequence = sequence_++;
-  sample.hand = hand_;
-  sample.position = position_;
-  sample.orientation = Quat(cosine(0.5 * roll_), 0.0, 0.0, sine(0.5 * roll_));
-  sample.gripper = jaw_;
-  const auto bit = [&](unsigned which, std::uint8_t mask) {
-    if (held_[which - BTN_MOUSE]) sample.buttons = static_cast<std::uint8_t>(sample.buttons | mask);
-  };
-  bit(BTN_MIDDLE, button::cutPedal | button::fire);
-  bit(BTN_SIDE, button::coagulatePedal);
-  bit(BTN_EXTRA, button::lock);
-  out.samples.push_back(sample);
+void EvdevMouse::advance(double seconds, std::int64_t now, DeviceInput& out) {
+  const double most = fastest * seconds;
+  pointer_.move(Vec3(drawn(right_, most), drawn(down_, most), drawn(in_, most)), evdevReach);
+  pointer_.openJaw(seconds * jawSpeed * between(holds(BTN_RIGHT), holds(BTN_LEFT)));
+  DeviceSample& sample = out.samples.emplace_back(pointer_.sample(hand_, now));
+  press(sample.buttons, holds(BTN_MIDDLE), button::cutPedal | button::fire);
+  press(sample.buttons, holds(BTN_SIDE), button::coagulatePedal);
+  press(sample.buttons, holds(BTN_EXTRA), button::lock);
 }
 
 }  // namespace calot::recorder

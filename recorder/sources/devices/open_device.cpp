@@ -11,13 +11,12 @@
 #include "recorder/base/errors.h"
 #include "recorder/base/nearest_word.h"
 #include "recorder/sources/devices/camera/camera_device.h"
+#include "recorder/sources/devices/device_script.h"
 #include "recorder/sources/devices/force/force_device.h"
 #include "recorder/sources/devices/force/haply_device.h"
-#include "recorder/sources/devices/gamepad_device.h"
 #include "recorder/sources/devices/mouse_device.h"
 #include "recorder/sources/devices/openigtlink_device.h"
-#include "recorder/sources/devices/scripted_device.h"
-#include "recorder/sources/devices/space_mouse.h"
+#include "recorder/sources/devices/pointer_device.h"
 
 namespace calot::recorder {
 namespace {
@@ -27,10 +26,6 @@ constexpr std::array kinds{&gamepadKind,  &forceKind, &haplyKind, &openIgtLinkKi
                            &scriptedKind, &nullKind,  &mouseKind, &spaceMouseKind};
 
 }  // namespace
-
-void DeviceRequest::refuse(const std::string& why) const {
-  throw Error(ErrorKind::invalid, fmt::format("device \"{}\": {}", name.substr(0, 80), why), {Remedy::nameDevice});
-}
 
 std::span<const DeviceKind* const> deviceKinds() { return kinds; }
 
@@ -69,11 +64,16 @@ OpenedDevice openDevice(const std::string& name, const std::array<std::string, h
   return kind->open(request);
 }
 
+std::vector<ListedDevice> DeviceKind::listed() const {
+  if (list != nullptr) return list();
+  return {{row[0], row[1], true, row[2], row[3], row[4]}};
+}
+
 std::vector<ListedDevice> listDevices() {
   std::vector<ListedDevice> out;
   for (const DeviceKind* kind : kinds) {
-    std::vector<ListedDevice> those = kind->list();
-    out.insert(out.end(), std::make_move_iterator(those.begin()), std::make_move_iterator(those.end()));
+    const std::vector<ListedDevice> those = kind->listed();
+    out.insert(out.end(), those.begin(), those.end());
   }
   return out;
 }
@@ -83,7 +83,7 @@ constexpr std::int64_t period = 1'000'000;  // ns
 constexpr std::int64_t maxAtOnce = 1000;    // samples; a poll after a long pause does not make up for all of it
 }  // namespace
 
-NullDevice::NullDevice(DeviceClock clock) : clock_(std::move(clock)), next_(clock_()) {
+NullDevice::NullDevice(DeviceClock clock) : Device(std::move(clock)), next_(clock_()) {
   info_.name = nullKind.name;
   info_.identity = "null";
   info_.detail = nullKind.help;
@@ -97,15 +97,11 @@ NullDevice::NullDevice(DeviceClock clock) : clock_(std::move(clock)), next_(cloc
 void NullDevice::poll(std::chrono::nanoseconds, DeviceInput& out) {
   if (!open_) return;
   const std::int64_t now = clock_();
-  if (sequence_ == 0) out.events.push_back({DeviceEvent::Kind::connected, now, "null: there"});
+  if (sequence_ == 0) tell(DeviceEvent::Kind::connected, "null: there", out);
   next_ = std::max(next_, now - maxAtOnce * period);
   for (; next_ <= now; next_ += period, ++sequence_) {
     for (const Hand hand : {Hand::left, Hand::right}) {
-      DeviceSample sample;
-      sample.deviceTime = sample.hostTime = next_;
-      sample.sequence = sequence_;
-      sample.hand = hand;
-      out.samples.push_back(sample);
+      out.samples.push_back({.deviceTime = next_, .hostTime = next_, .sequence = sequence_, .hand = hand});
     }
   }
 }
@@ -114,10 +110,7 @@ constinit const DeviceKind nullKind{
     .name = "null",
     .usage = "null",
     .help = "never moves",
-    .list =
-        [] {
-          return std::vector<ListedDevice>{{"null", nullKind.help, true, "2", "none", "1000"}};
-        },
+    .row = {"null", "never moves", "2", "none", "1000"},
     .open =
         [](const DeviceRequest& request) {
           if (!request.argument.empty()) request.refuse("nothing stands behind its name");

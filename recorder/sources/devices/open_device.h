@@ -26,7 +26,7 @@ std::string deviceUsage(std::string_view last = "or");
 
 /// Opens a device by its name, or two by "left=NAME,right=NAME".
 /// @param tools of an OpenIGTLink server: left and right, an empty one for none; ignored for others.
-/// @throws Error: invalid, for a name that is none, a wrong port, no tool or the same one twice; damaged, for a bad
+/// @throws Error: invalid, for an unknown name, a wrong port, no tool or the same one twice; damaged, for a bad
 /// script; failure, for a gamepad that is not there. An OpenIGTLink server need not be there yet.
 /// @param calibration of the device, or null; a camera needs one
 /// @param hand the one hand that it is to drive, beside another device
@@ -43,14 +43,11 @@ class NullDevice final : public Device {
   /// @param clock of its samples (ns).
   explicit NullDevice(DeviceClock clock);
 
-  [[nodiscard]] const DeviceInfo& info() const override { return info_; }
   void poll(std::chrono::nanoseconds wait, DeviceInput& out) override;
   [[nodiscard]] bool connected() const override { return open_; }
   void close() override { open_ = false; }
 
  private:
-  DeviceInfo info_;
-  DeviceClock clock_;
   std::int64_t next_;  ///< time of the next sample (ns)
   std::uint64_t sequence_ = 0;
   bool open_ = true;
@@ -66,7 +63,6 @@ class CombinedDevice final : public Device {
   /// @param tickClock of the combination, or null in real time
   CombinedDevice(std::array<OpenedDevice, handCount> device, std::shared_ptr<TickClock> tickClock);
 
-  [[nodiscard]] const DeviceInfo& info() const override { return info_; }
   void poll(std::chrono::nanoseconds wait, DeviceInput& out) override;
   [[nodiscard]] bool connected() const override;
   [[nodiscard]] bool ended() const override;
@@ -79,7 +75,6 @@ class CombinedDevice final : public Device {
 
   std::array<OpenedDevice, handCount> device_;
   std::shared_ptr<TickClock> tickClock_;
-  DeviceInfo info_;
   std::array<bool, handCount> there_{};
 };
 

@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 #include <algorithm>
-#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <optional>
@@ -18,39 +17,10 @@ namespace {
 
 using openigtlink::Item;
 
-constexpr std::int64_t between = 500'000'000;  // ns from one attempt to connect to the next
 constexpr std::chrono::milliseconds patience{300};
 constexpr std::size_t maxFaults = 16;  // kinds of fault told a connection
 constexpr double maxGripper = 3.2;     // rad
 constexpr int statusOk = 1;
-
-// HOST, HOST:PORT, [IPv6]:PORT or nothing.
-void readAddress(const DeviceRequest& request, OpenIgtLinkSettings& out) {
-  std::string address = request.argument;
-  if (address.empty()) return;
-  std::string port;
-  if (address.front() == '[') {
-    const std::size_t end = address.find(']');
-    if (end == std::string::npos || (end + 1 < address.size() && address[end + 1] != ':'))
-      request.refuse("[HOST]:PORT is wanted");
-    if (end + 1 < address.size()) port = address.substr(end + 2);
-    if (end + 1 < address.size() && port.empty()) request.refuse("a port is missing behind the colon");
-    address = address.substr(1, end - 1);
-  } else if (const std::size_t colon = address.find(':'); colon != std::string::npos) {
-    port = address.substr(colon + 1);
-    address = address.substr(0, colon);
-    if (port.empty()) request.refuse("a port is missing behind the colon");
-  }
-  if (address.empty() || address.size() > 253) request.refuse("a host is missing: openigtlink:HOST:PORT");
-  for (const char c : address) {
-    if (c <= 0x20 || c >= 0x7f || c == '/') request.refuse("the host is no name or address");
-  }
-  out.host = address;
-  if (port.empty()) return;
-  const auto [end, fault] = std::from_chars(port.data(), port.data() + port.size(), out.port);
-  if (fault != std::errc() || end != port.data() + port.size() || out.port < 1 || out.port > 65535)
-    request.refuse("the port is no number from 1 to 65535");
-}
 
 void checkTools(const std::array<std::string, handCount>& tools) {
   if (tools[0].empty() && tools[1].empty())
@@ -68,7 +38,8 @@ void checkTools(const std::array<std::string, handCount>& tools) {
 }  // namespace
 
 OpenIgtLinkDevice::OpenIgtLinkDevice(OpenIgtLinkSettings settings, DeviceClock clock)
-    : settings_(std::move(settings)), clock_(std::move(clock)) {
+    : ReopeningDevice(std::move(clock)), settings_(std::move(settings)) {
+  gone_ = "the server is gone";
   info_.name = openIgtLinkKind.name;
   info_.identity = fmt::format("openigtlink:{}/{},{}", settings_.host, settings_.tool[0], settings_.tool[1]);
   info_.detail = fmt::format("server {}:{}, tools \"{}\" and \"{}\"", settings_.host, settings_.port, settings_.tool[0],
@@ -78,49 +49,24 @@ OpenIgtLinkDevice::OpenIgtLinkDevice(OpenIgtLinkSettings settings, DeviceClock c
   info_.capabilities.sensesGripper = true;
 }
 
-void OpenIgtLinkDevice::close() {
-  open_ = false;
-  stream_.close();
-}
-
-void OpenIgtLinkDevice::connect(DeviceInput& out) {
+std::string OpenIgtLinkDevice::connect() {
   std::string fault;
   stream_ = TcpStream::connect(settings_.host, settings_.port, patience, fault);
-  nextAttempt_ = clock_() + between;
-  if (stream_.open()) {
-    decoder_.reset();
-    told_.clear();
-    refusal_.clear();
-    gripper_.fill(0.0);
-    out.events.push_back({DeviceEvent::Kind::connected, clock_(),
-                          fmt::format("openigtlink {}:{}: connected", settings_.host, settings_.port)});
-  } else if (fault != refusal_) {
-    refusal_ = fault;
-    out.events.push_back({DeviceEvent::Kind::disconnected, clock_(),
-                          fmt::format("openigtlink {}:{}: {}", settings_.host, settings_.port, fault)});
-  }
+  decoder_.reset();
+  told_.clear();
+  gripper_.fill(0.0);
+  return stream_.open() ? "" : fault;
 }
 
-void OpenIgtLinkDevice::lose(const std::string& why, DeviceInput& out) {
-  stream_.close();
-  nextAttempt_ = clock_() + between;
-  out.events.push_back({DeviceEvent::Kind::disconnected, clock_(),
-                        fmt::format("openigtlink {}:{}: {}", settings_.host, settings_.port, why)});
-}
-
-void OpenIgtLinkDevice::tellOnce(const std::string& fault, DeviceInput& out) {
-  if (told_.size() >= maxFaults || !told_.insert(fault).second) return;
-  out.events.push_back({DeviceEvent::Kind::malformed, clock_(), "openigtlink: " + fault});
+void OpenIgtLinkDevice::tellOnce(DeviceEvent::Kind kind, const std::string& fault, DeviceInput& out) {
+  if (told_.size() < maxFaults && told_.insert(fault).second) tell(kind, "openigtlink: " + fault, out);
 }
 
 void OpenIgtLinkDevice::take(const Item& item, DeviceInput& out) {
   if (item.kind == Item::Kind::unknown) return;
   if (item.kind == Item::Kind::status) {
-    if (item.code != statusOk) {
-      const std::string text = fmt::format("the server says: status {} {}", item.code, item.text);
-      if (told_.size() < maxFaults && told_.insert(text).second)
-        out.events.push_back({DeviceEvent::Kind::status, clock_(), "openigtlink: " + text});
-    }
+    if (item.code != statusOk)
+      tellOnce(DeviceEvent::Kind::status, fmt::format("the server says: status {} {}", item.code, item.text), out);
     return;
   }
   for (std::size_t h = 0; h < handCount; ++h) {
@@ -131,68 +77,46 @@ void OpenIgtLinkDevice::take(const Item& item, DeviceInput& out) {
       if (std::isfinite(item.value) && std::abs(item.value) <= maxGripper)
         gripper_[h] = std::max(0.0, item.value);
       else
-        tellOnce(fmt::format("{}: an opening that is no angle", item.name), out);
+        tellOnce(DeviceEvent::Kind::malformed, fmt::format("{}: an opening that is no angle", item.name), out);
       return;
     }
     if (item.name != tool) continue;
-    DeviceSample sample;
-    sample.hand = static_cast<Hand>(h);
-    sample.sequence = sequence_[h]++;
-    sample.hostTime = clock_();
-    sample.deviceTime = item.time;
-    sample.valid = item.kind == Item::Kind::pose && item.rotation;
-    sample.position = item.position;
-    sample.orientation = item.orientation;
-    sample.gripper = gripper_[h];
-    out.samples.push_back(sample);
+    out.samples.push_back({.deviceTime = item.time,
+                           .hostTime = clock_(),
+                           .sequence = sequence_[h]++,
+                           .hand = static_cast<Hand>(h),
+                           .position = item.position,
+                           .orientation = item.orientation,
+                           .gripper = gripper_[h],
+                           .valid = item.kind == Item::Kind::pose && item.rotation});
     if (item.kind == Item::Kind::pose && !item.rotation)
-      tellOnce(fmt::format("{}: a pose that is not finite, too far, or no rotation", item.name), out);
+      tellOnce(DeviceEvent::Kind::malformed,
+               fmt::format("{}: a pose that is not finite, too far, or no rotation", item.name), out);
     break;
   }
-  if (item.kind == Item::Kind::fault) tellOnce(item.text, out);
+  if (item.kind == Item::Kind::fault) tellOnce(DeviceEvent::Kind::malformed, item.text, out);
 }
 
-void OpenIgtLinkDevice::poll(std::chrono::nanoseconds wait, DeviceInput& out) {
-  if (!open_) return;
-  if (!stream_.open()) {
-    if (clock_() < nextAttempt_) {
-      std::this_thread::sleep_for(std::min<std::chrono::nanoseconds>(wait, std::chrono::milliseconds(20)));
-      return;
-    }
-    connect(out);
-    if (!stream_.open()) return;
-  }
+void OpenIgtLinkDevice::read(std::chrono::nanoseconds wait, DeviceInput& out) {
   if (wait.count() > 0 && !stream_.readable(wait)) return;
-  std::array<std::byte, 65536> buffer;
-  // Bounded, so that a sender that never stops cannot hold the thread.
-  for (int i = 0; i < 16; ++i) {
-    const std::size_t n = stream_.receive(buffer);
-    if (n == 0) break;
-    if (!decoder_.take(std::span(buffer.data(), n), [&](const Item& item) { take(item, out); })) {
-      lose("disconnected: what the server sends is no OpenIGTLink", out);
-      return;
-    }
-  }
-  if (!stream_.open()) lose("the server is gone", out);
+  const auto decode = [&](std::span<const std::byte> bytes) {
+    return decoder_.take(bytes, [&](const Item& item) { take(item, out); });
+  };
+  if (!stream_.receiveAll(decode)) lose("disconnected: what the server sends is no OpenIGTLink", out);
 }
 
 constinit const DeviceKind openIgtLinkKind{
     .name = "openigtlink",
     .usage = "openigtlink[:HOST[:PORT]]",
     .help = "tracked tools of an OpenIGTLink server",
-    .list =
-        [] {
-          return std::vector<ListedDevice>{
-              {"openigtlink:HOST:PORT",
-               fmt::format("a server's tracked tools; default localhost:{}", openigtlink::defaultPort), true, "2",
-               "6, jaw by SENSOR", "the server's"}};
-        },
+    .row = {"openigtlink:HOST:PORT", "a server's tracked tools; default localhost:18944", "2", "6, jaw by SENSOR",
+            "the server's"},
     .open =
         [](const DeviceRequest& request) {
           checkTools(request.tools);
           OpenIgtLinkSettings settings;
           settings.tool = request.tools;
-          readAddress(request, settings);
+          request.readAddress(settings.host, settings.port);
           return OpenedDevice{std::make_unique<OpenIgtLinkDevice>(settings), nullptr};
         },
 };
@@ -239,14 +163,7 @@ void OpenIgtLinkServer::serve(TcpStream client, const std::atomic<bool>& stop) {
 }
 
 void OpenIgtLinkServer::run(const std::atomic<bool>& stop, const std::function<void(const std::string&)>& tell) {
-  while (!stop) {
-    std::optional<TcpStream> client = listener_.accept(lookPeriod);
-    if (!client) continue;
-    tell("a client is there");
-    serve(std::move(*client), stop);
-    tell("the client is gone");
-    if (settings_.once) return;
-  }
+  listener_.serve(stop, settings_.once, tell, [&](TcpStream client) { serve(std::move(client), stop); });
 }
 
 }  // namespace calot::recorder

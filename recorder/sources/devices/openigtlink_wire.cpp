@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "recorder/sources/devices/openigtlink_wire.h"
+#include "recorder/sources/devices/openigtlink_device.h"
 
 #include <fmt/format.h>
 #include <igtl_header.h>
@@ -46,33 +46,27 @@ std::int64_t nanoseconds(std::uint64_t stamp) {
                                    igtl_frac_to_nanosec(static_cast<igtl_uint32>(stamp & 0xffffffffU)));
 }
 
-// Columns of the rotation matrix, then the position (mm).
+/// Puts a pose into an item, or nothing if it is invalid.
+void setPose(const Vec3& position, bool rotation, const Quat& orientation, Item& item) {
+  item.rotation = rotation && position.allFinite() && position.cwiseAbs().maxCoeff() <= farthest;
+  item.position = item.rotation ? position : Vec3::Zero();
+  if (item.rotation) item.orientation = orientation;
+}
+
+Vec3 metres(float x, float y, float z) { return metresPerMillimetre * Eigen::Vector3f(x, y, z).cast<double>(); }
+
+/// Columns of the rotation matrix, then the position (mm).
 void readMatrix(const igtl_float32* m, Item& item) {
-  Mat3 r;
-  for (int c = 0; c < 3; ++c) {
-    for (int row = 0; row < 3; ++row) r(row, c) = static_cast<double>(m[3 * c + row]);
-  }
-  for (int i = 0; i < 3; ++i) item.position[i] = metresPerMillimetre * static_cast<double>(m[9 + i]);
-  const bool finite = r.allFinite() && r.cwiseAbs().maxCoeff() < 2.0 && item.position.allFinite() &&
-                      item.position.cwiseAbs().maxCoeff() <= farthest;
-  item.rotation = finite && (r * r.transpose() - Mat3::Identity()).cwiseAbs().maxCoeff() <= orthonormality &&
-                  r.col(0).cross(r.col(1)).dot(r.col(2)) > 0.0;
-  if (item.rotation)
-    item.orientation = quaternionOf(r);
-  else
-    item.position = Vec3::Zero();
+  const Mat3 r = Eigen::Map<const Eigen::Matrix3f>(m).cast<double>();
+  const bool rotation = r.allFinite() && r.cwiseAbs().maxCoeff() < 2.0 && rotationDefect(r) <= orthonormality;
+  setPose(metres(m[9], m[10], m[11]), rotation, rotation ? quaternionOf(r) : Quat::Identity(), item);
 }
 
 void readQuaternion(const igtl_qtdata_element& e, Item& item) {
-  for (int i = 0; i < 3; ++i) item.position[i] = metresPerMillimetre * static_cast<double>(e.position[i]);
   const Quat q(static_cast<double>(e.quaternion[3]), static_cast<double>(e.quaternion[0]),
                static_cast<double>(e.quaternion[1]), static_cast<double>(e.quaternion[2]));
-  item.rotation = item.position.allFinite() && item.position.cwiseAbs().maxCoeff() <= farthest &&
-                  q.coeffs().allFinite() && std::abs(q.norm() - 1.0) <= orthonormality;
-  if (item.rotation)
-    item.orientation = q.normalized();
-  else
-    item.position = Vec3::Zero();
+  setPose(metres(e.position[0], e.position[1], e.position[2]),
+          q.coeffs().allFinite() && std::abs(q.norm() - 1.0) <= orthonormality, q.normalized(), item);
 }
 
 bool isRead(const std::string& type) {
@@ -85,7 +79,7 @@ void readBody(const std::string& type, const Item& head, std::span<const std::by
   Item item = head;
   const auto fault = [&](std::size_t wanted) {
     item.kind = Item::Kind::fault;
-    item.text = fmt::format("a {} message of {} bytes, where {} are wanted", type, body.size(), wanted);
+    item.text = fmt::format("a {} message of {} bytes, where {} are expected", type, body.size(), wanted);
     tell(item);
   };
   item.kind = Item::Kind::pose;
@@ -185,7 +179,7 @@ bool Decoder::take(std::span<const std::byte> bytes, const Tell& tell) {
     const std::uint64_t size = header.body_size;
     if (header.version < 1 || header.version > 3 || type.empty() || size > maxBody ||
         (isRead(type) && size > maxRead)) {
-      item.text = "what came is no OpenIGTLink header";
+      item.text = "what came is not an OpenIGTLink header";
       tell(item);
       sound = false;
       break;
@@ -216,12 +210,9 @@ bool Decoder::take(std::span<const std::byte> bytes, const Tell& tell) {
 std::vector<std::byte> transformMessage(const std::string& name, std::int64_t time, const Vec3& position,
                                         const Quat& orientation) {
   const Mat3 r = orientation.normalized().toRotationMatrix();
-  std::array<igtl_float32, 12> m{};
-  std::size_t next = 0;  // column by column, then the position
-  for (int c = 0; c < 3; ++c) {
-    for (int row = 0; row < 3; ++row) m[next++] = static_cast<float>(r(row, c));
-  }
-  for (int c = 0; c < 3; ++c) m[next++] = static_cast<float>(position[c] / metresPerMillimetre);
+  std::array<igtl_float32, 12> m{};  // column by column, then the position
+  Eigen::Map<Eigen::Matrix3f>(m.data()) = r.cast<float>();
+  Eigen::Map<Eigen::Vector3f>(m.data() + 9) = (position / metresPerMillimetre).cast<float>();
   igtl_transform_convert_byte_order(m.data());
   return message("TRANSFORM", name, time, std::as_bytes(std::span(m)));
 }

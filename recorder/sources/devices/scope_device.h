@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "recorder/sources/devices/device.h"
-#include "recorder/sources/devices/device_pump.h"
+#include "recorder/sources/devices/device_source.h"
 #include "recorder/sources/devices/window_input.h"
 #include "recorder/sources/scope/endoscope.h"
 

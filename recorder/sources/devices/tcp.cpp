@@ -22,6 +22,7 @@ namespace calot::recorder {
 namespace {
 
 constexpr std::chrono::milliseconds maxSend{1000};
+constexpr std::chrono::milliseconds lookPeriod{50};  // between two looks at `stop`
 
 bool waitFor(int descriptor, short what, std::chrono::nanoseconds wait) {
   pollfd p{descriptor, what, 0};
@@ -135,13 +136,19 @@ TcpListener::TcpListener(int port) {
 
 TcpListener::~TcpListener() { ::close(descriptor_); }
 
-std::optional<TcpStream> TcpListener::accept(std::chrono::milliseconds wait) {
-  if (!waitFor(descriptor_, POLLIN, wait)) return std::nullopt;
-  const int d = accept4(descriptor_, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
-  if (d < 0) return std::nullopt;
-  const int on = 1;
-  setsockopt(d, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
-  return TcpStream(d);
+void TcpListener::serve(const std::atomic<bool>& stop, bool once, const std::function<void(const std::string&)>& tell,
+                        const std::function<void(TcpStream)>& serveOne) {
+  while (!stop) {
+    if (!waitFor(descriptor_, POLLIN, lookPeriod)) continue;
+    const int d = accept4(descriptor_, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
+    if (d < 0) continue;
+    const int on = 1;
+    setsockopt(d, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
+    tell("a client is there");
+    serveOne(TcpStream(d));
+    tell("the client is gone");
+    if (once) return;
+  }
 }
 
 }  // namespace calot::recorder

@@ -2,9 +2,11 @@
 // Stream sockets that never block longer than asked and never raise a signal. Internal to this folder.
 #pragma once
 
+#include <array>
+#include <atomic>
 #include <chrono>
 #include <cstddef>
-#include <optional>
+#include <functional>
 #include <span>
 #include <string>
 
@@ -27,6 +29,18 @@ class TcpStream {
   [[nodiscard]] bool readable(std::chrono::nanoseconds wait) const;
   /// Reads what has arrived, at most the buffer; 0: nothing now. Closes if the other side has closed.
   std::size_t receive(std::span<std::byte> buffer);
+  /// Reads what has arrived, piece by piece, until take(bytes) is false. Bounded, so that a sender that never stops
+  /// cannot hold the thread. @returns false where take() was
+  template <class Take>
+  bool receiveAll(const Take& take) {
+    std::array<std::byte, 65536> buffer;
+    for (int i = 0; i < 16; ++i) {
+      const std::size_t n = receive(buffer);
+      if (n == 0) break;
+      if (!take(std::span<const std::byte>(buffer.data(), n))) return false;
+    }
+    return true;
+  }
   /// All or nothing within a second; closes and returns false where that fails.
   bool send(std::span<const std::byte> bytes);
   void close();
@@ -45,8 +59,10 @@ class TcpListener {
   TcpListener& operator=(const TcpListener&) = delete;
 
   [[nodiscard]] int port() const { return port_; }
-  /// @returns nothing after `wait`.
-  std::optional<TcpStream> accept(std::chrono::milliseconds wait);
+  /// Serves one client after the other until `stop`, or with `once` until the first has gone.
+  /// @param tell takes a line for each client that comes or goes
+  void serve(const std::atomic<bool>& stop, bool once, const std::function<void(const std::string&)>& tell,
+             const std::function<void(TcpStream)>& serveOne);
 
  private:
   int descriptor_ = -1;

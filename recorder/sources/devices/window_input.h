@@ -33,9 +33,9 @@ inline constexpr std::size_t mouseControls = 14;
 /// thread never calls it.
 class MouseInput {
  public:
-  /// The pointer went by so many pixels.
+  /// The pointer moved by these pixels.
   void move(double right, double down);
-  /// The wheel rotated by so many notches; positive: away from the hand, deeper into the picture.
+  /// The wheel rotated by `notches`; positive: away from the hand, deeper into the picture.
   void turnWheel(double notches);
   void hold(MouseControl control, bool held);
   /// Ratchet of the driven hand's grasper: locks, or lets go.
@@ -51,10 +51,10 @@ class MouseInput {
   /// A new attempt: the right hand, nothing held, nothing locked.
   void reset();
 
-  /// Where each hand's port lies in D, seen from where its tip began (m): `in` and `out` move along the line from
+  /// Position of each hand's port in D, relative to its tip's start (m): `in` and `out` move along the line from
   /// there.
   void setPorts(const std::array<Vec3, handCount>& ports);
-  /// Where the endoscope's eye lies in D, seen from where each tip began (m): the wheel moves along the line from
+  /// Position of the endoscope's eye in D, relative to each tip's start (m): the wheel moves along the line from
   /// there.
   void setEyes(const std::array<Vec3, handCount>& eyes);
 
@@ -96,9 +96,9 @@ enum class ScopeControl : std::uint8_t {
 class ScopeInput {
  public:
   void hold(ScopeControl control, bool held);
-  /// The pointer went by so many pixels, with the endoscope's pedal pressed.
+  /// The pointer moved by these pixels, with the endoscope's pedal pressed.
   void move(double right, double down);
-  /// The wheel rotated by so many notches; positive: nearer.
+  /// The wheel rotated by `notches`; positive: nearer.
   void turnWheel(double notches);
   /// The pedal passes the mouse to the endoscope while it is pressed.
   void pressPedal(bool pressed) { pedal_ = pressed; }

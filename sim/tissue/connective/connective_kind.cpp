@@ -7,9 +7,38 @@
 #include "sim/scene/model.h"
 #include "sim/scene/scene_view.h"
 #include "sim/scene/state.h"
+#include "sim/tissue/description_fields.h"
 #include "sim/tissue/structure.h"
 
 namespace calot {
+
+std::vector<Field> ConnectiveDescription::fields() {
+  using S = ConnectiveDescription;
+  return {
+      object("connective",
+             "Fibrous strands over the bed of the first organ on the second: they pull, tear, and burn under the "
+             "energised hook"),
+      {"name", at<S, &S::name>, sceneName, "Name in tables and events"},
+      roleField(at<S, &S::role>, {StructureRole::cysticPlate}),
+      {"first", at<S, &S::first>, sceneName, "Organ whose surface the bed is part of"},
+      {"second", at<S, &S::second>, sceneName, "Organ that it lies on"},
+      {"reach", at<S, &S::reach>, "m", above(0, 0.05),
+       "Triangles of the first organ no farther from the second are the bed"},
+      {"strands", at<S, &S::strands>, "", within(1, 20000), "Least number of strands"},
+      optional("stiffness", at<S, &S::stiffness>, "N/m^3", above(0, 1e10), "Stiffness of a unit area of bed"),
+      optional("damping", at<S, &S::damping>, "N s/m^3", within(0, 1e8), "Damping of a unit area of bed"),
+      optional("strength", at<S, &S::strength>, "Pa", above(0, 1e9), "Largest traction, beyond which it softens"),
+      optional("fractureEnergy", at<S, &S::fractureEnergy>, "J/m^2", above(0, 1e9),
+               "Energy that tearing a unit area of bed takes, at least strength^2 / (2 stiffness)"),
+      optional("fadeTime", at<S, &S::fadeTime>, "s", above(0, 100),
+               "Time in which the energised hook burns a strand through"),
+  };
+}
+
+Field ConnectiveKind::sceneKey() {
+  return optional("connective", at<SceneDescription, &SceneDescription::connective>, "Connective tissue between organs")
+      .items(0, 16);
+}
 
 namespace {
 

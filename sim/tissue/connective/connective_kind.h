@@ -29,20 +29,7 @@ struct ConnectiveDescription {
   double fractureEnergy = 60.0;  ///< that tearing a unit area of bed takes (J/m^2), at least strength^2 / (2 stiffness)
   double fadeTime = 0.4;         ///< in which the energised hook burns a strand through (s)
 
-  template <class Self, class Visitor>
-  static void fields(Self& self, Visitor& visit) {
-    visit("name", self.name);
-    visit("role", self.role);
-    visit("first", self.first);
-    visit("second", self.second);
-    visit("reach", self.reach);
-    visit("strands", self.strands);
-    visit("stiffness", self.stiffness);
-    visit("damping", self.damping);
-    visit("strength", self.strength);
-    visit("fractureEnergy", self.fractureEnergy);
-    visit("fadeTime", self.fadeTime);
-  }
+  static std::vector<Field> fields();
 };
 
 /// Checks the cohesive law: the fracture energy must cover the energy stored at the strength. @return one clause, or
@@ -117,12 +104,8 @@ struct ConnectiveKind {
 
   struct Descriptions {
     std::vector<ConnectiveDescription> connective;
-
-    template <class Self, class Visitor>
-    static void fields(Self& self, Visitor& visit) {
-      visit("connective", self.connective);
-    }
   };
+  static Field sceneKey();
   struct Models {
     std::vector<ConnectiveModel> connectiveModel;
 

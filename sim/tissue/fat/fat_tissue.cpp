@@ -13,9 +13,60 @@
 #include "sim/scene/model.h"
 #include "sim/scene/scene_view.h"
 #include "sim/scene/state.h"
+#include "sim/tissue/description_fields.h"
 #include "sim/tissue/structure.h"
 
 namespace calot {
+
+std::vector<Field> FatAttachmentDescription::fields() {
+  using S = FatAttachmentDescription;
+  return {
+      object("fatAttachment", "Springs between fat and a near organ or vessel"),
+      {"to", at<S, &S::to>, sceneName, "Name of that organ or vessel"},
+      {"distance", at<S, &S::distance>, "m", above(0, 0.05),
+       "Fat no farther from its surface, in the reference configuration, is tied to it"},
+      {"stiffness", at<S, &S::stiffness>, "N/m^4", above(0, 1e12), "Stiffness of a unit volume of that fat"},
+      {"damping", at<S, &S::damping>, "N s/m^4", within(0, 1e10), "Damping of a unit volume of that fat"},
+  };
+}
+
+namespace {
+
+std::vector<Field> triangleFields() {
+  using S = FatDescription;
+  return {
+      object("fatTriangle", "Fat to be cleared, in the reference configuration: that over or under a triangle"),
+      Field("corners", at<S, &S::triangle>, "m", sceneCoordinate, "Its corners, not on one line").items(3, 3),
+      {"depth", at<S, &S::triangleDepth>, "m", above(0, 0.1), "Largest distance from its plane"},
+  };
+}
+
+}  // namespace
+
+std::vector<Field> FatDescription::fields() {
+  using S = FatDescription;
+  return {
+      object("fat", "Fat: a potential field over coarse cubes (docs/explanation/carving.md)"),
+      {"name", at<S, &S::name>, sceneName, "Name, unique among organs, vessels and fat"},
+      {"appearance", at<S, &S::appearance>, sceneName, "Look that a renderer gives it"},
+      roleField(at<S, &S::role>, {StructureRole::triangleFat}),
+      {"mesh", at<S, &S::surface>, "Closed surface in W, in the reference configuration"},
+      {"cellSize", at<S, &S::cellSize>, "m", within(0.0001, 0.01),
+       "Cell of the potential field; from 4 to 496 along each side of the surface's box, at most 16 "
+       "million in it"},
+      optional("cellsPerCube", at<S, &S::cellsPerCube>, "", within(1, 8), "Cells along the edge of a mechanical cube"),
+      {"material", at<S, &S::material>, "Material"},
+      optional("friction", at<S, &S::friction>, "", within(0, 2), "Coulomb coefficient of an instrument on it"),
+      Field("attachments", at<S, &S::attachments>, "Organs and vessels that it is tied to, each once")
+          .items(0, maxStructures),
+      optional("triangle", keyGroup<S, triangleFields>, "Part of it that is to be cleared"),
+  };
+}
+
+Field FatTissue::sceneKey() {
+  return optional("fat", at<SceneDescription, &SceneDescription::fat>, "Fat that the energised hook carves")
+      .items(0, 4);
+}
 
 namespace {
 
@@ -77,7 +128,7 @@ std::string addFat(const SceneDescription& scene, const FatDescription& descript
         found = true;
       }
     }
-    if (!found) return what + "hangs on '" + attachment.to + "', which is no organ and no vessel of the scene";
+    if (!found) return what + "hangs on '" + attachment.to + "', which is neither an organ nor a vessel of the scene";
     partners.push_back(std::move(partner));
   }
   std::vector<FatRegion> regions;
@@ -86,7 +137,7 @@ std::string addFat(const SceneDescription& scene, const FatDescription& descript
                          return isOverTriangle(description.triangle, description.triangleDepth, p);
                        }});
   }
-  // What hides a vessel that is to be divided.
+  // Tissue that hides a vessel that is to be divided.
   constexpr double coverDepth = 0.0015;  // m
   for (const DivideDescription& divide : scene.procedure.divide) {
     if (scene.procedure.fat != description.name) break;
@@ -186,7 +237,7 @@ void FatTissue::resize(const Model& model, Results& results) { results.fat.resiz
 
 namespace {
 
-/// What lies this far below the uncarved surface was laid bare by the hook, in cells: from, fully.
+/// Depth below the uncarved surface at which the hook laid tissue bare, in cells: from, fully.
 constexpr double bareFrom = 0.4;
 constexpr double bareFully = 1.6;
 /// Such tissue is seared, not charred through.

@@ -21,13 +21,7 @@ struct FatAttachmentDescription {
   double stiffness = 2e6;   ///< of a unit volume of fat that hangs on it (N/m^4)
   double damping = 2e4;     ///< (N s/m^4)
 
-  template <class Self, class Visitor>
-  static void fields(Self& self, Visitor& visit) {
-    visit("to", self.to);
-    visit("distance", self.distance);
-    visit("stiffness", self.stiffness);
-    visit("damping", self.damping);
-  }
+  static std::vector<Field> fields();
 };
 
 /// Fat that the energised hook carves: a potential field over coarse cubes (sim/carving, sim/solid).
@@ -45,20 +39,7 @@ struct FatDescription {
   std::array<Vec3, 3> triangle{Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
   double triangleDepth = 0.0;  ///< m; 0: nothing
 
-  template <class Self, class Visitor>
-  static void fields(Self& self, Visitor& visit) {
-    visit("name", self.name);
-    visit("appearance", self.appearance);
-    visit("role", self.role);
-    visit("surface", self.surface);
-    visit("cellSize", self.cellSize);
-    visit("cellsPerCube", self.cellsPerCube);
-    visit("material", self.material);
-    visit("friction", self.friction);
-    visit("attachments", self.attachments);
-    visit("triangle", self.triangle);
-    visit("triangleDepth", self.triangleDepth);
-  }
+  static std::vector<Field> fields();
 };
 
 /// One body of fat at the end of a step.
@@ -111,12 +92,8 @@ struct FatTissue {
 
   struct Descriptions {
     std::vector<FatDescription> fat;
-
-    template <class Self, class Visitor>
-    static void fields(Self& self, Visitor& visit) {
-      visit("fat", self.fat);
-    }
   };
+  static Field sceneKey();
   struct Models {
     std::vector<std::unique_ptr<FatModel>> fatModel;
 

@@ -12,9 +12,64 @@
 #include "sim/scene/model.h"
 #include "sim/scene/scene_view.h"
 #include "sim/scene/state.h"
+#include "sim/tissue/description_fields.h"
 #include "sim/tissue/structure.h"
 
 namespace calot {
+
+namespace {
+
+std::vector<Field> sphereFields() {
+  using S = AnchorDescription;
+  return {
+      object("sphere", "Sphere in W"),
+      {"centre", at<S, &S::centre>, "m", sceneCoordinate, "Centre"},
+      {"radius", at<S, &S::radius>, "m", above(0, 1), "Radius"},
+  };
+}
+
+std::vector<Field> nearOrganFields() {
+  using S = AnchorDescription;
+  return {
+      object("nearOrgan", "Nearness to another organ"),
+      {"organ", at<S, &S::nearOrgan>, sceneName, "Name of that organ"},
+      {"distance", at<S, &S::distance>, "m", above(0, 0.1), "Largest distance of a node"},
+  };
+}
+
+}  // namespace
+
+std::vector<Field> AnchorDescription::fields() {
+  return {
+      object("anchor", "Either a sphere or nearness to another organ"),
+      optional("sphere", keyGroup<AnchorDescription, sphereFields>, "All nodes inside"),
+      optional("nearOrgan", keyGroup<AnchorDescription, nearOrganFields>,
+               "All nodes near another organ's surface, in the reference configuration"),
+  };
+}
+
+std::vector<Field> OrganDescription::fields() {
+  using S = OrganDescription;
+  return {
+      object("organ", "Deformable organ"),
+      {"name", at<S, &S::name>, sceneName, "Name, unique among organs, vessels and fat"},
+      {"appearance", at<S, &S::appearance>, sceneName, "Look that a renderer gives it"},
+      roleField(at<S, &S::role>, {StructureRole::liver, StructureRole::gallbladder}),
+      {"mesh", at<S, &S::surface>, "Closed surface in W, in the reference configuration"},
+      {"tetrahedra", at<S, &S::tetrahedra>, "", within(10, 1e6), "Requested number of tetrahedra"},
+      {"material", at<S, &S::material>, "Material"},
+      optional("friction", at<S, &S::friction>, "", within(0, 2), "Coulomb coefficient of an instrument on this organ"),
+      optional("burnThrough", at<S, &S::burnThrough>, "s", within(0, 1000),
+               "Cautery at one spot that perforates its wall; 0: it has no wall"),
+      Field("anchors", at<S, &S::anchors>, "Regions whose nodes are held in the reference configuration").items(0, 64),
+  };
+}
+
+Field OrganTissue::sceneKey() {
+  return Field("organs", at<SceneDescription, &SceneDescription::organs>,
+               "Organs, in the order of every table of organs")
+      .items(1, maxStructures);
+}
 
 namespace {
 

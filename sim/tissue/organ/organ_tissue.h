@@ -26,13 +26,7 @@ struct AnchorDescription {
   std::string nearOrgan;
   double distance = 0.0;  ///< m
 
-  template <class Self, class Visitor>
-  static void fields(Self& self, Visitor& visit) {
-    visit("centre", self.centre);
-    visit("radius", self.radius);
-    visit("nearOrgan", self.nearOrgan);
-    visit("distance", self.distance);
-  }
+  static std::vector<Field> fields();
 };
 
 struct OrganDescription {
@@ -46,18 +40,7 @@ struct OrganDescription {
   double burnThrough = 0.0;  ///< cautery at one spot that perforates its wall (s); 0: it has none
   std::vector<AnchorDescription> anchors;
 
-  template <class Self, class Visitor>
-  static void fields(Self& self, Visitor& visit) {
-    visit("name", self.name);
-    visit("appearance", self.appearance);
-    visit("role", self.role);
-    visit("surface", self.surface);
-    visit("tetrahedra", self.tetrahedra);
-    visit("material", self.material);
-    visit("friction", self.friction);
-    visit("burnThrough", self.burnThrough);
-    visit("anchors", self.anchors);
-  }
+  static std::vector<Field> fields();
 };
 
 /// One organ's fixed data.
@@ -147,12 +130,8 @@ struct OrganTissue {
 
   struct Descriptions {
     std::vector<OrganDescription> organs;
-
-    template <class Self, class Visitor>
-    static void fields(Self& self, Visitor& visit) {
-      visit("organs", self.organs);
-    }
   };
+  static Field sceneKey();
   struct Models {
     std::vector<OrganModel> organModel;
     std::vector<TissuePair> tissuePair;

@@ -5,9 +5,60 @@
 
 #include "sim/scene/model.h"
 #include "sim/scene/state.h"
+#include "sim/tissue/description_fields.h"
 #include "sim/vessel/centre_line.h"
 
 namespace calot {
+
+std::vector<Field> VesselEndDescription::fields() {
+  using S = VesselEndDescription;
+  const auto number = [](Kind kind) { return static_cast<std::uint32_t>(kind); };
+  return {
+      object("vesselEnd", "Support of an end of a vessel"),
+      {"kind", at<S, &S::kind>,
+       FieldWords{{"free", number(Kind::free)},
+                  {"fixed", number(Kind::fixed)},
+                  {"organ", number(Kind::organ)},
+                  {"vessel", number(Kind::vessel)}},
+       "free: no support; fixed: held in the reference configuration; organ: grown to an organ; vessel "
+       "(starts only): grows out of an earlier vessel of the list, at its node nearest to the start"},
+      optional("to", at<S, &S::to>, sceneName,
+               "That organ or vessel, at most 0.005 m away; a free or a fixed end has no such key"),
+      Field(at<S, &S::stiffness>),
+      Field(at<S, &S::damping>),
+  };
+}
+
+std::vector<Field> VesselDescription::fields() {
+  using S = VesselDescription;
+  return {
+      object("vessel", "Duct or artery: a tube along a curve (docs/explanation/vessels.md)"),
+      {"name", at<S, &S::name>, sceneName, "Name, unique among organs, vessels and fat"},
+      {"appearance", at<S, &S::appearance>, sceneName, "Look that a renderer gives it"},
+      roleField(at<S, &S::role>, {StructureRole::cysticDuct, StructureRole::cysticArtery, StructureRole::bileDuct,
+                                  StructureRole::artery}),
+      Field("path", at<S, &S::path>, "m", sceneCoordinate,
+            "Points of the centre line in the reference configuration, from start to end, joined by a smooth "
+            "curve; neighbours at least 0.0001 m apart, no bend of 90 degrees or more")
+          .items(2, 1000),
+      optional("elements", at<S, &S::elements>, "", within(2, 400), "Beam elements of equal length"),
+      {"radius", at<S, &S::radius>, "m", within(0.0002, 0.02), "Outer radius"},
+      {"wall", at<S, &S::wall>, "m", within(0.00005, 0.02), "Thickness of the wall, below the radius"},
+      {"material", at<S, &S::material>, "Material of the wall"},
+      optional("ultimateStrain", at<S, &S::ultimateStrain>, "", above(0, 10),
+               "Stretch (length over length in the reference configuration, less 1) at which it tears"),
+      optional("burnThrough", at<S, &S::burnThrough>, "s", above(0, 1000), "Cautery at one spot that parts it"),
+      optional("friction", at<S, &S::friction>, "", within(0, 2), "Coulomb coefficient of an instrument on it"),
+      {"start", at<S, &S::start>, "Support of the first end"},
+      {"end", at<S, &S::end>, "Support of the last end"},
+  };
+}
+
+Field VesselTissue::sceneKey() {
+  return optional("vessels", at<SceneDescription, &SceneDescription::vessels>,
+                  "Ducts and arteries; organs, vessels and fat together are at most 16")
+      .items(0, maxStructures);
+}
 
 namespace {
 
@@ -57,7 +108,7 @@ std::string VesselTissue::build(const SceneDescription& scene, Model& model) {
     if (d.start.kind == VesselEndDescription::Kind::vessel) {
       std::size_t parent = 0;
       while (parent < v && scene.vessels[parent].name != d.start.to) ++parent;
-      if (parent == v) return what + "grows out of '" + d.start.to + "', which is no vessel before it";
+      if (parent == v) return what + "grows out of '" + d.start.to + "', which is not a vessel before it";
       home.push_back({home[parent].tree, branches[home[parent].tree].size()});
       branch.join = nearestNode(BeamModel(branches[home[parent].tree]), home[parent].branch, d.path.front());
     } else {
@@ -82,7 +133,8 @@ std::string VesselTissue::build(const SceneDescription& scene, Model& model) {
       std::size_t organ = 0;
       while (organ < organs.size() && organs[organ].name != end.to) ++organ;
       if (organ == organs.size()) {
-        return "vessel '" + scene.vessels[v].name + "': is grown to '" + end.to + "', which is no organ of the scene";
+        return "vessel '" + scene.vessels[v].name + "': is grown to '" + end.to +
+               "', which is not an organ of the scene";
       }
       std::vector<int> grown;
       for (std::size_t i = 0; i < branch.node.size(); ++i) {

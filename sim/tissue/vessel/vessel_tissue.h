@@ -28,13 +28,7 @@ struct VesselEndDescription {
   double stiffness = 200.0;  ///< of all springs of an end that is grown to an organ together (N/m); not in scene files
   double damping = 0.0;      ///< the same (N s/m)
 
-  template <class Self, class Visitor>
-  static void fields(Self& self, Visitor& visit) {
-    visit("kind", self.kind);
-    visit("to", self.to);
-    visit("stiffness", self.stiffness);
-    visit("damping", self.damping);
-  }
+  static std::vector<Field> fields();
 };
 
 /// A duct or an artery: a tube along a curve (sim/vessel/beam_model.h).
@@ -52,22 +46,7 @@ struct VesselDescription {
   double friction = 0.1;         ///< Coulomb coefficient of an instrument on it
   VesselEndDescription start, end;
 
-  template <class Self, class Visitor>
-  static void fields(Self& self, Visitor& visit) {
-    visit("name", self.name);
-    visit("appearance", self.appearance);
-    visit("role", self.role);
-    visit("path", self.path);
-    visit("elements", self.elements);
-    visit("radius", self.radius);
-    visit("wall", self.wall);
-    visit("material", self.material);
-    visit("ultimateStrain", self.ultimateStrain);
-    visit("burnThrough", self.burnThrough);
-    visit("friction", self.friction);
-    visit("start", self.start);
-    visit("end", self.end);
-  }
+  static std::vector<Field> fields();
 };
 
 /// Vessels that grow out of one another, solved together: branch b is the scene's vessel vessel[b].
@@ -144,12 +123,8 @@ struct VesselTissue {
 
   struct Descriptions {
     std::vector<VesselDescription> vessels;
-
-    template <class Self, class Visitor>
-    static void fields(Self& self, Visitor& visit) {
-      visit("vessels", self.vessels);
-    }
   };
+  static Field sceneKey();
   struct Models {
     std::vector<VesselTree> vesselTree;
 

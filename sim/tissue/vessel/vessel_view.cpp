@@ -138,7 +138,7 @@ bool crotchAhead(const Model& model, const Pose& rest, double roll) {
   return (ports - rest.position).dot(rest.orientation * aboutZ(roll) * Vec3::UnitY()) > 0.0;
 }
 
-/// Of each parting of a branch the face before and the face after it: open, judged as when it was parted, with the
+/// For each parting of a branch, the face before and the face after it: open, judged as when it was parted, with the
 /// clips that are there now?
 std::vector<bool> openFaces(const BeamModel& beams, const BeamState& vessels, std::size_t which) {
   std::vector<bool> open;

@@ -13,7 +13,6 @@
 #include <utility>
 #include <vector>
 
-#include "analytics/uncertainty/scene_variants.h"
 #include "analytics/uncertainty/uncertainty.h"
 #include "recorder/attempt.h"
 #include "tests/accuracy/convergence/support/graded.h"

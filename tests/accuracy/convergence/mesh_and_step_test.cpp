@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "analytics/uncertainty/scene_variants.h"
+#include "analytics/uncertainty/uncertainty.h"
 #include "tests/accuracy/convergence/support/graded.h"
 
 namespace calot::analytics {

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "analytics/uncertainty/scene_variants.h"
+#include "analytics/uncertainty/uncertainty.h"
 #include "recorder/live/worker_pool.h"
 #include "tests/accuracy/convergence/support/graded.h"
 

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "analytics/assessment/norm_rule.h"
-#include "analytics/checkpoints/registry.h"
+#include "analytics/checkpoints/checkpoint.h"
 
 namespace calot::analytics {
 namespace {

@@ -11,7 +11,7 @@
 #include <sstream>
 
 #include "analytics/report/grade_sheet.h"
-#include "analytics/report/page_html.h"
+#include "analytics/report/report_document.h"
 #include "tests/analytics/cohort/support/cohort_support.h"
 #include "tests/analytics/support/refusal.h"
 
@@ -117,7 +117,7 @@ TEST_F(Grades, theRuleIsDeclaredAndRefusedWhereItCannotBe) {
   expectRefusal(ErrorKind::invalid, "norm: a name", [&] { made(); });
   request_.name = "x";
   request_.who.attemptRule = AttemptRule::mean;
-  expectRefusal(ErrorKind::invalid, "a mean of attempts is no attempt", [&] { made(); });
+  expectRefusal(ErrorKind::invalid, "a mean of attempts is not an attempt", [&] { made(); });
 }
 
 TEST_F(Grades, figuresOfPhasesCountWhereTheyAreAskedFor) {
@@ -224,7 +224,7 @@ TEST_F(Grades, aMarkInsideTheIntervalIsNotDecided) {
   std::ostringstream sheet;
   printGrade(undecided, sheet);
   EXPECT_NE(sheet.str().find("no, undecided"), std::string::npos) << sheet.str();
-  EXPECT_TRUE(nlohmann::json::parse(gradeJson(undecided))["figures"][0]["undecided"].get<bool>());
+  EXPECT_TRUE(gradeTree(undecided)["figures"][0]["undecided"].get<bool>());
 }
 
 TEST_F(Grades, aCriticalErrorThatOnlySomeSimulationsSeeIsNotDecided) {
@@ -361,7 +361,7 @@ TEST_F(Grades, aSheetIsFormativeUntilThereIsEvidence) {
   EXPECT_NE(html.find("T&lt;1&gt;"), std::string::npos) << "every text is escaped";
   EXPECT_NE(html.find("the recording and the seconds. A &amp; B draws it."), std::string::npos);
   EXPECT_EQ(html.find("<script"), std::string::npos);
-  const auto json = nlohmann::json::parse(gradeJson(grade));
+  const auto json = gradeTree(grade);
   EXPECT_EQ(json["use"], "evidence attached");
   EXPECT_EQ(json["passed"], false);
   EXPECT_EQ(json["figures"][0]["moments"][0]["begin"], 12.0);

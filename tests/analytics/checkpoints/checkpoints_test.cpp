@@ -12,9 +12,8 @@
 #include <set>
 #include <sstream>
 
+#include "analytics/checkpoints/checkpoint.h"
 #include "analytics/checkpoints/collector.h"
-#include "analytics/checkpoints/motion_track.h"
-#include "analytics/checkpoints/registry.h"
 #include "tests/analytics/checkpoints/support/steps.h"
 
 namespace calot::analytics {

@@ -7,10 +7,9 @@
 #include <functional>
 #include <random>
 
+#include "analytics/checkpoints/checkpoint.h"
 #include "analytics/checkpoints/collector.h"
 #include "analytics/checkpoints/motion.h"
-#include "analytics/checkpoints/motion_track.h"
-#include "analytics/checkpoints/registry.h"
 #include "analytics/statistics/descriptive.h"
 
 namespace calot::analytics {
@@ -147,7 +146,7 @@ TEST(SampleRate, isThatOfTheClockForEvenUnevenAndBurstingStreams) {
   const auto measured = [](const std::vector<double>& times) {
     SampleRate rate;
     for (std::size_t i = 1; i < times.size(); ++i) rate.add(times[i] - times[i - 1]);
-    return std::pair(rate.interval(), rate.hertz(GapRule(rate.interval()).longestEven()));
+    return std::pair(rate.interval(), rate.hertz(GapRule{rate.interval()}.longestEven()));
   };
   for (const double rate : {1.0, 5.0, 9.9, 10.1, 30.0, 120.0, 1000.0}) {
     const auto [interval, hertz] = measured(clock(rate, 60.0));

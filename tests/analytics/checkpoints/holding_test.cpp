@@ -54,7 +54,7 @@ TEST(Holding, IsContactInEarlierRecordings) {
   o.end();
   EXPECT_NEAR(*o.value("contact-time-union", "v2").value, 0.3, 1e-12);
   EXPECT_NEAR(*o.value("time-held", "v2").value, 0.3, 1e-12);
-  expectNotApplicable(o.value("crush-dose", "v2"), "results of version 4 do not tell of it");
+  expectNotApplicable(o.value("crush-dose", "v2"), "not recorded in results of version 4");
   expectNotApplicable(o.value("thermal-injury"), "the scene's procedure names no vessel to be spared");
 }
 

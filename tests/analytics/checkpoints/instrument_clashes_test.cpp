@@ -33,7 +33,7 @@ TEST(InstrumentClashes, AreNotKnownOfResultsThatDoNotTellOfThem) {
   o.step();
   o.end();
   for (const char* name : {"instrument-clashes", "instrument-clash-time"})
-    EXPECT_EQ(o.value(name).reason, "results of version 5 do not tell of it");
+    EXPECT_EQ(o.value(name).reason, "not recorded in results of version 5");
 }
 
 TEST(InstrumentClashes, NeedTwoInstruments) {

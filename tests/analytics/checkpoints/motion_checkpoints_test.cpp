@@ -8,9 +8,9 @@
 #include <functional>
 #include <random>
 
+#include "analytics/checkpoints/checkpoint.h"
 #include "analytics/checkpoints/collector.h"
 #include "analytics/checkpoints/motion.h"
-#include "analytics/checkpoints/registry.h"
 #include "tests/analytics/checkpoints/support/steps.h"
 
 namespace calot::analytics {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Which ticks of a recording are samples of the tracker, and what is made of them.
-#include "analytics/checkpoints/motion_track.h"
+#include "analytics/checkpoints/collector.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,6 @@
 #include <numeric>
 #include <random>
 
-#include "analytics/checkpoints/collector.h"
 #include "tests/analytics/checkpoints/support/steps.h"
 
 namespace calot::analytics {

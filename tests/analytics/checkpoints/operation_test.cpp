@@ -262,7 +262,7 @@ TEST(Results, ofOlderVersionsAreNotApplicableWhereTheyAreSilent) {
     o.now.connective.resize(version == 1 ? 0 : 1);
     o.steps(3);
     o.end();
-    const std::string why = "results of version " + std::to_string(version) + " do not tell of it";
+    const std::string why = "not recorded in results of version " + std::to_string(version);
     for (const char* name : {"fat-remaining", "fat-remaining-inside", "fat-remaining-outside", "cystic-contact-time",
                              "clip-errors", "critical-view", "critical-errors"}) {
       expectNotApplicable(o.value(name), why);

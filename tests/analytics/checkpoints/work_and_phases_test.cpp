@@ -8,7 +8,7 @@
 #include <random>
 #include <string>
 
-#include "analytics/checkpoints/registry.h"
+#include "analytics/checkpoints/checkpoint.h"
 #include "tests/analytics/checkpoints/support/operation.h"
 
 namespace calot::analytics {

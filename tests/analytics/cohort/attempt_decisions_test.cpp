@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What people decide about attempts: exclusions and tags.
+// Attempts in lists: their fields, and what people decide about them (exclusions and tags).
 #include <gtest/gtest.h>
 
 #include <SQLiteCpp/SQLiteCpp.h>
 
+#include <map>
 #include <string>
 #include <vector>
 
 #include "analytics/cohort/cohort_database.h"
+#include "analytics/cohort/declared_tables.h"
 #include "recorder/base/errors.h"
 #include "tests/analytics/cohort/support/cohort_support.h"
 #include "tests/analytics/support/refusal.h"
@@ -34,7 +36,7 @@ TEST(AttemptDecisions, exclusionsAreKeptWithReasonAndAuthorAndAudited) {
   EXPECT_FALSE(database.attempt(uuidOf(1))->excluded);
   expectRefusal(ErrorKind::refused, "no attempt", [&] { database.excludeAttempts({uuidOf(9)}, "x", "y"); });
   expectRefusal(ErrorKind::refused, "not excluded", [&] { database.includeAttempts({uuidOf(1)}, "x", "y"); });
-  expectRefusal(ErrorKind::invalid, "a reason is wanted", [&] { database.excludeAttempts({uuidOf(1)}, " ", "y"); });
+  expectRefusal(ErrorKind::invalid, "a reason is expected", [&] { database.excludeAttempts({uuidOf(1)}, " ", "y"); });
   expectRefusal(ErrorKind::invalid, "name who decides", [&] { database.includeAttempts({uuidOf(1)}, "x", ""); });
   SQLite::Database raw(path, SQLite::OPEN_READWRITE);
   EXPECT_EQ(raw.execAndGet("SELECT count(*) FROM audit WHERE action LIKE 'attempt-%'").getInt(), 3);
@@ -67,6 +69,31 @@ TEST(AttemptDecisions, tagsAreKeptOnceAndAudited) {
   EXPECT_EQ(database.attempt(uuidOf(1))->tags.size(), 2U) << "all or none";
   SQLite::Database raw(path, SQLite::OPEN_READWRITE);
   EXPECT_EQ(raw.execAndGet("SELECT count(*) FROM audit WHERE action IN ('attempt-tag', 'attempt-untag')").getInt(), 6);
+}
+
+/// A list needs no line for a new column: it has every declared one that a struct holds, words instead of numbers.
+TEST(AttemptFields, areTheDeclaredColumns) {
+  const Folder folder;
+  CohortDatabase database(folder.file("c.db"), Access::create);
+  database.storeAttempt(attemptOf(1, "skilled"), valuesOf(1.0, 2.0));
+  std::map<std::string, FieldValue> fields;
+  for (const auto& [name, value] : fieldsOf(database.listAttempts().front()))
+    EXPECT_TRUE(fields.emplace(name, value).second) << name;
+  const std::vector<const DeclaredTable*> tables{&attemptTable(), &recordingTable(), &verificationTable()};
+  for (const DeclaredTable* table : tables) {
+    for (const DeclaredColumn& column : table->columns) {
+      if (column.member.value != nullptr) {
+        EXPECT_TRUE(fields.contains(*column.listed != '\0' ? column.listed : column.name)) << column.name;
+      }
+    }
+  }
+  EXPECT_EQ(fields.at("attempt"), FieldValue(uuidOf(1)));
+  EXPECT_EQ(fields.at("operator"), FieldValue("performer"));
+  EXPECT_EQ(fields.at("outcome"), FieldValue("completed"));
+  EXPECT_EQ(fields.at("verdict"), FieldValue("verified"));
+  EXPECT_EQ(fields.at("synthetic"), FieldValue(true));
+  EXPECT_EQ(fields.at("seed"), FieldValue(std::uint64_t{18446744073709551614ULL}));
+  EXPECT_EQ(fields.at("seconds"), FieldValue(10.01));
 }
 
 }  // namespace

@@ -145,7 +145,7 @@ TEST(Withdrawal, reachesTablesThatItDoesNotKnow) {
   EXPECT_EQ(raw.execAndGet("SELECT count(*) FROM later_item").getInt(), 1);
   EXPECT_EQ(raw.execAndGet("SELECT count(*) FROM loose").getInt(), 1);
   // A free text of somebody else's row is not ours to delete, but it is found.
-  EXPECT_EQ(placesNaming(path, {"Gone-1"}), std::vector<std::string>{"later.words"});
+  EXPECT_EQ(placesLeft(path, {}, {"Gone-1"}), std::vector<std::string>{"later.words"});
   EXPECT_EQ(bytesOf(path).find(uuidOf(1)), std::string::npos);
   EXPECT_TRUE(wasWithdrawn(path, uuidOf(1)));
   CohortDatabase database(path, Access::write);

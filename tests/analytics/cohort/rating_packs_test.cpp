@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Packs for raters: what is drawn, and what is stored.
-#include "analytics/cohort/rating_packs.h"
+#include "analytics/cohort/blinding.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "analytics/cohort/analysis_locks.h"
 #include "recorder/base/errors.h"
 #include "tests/analytics/cohort/support/cohort_support.h"
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "analytics/report/page_html.h"
+#include "analytics/report/report_document.h"
 #include "tests/analytics/design/support/asked.h"
 #include "tests/analytics/support/refusal.h"
 

@@ -10,7 +10,6 @@
 #include <iterator>
 
 #include "analytics/external/metric_input.h"
-#include "analytics/external/npy_column.h"
 #include "tests/analytics/cohort/support/cohort_support.h"
 
 namespace calot::analytics {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The codebook against what it explains: the registry, the database's schema, the files that are written.
-#include "analytics/interchange/codebook.h"
+#include "analytics/interchange/cohort_tables.h"
 
 #include <gtest/gtest.h>
 #include <SQLiteCpp/SQLiteCpp.h>
@@ -12,9 +12,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "analytics/cohort/any_table.h"
 #include "analytics/cohort/declared_tables.h"
-#include "analytics/interchange/cohort_tables.h"
+#include "analytics/cohort/tables.h"
 #include "recorder/base/csv.h"
 #include "tests/analytics/cohort/support/cohort_support.h"
 #include "tests/analytics/support/refusal.h"

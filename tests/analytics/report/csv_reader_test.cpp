@@ -43,7 +43,7 @@ TEST(CsvTable, namesWhereItIsWrong) {
   expectRefusal(damaged, "a,b\n1\n", "line 2: 1 cells, the header has 2");
   expectRefusal(damaged, "a,b\n1,\"2\n", "line 2: a quote is opened and never closed");
   expectRefusal(damaged, "a,b\n\"1\"x,2\n", "line 2: column 1: text behind a closing quote");
-  expectRefusal(damaged, std::string("a,b\n1,\0\n", 8), "is no table of text");
+  expectRefusal(damaged, std::string("a,b\n1,\0\n", 8), "is not a table of text");
   expectRefusal(invalid, "b,c\n1,2\n", "line 1: there is no column \"a\" (there are: b, c)");
   expectRefusal(invalid, "a,a\n1,2\n", "line 1: two columns are called \"a\"");
 }

@@ -8,9 +8,8 @@
 #include <regex>
 #include <sstream>
 
-#include "analytics/report/page_html.h"
 #include "analytics/report/plots.h"
-#include "analytics/report/report_text.h"
+#include "analytics/report/report_document.h"
 
 namespace calot::analytics {
 namespace {
@@ -140,7 +139,7 @@ TEST(Page, showsEveryPartEscaped) {
   document.add("a & b");
   document.addList({"<i>"});
   document.parts.emplace_back(Paragraph{{"see ", {}}, {"there", "x\"y.h5#t=1,2"}});
-  document.parts.emplace_back(ReportTable{"T", {{"n", TextTable::Align::right}}, {{"<1>"}}});
+  document.parts.emplace_back(ReportTable{"T", {{"n", Align::right}}, {{"<1>"}}});
   const std::string page = pageHtml(document);
   EXPECT_NE(page.find("<h1>a &lt;title&gt;</h1>"), std::string::npos);
   EXPECT_NE(page.find("<p>a &amp; b</p>"), std::string::npos);
@@ -172,10 +171,9 @@ TEST(BoxPlot, ticksAreRoundAndWithin) {
 }
 
 TEST(TextTable, isCutWhereItMustFit) {
-  TextTable table(
-      {{"name", TextTable::Align::left}, {"other", TextTable::Align::left}, {"v", TextTable::Align::right}});
-  table.add({"a-very-long-name-of-something-\u00e9\u00e9\u00e9\u00e9\u00e9\u00e9", "short", "1.5"});
-  table.add({"b", "a text that is longer than ten", "20"});
+  ReportTable table = tableOf("", {"=name", "=other", "v"});
+  table.rows.push_back({"a-very-long-name-of-something-\u00e9\u00e9\u00e9\u00e9\u00e9\u00e9", "short", "1.5"});
+  table.rows.push_back({"b", "a text that is longer than ten", "20"});
   std::ostringstream wide, narrow;
   table.print(wide);
   table.print(narrow, 40);
@@ -190,10 +188,10 @@ TEST(TextTable, isCutWhereItMustFit) {
 }
 
 TEST(TextTable, goesOnInTheNextLineBeforeItCuts) {
-  TextTable table({{"name", TextTable::Align::left}, {"v", TextTable::Align::right}});
-  table.add({"movement-straightness left", "1"});
-  table.add({"movement-straightness right", "2"});
-  table.add({"  of an-unbroken-word-of-many-letters", "3"});
+  ReportTable table = tableOf("", {"=name", "v"});
+  table.rows.push_back({"movement-straightness left", "1"});
+  table.rows.push_back({"movement-straightness right", "2"});
+  table.rows.push_back({"  of an-unbroken-word-of-many-letters", "3"});
   std::ostringstream out;
   table.print(out, 24);
   EXPECT_EQ(out.str(),
@@ -205,9 +203,9 @@ TEST(TextTable, goesOnInTheNextLineBeforeItCuts) {
             "  right\n"
             "  of                   3\n"
             "  an-unbroken-word...\n");
-  TextTable pairs({{"name", TextTable::Align::left}, {"v", TextTable::Align::right}});
-  pairs.add({"movement-straightness left", "1"});
-  pairs.add({"", "2"});
+  ReportTable pairs = tableOf("", {"=name", "v"});
+  pairs.rows.push_back({"movement-straightness left", "1"});
+  pairs.rows.push_back({"", "2"});
   std::ostringstream below;
   pairs.print(below, 24);
   EXPECT_EQ(below.str(),
@@ -216,9 +214,8 @@ TEST(TextTable, goesOnInTheNextLineBeforeItCuts) {
             "movement-straightness  1\n"
             "  left                 2\n")
       << "in the next row's empty cell";
-  TextTable figures(
-      {{"name", TextTable::Align::left}, {"origin", TextTable::Align::left}, {"", TextTable::Align::left}});
-  figures.add({"fat-remaining-inside", "samples", "gallbladder that was not freed"});
+  ReportTable figures = tableOf("", {"=name", "=origin", "="});
+  figures.rows.push_back({"fat-remaining-inside", "samples", "gallbladder that was not freed"});
   std::ostringstream whole;
   figures.print(whole, 48);
   EXPECT_EQ(whole.str(),
@@ -227,9 +224,9 @@ TEST(TextTable, goesOnInTheNextLineBeforeItCuts) {
             "fat-remaining-inside  samples  gallbladder that\n"
             "                                 was not freed\n")
       << "a remark is broken before a name is cut";
-  TextTable reasons({{"name", TextTable::Align::left}, {"reason", TextTable::Align::left}});
-  reasons.add({"first", "some long text"});
-  reasons.add({"second", ""});
+  ReportTable reasons = tableOf("", {"=name", "=reason"});
+  reasons.rows.push_back({"first", "some long text"});
+  reasons.rows.push_back({"second", ""});
   std::ostringstream own;
   reasons.print(own, 18);
   EXPECT_EQ(own.str(),

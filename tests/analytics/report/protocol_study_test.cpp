@@ -7,9 +7,8 @@
 #include <sstream>
 
 #include "analytics/report/study_output.h"
-#include "analytics/report/study_tables.h"
 #include "recorder/base/file_bytes.h"
-#include "tests/analytics/assessment/support/schema_agreement.h"
+#include "tests/analytics/assessment/support/texts.h"
 #include "tests/analytics/cohort/support/cohort_support.h"
 #include "tests/analytics/support/refusal.h"
 
@@ -175,7 +174,7 @@ TEST_F(ProtocolStudy, holmIsOverThePrimaryHypothesesAlone) {
   EXPECT_FALSE(other.holm);
   EXPECT_NEAR(*other.benjaminiHochberg, p, 1e-15) << "alone in its family";
   EXPECT_FALSE(other.supported) << "nothing was expected";
-  const json said = json::parse(studyJson(s));
+  const json said = json(studyTree(s));
   EXPECT_EQ(said["rows"][0]["role"], "primary");
   EXPECT_EQ(said["protocol"]["sha256"], protocolOf(document()).sha256);
   bool absent = false;

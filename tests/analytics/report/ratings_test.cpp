@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "analytics/report/plots.h"
-#include "tests/analytics/assessment/support/schema_agreement.h"
+#include "tests/analytics/assessment/support/texts.h"
 #include "tests/analytics/cohort/support/cohort_support.h"
 #include "tests/analytics/support/refusal.h"
 
@@ -25,8 +25,6 @@ RatingForm shipped(const std::string& name) {
 }
 
 StoredDocument stored(const RatingForm& form) { return {form.name, form.version, form.sha256, form.text}; }
-
-TEST(RatingForm, readerAndSchemaAgree) { support::expectAgreement(ratingFormRules(), "schemas/form.schema.json"); }
 
 TEST(RatingForm, theQuestionnaireIsThePapersTable) {
   const RatingForm form = shipped("questionnaire-2014");
@@ -65,7 +63,7 @@ TEST(RatingForm, everyFaultHasItsPlace) {
     f["sections"][0]["items"][0]["anchors"] = {"bad", "good"};
   });
   fault("/scale: \"least\" is not below", [](json& f) { f["scale"] = {{"least", 1}, {"most", 1}}; });
-  fault("/about: none of attempt, simulator", [](json& f) { f["about"] = "rater"; });
+  fault("/about: unknown word; known are attempt, simulator", [](json& f) { f["about"] = "rater"; });
   fault("/sections: 0 entries", [](json& f) { f["sections"] = json::array(); });
 }
 
@@ -76,9 +74,9 @@ TEST(RatingForm, answersAreCheckedAgainstTheForm) {
     expectRefusal(ErrorKind::invalid, words, [&] { (void)answersOf(form, given); });
   };
   fault("no such item; it has competent", {{"able", "1"}});
-  fault("\"2\" is no whole number from 0 to 1", {{"competent", "2"}});
-  fault("is no whole number", {{"competent", "0.5"}});
-  fault("is no whole number", {{"competent", "\n"}});
+  fault("\"2\" is not a whole number from 0 to 1", {{"competent", "2"}});
+  fault("is not a whole number", {{"competent", "0.5"}});
+  fault("is not a whole number", {{"competent", "\n"}});
   fault("answered twice", {{"competent", "1"}, {"competent", "0"}});
   fault("not answered", {});
   fault("every item was left blank", {{"competent", "-"}});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A study whose groups were not measured alike says so.
-#include "analytics/report/study_coverage.h"
+#include "analytics/report/study_rows.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,6 @@
 #include <nlohmann/json.hpp>
 
 #include "analytics/report/study_output.h"
-#include "analytics/report/study_tables.h"
 #include "tests/analytics/cohort/support/cohort_support.h"
 
 namespace calot::analytics {
@@ -69,14 +68,14 @@ TEST(StudyCoverage, warnsWhereTheGroupsDiffer) {
   EXPECT_NE(notes.find("Warning: coverage differs (left hand): a median of 93.0 % in expert, 100.0 % in novice"),
             std::string::npos)
       << notes;
-  const auto json = nlohmann::json::parse(studyJson(study));
+  const auto json = nlohmann::json(studyTree(study));
   EXPECT_TRUE(json["coverage"][0]["differs"].get<bool>());
   EXPECT_EQ(json["coverage"][0]["shares"][0].size(), 5U);
 }
 
 TEST(StudyCoverage, missingIsCountedAsWhatItIs) {
   const Study study = studyWith({0.95, 0.93, 0.97, 0.80, 0.5});
-  const auto json = nlohmann::json::parse(studyJson(study));
+  const auto json = nlohmann::json(studyTree(study));
   for (const auto& row : json["rows"]) {
     const auto& kinds = row["groups"][0]["missing_kinds"];
     if (row["subject"] == "left") {

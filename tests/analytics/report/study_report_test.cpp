@@ -7,7 +7,6 @@
 
 #include "analytics/report/study.h"
 #include "analytics/report/study_output.h"
-#include "analytics/report/study_tables.h"
 #include "tests/analytics/cohort/support/cohort_support.h"
 #include "tests/analytics/report/support/study_support.h"
 

@@ -15,10 +15,8 @@
 
 #include "analytics/cohort/embedded.h"
 #include "analytics/cohort/registers.h"
-#include "analytics/report/page_html.h"
-#include "analytics/report/report_text.h"
+#include "analytics/report/report_document.h"
 #include "analytics/report/study_output.h"
-#include "analytics/report/study_tables.h"
 #include "recorder/base/errors.h"
 #include "tests/analytics/cohort/support/cohort_support.h"
 #include "tests/analytics/report/support/study_support.h"
@@ -315,7 +313,7 @@ TEST(Study, phasesAreInWhereTheyAreAskedFor) {
   EXPECT_EQ(rowsOf(every), (std::vector<std::string>{"phase-duration", "phase-sparc", "phase-force-p99"}));
   EXPECT_FALSE(says(every));
   // From the database or from values at hand.
-  EXPECT_EQ(studyJson(makeStudy(database.listAttempts(), database.allValues(), {}, database.path())), studyJson(plain));
+  EXPECT_EQ(studyTree(makeStudy(database.listAttempts(), database.allValues(), {}, database.path())), studyTree(plain));
 }
 
 TEST(Study, takesTheParticipantsOfANamedCohortAlone) {
@@ -440,7 +438,7 @@ TEST(Study, allTiedAnswersWithAReason) {
   std::string text = textOf(study);
   std::replace(text.begin(), text.end(), '\n', ' ');
   EXPECT_TRUE(std::regex_search(text, std::regex("elapsed-time(, [a-z -]+)*: no test, all values are equal"))) << text;
-  EXPECT_TRUE(nlohmann::json::parse(studyJson(study)).at("rows").at(0).at("mann_whitney").at("value").is_null());
+  EXPECT_TRUE(nlohmann::json(studyTree(study)).at("rows").at(0).at("mann_whitney").at("value").is_null());
 }
 
 TEST(Study, jsonAndCsvHoldTheTable) {
@@ -448,7 +446,7 @@ TEST(Study, jsonAndCsvHoldTheTable) {
   CohortDatabase database(folder.file("c.db"), Access::create);
   addPerformers(database);
   const Study study = makeStudy(database, performers);
-  const auto json = nlohmann::json::parse(studyJson(study));
+  const auto json = nlohmann::json(studyTree(study));
   EXPECT_EQ(json.at("watermark"), "SYNTHETIC");
   EXPECT_EQ(json.at("rows").at(0).at("mann_whitney").at("method"), "exact");
   EXPECT_EQ(json.at("rows").at(0).at("shift_interval").at("method"), "exact");
@@ -476,7 +474,7 @@ TEST(Study, numbersDontFollowTheLocale) {
   CohortDatabase database(folder.file("c.db"), Access::create);
   addPerformers(database);
   const Study study = makeStudy(database, performers);
-  const std::string text = textOf(study), json = studyJson(study);
+  const std::string text = textOf(study), json = studyTree(study).dump();
   struct Comma : std::numpunct<char> {
     char do_decimal_point() const override { return ','; }
     char do_thousands_sep() const override { return '.'; }
@@ -484,7 +482,7 @@ TEST(Study, numbersDontFollowTheLocale) {
   };
   const std::locale before = std::locale::global(std::locale(std::locale::classic(), new Comma));
   const char* german = std::setlocale(LC_ALL, "de_DE.UTF-8");
-  const std::string textThen = textOf(makeStudy(database, performers)), jsonThen = studyJson(study);
+  const std::string textThen = textOf(makeStudy(database, performers)), jsonThen = studyTree(study).dump();
   std::setlocale(LC_ALL, "C");
   std::locale::global(before);
   EXPECT_EQ(textThen, text) << (german != nullptr ? "with de_DE" : "with a locale of commas");
@@ -564,7 +562,7 @@ TEST(Study, saysWhatTheSimulationDoesNotDecide) {
   EXPECT_DOUBLE_EQ(path.area->second, 1.0) << "11, 12, 13 against 5, 6, 7 with elements of size zero";
   EXPECT_FALSE(path.decided());
   EXPECT_NE(textOf(study).find("not decided by this simulation"), std::string::npos) << textOf(study);
-  EXPECT_NE(studyJson(study).find("\"decided\": false"), std::string::npos);
+  EXPECT_NE(studyTree(study).dump(2).find("\"decided\": false"), std::string::npos);
   const std::vector<std::string> notes = primaryNotes(study);
   const auto warned = [&](const char* figure) {
     return std::any_of(notes.begin(), notes.end(), [&](const std::string& note) {

@@ -11,10 +11,8 @@
 #include <span>
 #include <sstream>
 
-#include "analytics/report/page_html.h"
-#include "analytics/report/report_text.h"
+#include "analytics/report/report_document.h"
 #include "analytics/report/study_output.h"
-#include "analytics/report/study_tables.h"
 #include "analytics/statistics/published_coverage.h"
 #include "recorder/base/errors.h"
 #include "tests/analytics/support/refusal.h"

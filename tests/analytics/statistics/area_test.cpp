@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "analytics/statistics/effect_sizes.h"
+#include "analytics/statistics/two_groups.h"
 #include "tests/analytics/statistics/support/published_data.h"
 
 namespace calot::analytics {

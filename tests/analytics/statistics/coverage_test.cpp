@@ -18,11 +18,11 @@
 
 #include "analytics/statistics/descriptive.h"
 #include "analytics/statistics/distributions.h"
-#include "analytics/statistics/effect_sizes.h"
 #include "analytics/statistics/regression.h"
 #include "analytics/statistics/reliability.h"
 #include "analytics/statistics/resampling.h"
 #include "analytics/statistics/standard_setting.h"
+#include "analytics/statistics/two_groups.h"
 #include "tests/analytics/statistics/support/simulated_designs.h"
 
 namespace calot::analytics {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "analytics/statistics/learning_curve.h"
+#include "analytics/statistics/regression.h"
 
 #include <gtest/gtest.h>
 

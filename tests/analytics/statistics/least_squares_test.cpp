@@ -70,7 +70,7 @@ TEST(CovarianceAnalysis, anorexia) {
   const auto a =
       covarianceAnalysis({data::therapyBefore, data::therapyAfter}, {data::controlBefore, data::controlAfter});
   ASSERT_TRUE(a) << a.reason();
-  EXPECT_NEAR(a->difference, 4.244112265475052, 1e-12);
+  EXPECT_NEAR(a->estimate, 4.244112265475052, 1e-12);
   EXPECT_NEAR(a->error, 1.849093714312690, 1e-12);
   EXPECT_NEAR(a->t, 2.29523913938164, 1e-12);
   EXPECT_DOUBLE_EQ(a->df, 52.0);

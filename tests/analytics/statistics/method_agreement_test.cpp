@@ -5,8 +5,8 @@
 #include <cmath>
 #include <vector>
 
-#include "analytics/statistics/method_agreement.h"
 #include "analytics/statistics/rank_tests.h"
+#include "analytics/statistics/reliability.h"
 #include "tests/analytics/statistics/support/published_data.h"
 
 namespace calot::analytics {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "analytics/statistics/multiplicity.h"
+#include "analytics/statistics/rank_tests.h"
 
 #include <gtest/gtest.h>
 

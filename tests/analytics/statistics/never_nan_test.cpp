@@ -8,8 +8,6 @@
 #include <vector>
 
 #include "analytics/statistics/descriptive.h"
-#include "analytics/statistics/effect_sizes.h"
-#include "analytics/statistics/learning_curve.h"
 #include "analytics/statistics/mixed_models.h"
 #include "analytics/statistics/rank_tests.h"
 #include "analytics/statistics/regression.h"
@@ -92,7 +90,7 @@ class NeverNan : public testing::Test {
     if (x.size() == y.size()) {
       const BaselineGroup a{x, y}, b{y, x};
       check("covariance", covarianceAnalysis(a, b), [](const CovarianceAnalysis& c) {
-        return Values{c.difference, c.error, c.t, c.p, c.slope, c.interval.lower, c.interval.upper};
+        return Values{c.estimate, c.error, c.t, c.p, c.slope, c.interval.lower, c.interval.upper};
       });
     }
     std::vector<CensoredTime> times, others;
@@ -106,7 +104,7 @@ class NeverNan : public testing::Test {
     for (std::size_t i = 0; i < x.size(); ++i) attempts.push_back({i / 2, true, 0, x[i]});
     for (std::size_t i = 0; i < y.size(); ++i) attempts.push_back({100 + i / 2, false, 0, y[i]});
     check("randomIntercept", randomIntercept(attempts), [](const RandomIntercept& r) {
-      return Values{r.difference, r.error, r.t, r.p, r.betweenVariance, r.withinVariance, r.restrictedLogLikelihood};
+      return Values{r.estimate, r.error, r.t, r.p, r.betweenVariance, r.withinVariance, r.restrictedLogLikelihood};
     });
     if (y.size() % 3 == 0) {
       const auto alpha = cronbachAlpha({y.size() / 3, 3, y});

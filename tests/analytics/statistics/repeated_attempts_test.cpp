@@ -35,7 +35,7 @@ TEST(RandomIntercept, balanced) {
   // short of the maximum, as the closed form below shows.
   const auto r = randomIntercept(orthodont({}, false));
   ASSERT_TRUE(r) << r.reason();
-  EXPECT_NEAR(r->difference, 2.32102272727273, 1e-11);
+  EXPECT_NEAR(r->estimate, 2.32102272727273, 1e-11);
   EXPECT_NEAR(r->error, 0.761416973079967, 2e-7);
   EXPECT_DOUBLE_EQ(r->df, 25.0);
   EXPECT_NEAR(r->t, 3.04829391691136, 1e-6);
@@ -63,7 +63,7 @@ TEST(RandomIntercept, unbalancedAndWithSites) {
   // errors.
   const auto r = randomIntercept(orthodont(missing, false));
   ASSERT_TRUE(r) << r.reason();
-  EXPECT_NEAR(r->difference, 2.0769930210847, 2e-7);
+  EXPECT_NEAR(r->estimate, 2.0769930210847, 2e-7);
   EXPECT_NEAR(r->error, 0.87656614317134, 5e-7);
   EXPECT_NEAR(r->p, 2.5846150661315e-02, 1e-7);
   EXPECT_NEAR(r->betweenVariance, 3.81078347123485, 1e-5);
@@ -71,7 +71,7 @@ TEST(RandomIntercept, unbalancedAndWithSites) {
   EXPECT_NEAR(r->restrictedLogLikelihood, -232.47398461893994, 1e-9);
   const auto s = randomIntercept(orthodont(missing, true));
   ASSERT_TRUE(s) << s.reason();
-  EXPECT_NEAR(s->difference, 2.10084960197, 2e-7);
+  EXPECT_NEAR(s->estimate, 2.10084960197, 2e-7);
   EXPECT_NEAR(s->error, 0.873769064169, 5e-7);
   EXPECT_DOUBLE_EQ(s->df, 24.0);
   EXPECT_NEAR(s->p, 2.42773129620e-02, 1e-7);
@@ -88,7 +88,7 @@ TEST(RandomIntercept, participantsNoMoreAlikeThanOthersStandAtTheBound) {
   const auto r = randomIntercept(attempts);
   ASSERT_TRUE(r) << r.reason();
   EXPECT_DOUBLE_EQ(r->betweenVariance, 0.0);
-  EXPECT_NEAR(r->difference, 2.0, 1e-13);
+  EXPECT_NEAR(r->estimate, 2.0, 1e-13);
   EXPECT_NEAR(r->withinVariance, 6.0 * 32.0 / 16.0, 1e-12);
 }
 
@@ -127,7 +127,7 @@ TEST(RandomIntercept, degenerate) {
   EXPECT_EQ(reason({{0, true, 0, 1}, {0, true, 0, 2}, {1, false, 0, 2}}), "too few participants for the model");
   EXPECT_EQ(
       reason({{0, true, 0, 1}, {0, true, 0, 2}, {1, true, 0, 4}, {2, false, 1, 2}, {2, false, 1, 5}, {3, false, 1, 3}}),
-      "group and site can't be told apart");
+      "group and site cannot be distinguished");
 }
 
 TEST(OnePerParticipant, firstAndMean) {

@@ -8,7 +8,7 @@
 
 #include "analytics/statistics/descriptive.h"
 #include "analytics/statistics/distributions.h"
-#include "analytics/statistics/effect_sizes.h"
+#include "analytics/statistics/two_groups.h"
 #include "tests/analytics/statistics/support/published_data.h"
 
 namespace calot::analytics {

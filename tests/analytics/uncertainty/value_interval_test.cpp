@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "analytics/checkpoints/registry.h"
-#include "analytics/uncertainty/scene_variants.h"
+#include "analytics/checkpoints/checkpoint.h"
+#include "analytics/uncertainty/uncertainty.h"
 #include "recorder/formats/scene_file.h"
 
 namespace calot::analytics {

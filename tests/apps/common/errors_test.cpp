@@ -8,8 +8,6 @@
 #include <stdexcept>
 #include <string>
 
-#include "apps/common/advice.h"
-#include "apps/common/exit_code.h"
 #include "apps/common/program.h"
 
 namespace calot::apps {
@@ -44,8 +42,8 @@ TEST(Advice, NamesTheFlag) {
 /// A flag that is renamed would leave its advice behind.
 TEST(Advice, NamesFlagsThatCommandsHave) {
   std::string sources;
-  for (const char* file : {"record_command.cpp", "replay_command.cpp", "branch_command.cpp", "source_options.cpp",
-                           "study_options.cpp", "norm_command.cpp", "grade_command.cpp"}) {
+  for (const char* file : {"record_command.cpp", "replay_command.cpp", "source_options.cpp", "study_command.cpp",
+                           "norm_command.cpp", "grade_command.cpp"}) {
     std::ifstream in(std::string(CALOT_SOURCE_DIR "/apps/calot/") + file);
     ASSERT_TRUE(in) << file;
     std::ostringstream text;

@@ -14,12 +14,6 @@ namespace calot::example {
 struct CordDescription {
   std::string name;
   double strength = 1.0;  ///< pull at which it gives way (N)
-
-  template <class Self, class Visitor>
-  static void fields(Self& self, Visitor& visit) {
-    visit("name", self.name);
-    visit("strength", self.strength);
-  }
 };
 
 struct CordModel {
@@ -49,11 +43,6 @@ struct CordKind {
 
   struct Descriptions {
     std::vector<CordDescription> cords;
-
-    template <class Self, class Visitor>
-    static void fields(Self& self, Visitor& visit) {
-      visit("cords", self.cords);
-    }
   };
   struct Models {
     std::vector<CordModel> cordModel;

@@ -16,7 +16,7 @@ constexpr double angularFrequency = 3.0;     // rad/s
 
 class PendulumDevice final : public Device {
  public:
-  explicit PendulumDevice(DeviceClock clock) : clock_(std::move(clock)), next_(clock_()) {
+  explicit PendulumDevice(DeviceClock clock) : Device(std::move(clock)), next_(clock_()) {
     info_.name = pendulumKind.name;
     info_.identity = "pendulum";
     info_.detail = pendulumKind.help;
@@ -25,7 +25,6 @@ class PendulumDevice final : public Device {
     info_.capabilities.realTime = false;
   }
 
-  [[nodiscard]] const DeviceInfo& info() const override { return info_; }
   [[nodiscard]] bool connected() const override { return open_; }
   void close() override { open_ = false; }
 
@@ -41,8 +40,6 @@ class PendulumDevice final : public Device {
   }
 
  private:
-  DeviceClock clock_;
-  DeviceInfo info_;
   std::int64_t next_;
   std::uint64_t sequence_ = 0;
   bool open_ = true;
@@ -54,10 +51,7 @@ const DeviceKind pendulumKind{
     .name = "pendulum",
     .usage = "pendulum",
     .help = "swings the right hand",
-    .list =
-        [] {
-          return std::vector<ListedDevice>{{"pendulum", pendulumKind.help, true, "right", "3", "100"}};
-        },
+    .row = {"pendulum", "swings the right hand", "right", "3", "100"},
     .open =
         [](const DeviceRequest& request) {
           if (!request.argument.empty()) request.refuse("nothing stands behind its name");

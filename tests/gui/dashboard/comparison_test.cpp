@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "analytics/checkpoints/registry.h"
+#include "analytics/checkpoints/checkpoint.h"
 #include "gui/dashboard/cohort_document.h"
 
 namespace calot::gui {

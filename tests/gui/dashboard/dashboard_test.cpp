@@ -18,11 +18,10 @@
 #include <QTableView>
 #include <QTest>
 
-#include "analytics/checkpoints/registry.h"
+#include "analytics/checkpoints/checkpoint.h"
 #include "analytics/cohort/embedded.h"
 #include "apps/calot-dashboard/assess_program.h"
 #include "gui/attempt/figure_text.h"
-#include "gui/dashboard/attempt_table_model.h"
 #include "gui/dashboard/attempts_page.h"
 #include "gui/dashboard/checkpoint_table_model.h"
 #include "recorder/base/errors.h"
@@ -289,19 +288,18 @@ TEST_F(Dashboard, TenThousandAttemptsAreSortedAndSearched) {
   rows[7].tags = {"teaching"};
   model.setLines(std::make_shared<const AttemptLines>(rows));
   filter.sort(AttemptTableModel::startColumn, Qt::DescendingOrder);
-  filter.setSearch("unskilled 2026-03-05");
+  filter.set({.search = "unskilled 2026-03-05"});
   EXPECT_EQ(filter.rowCount(), 0) << "the fifth of the month is an even number";
-  filter.setSearch("skilled 2026-03-05");
+  filter.set({.search = "skilled 2026-03-05"});
   EXPECT_EQ(filter.rowCount(), 357);
-  filter.setSearch("");
-  filter.setTag("teaching");
+  filter.set({.search = ""});
+  filter.set({.tag = "teaching"});
   ASSERT_EQ(filter.rowCount(), 2);
   EXPECT_EQ(filter.index(0, AttemptTableModel::tagsColumn).data().toString(), "teaching") << "the later one first";
   EXPECT_EQ(filter.index(1, AttemptTableModel::tagsColumn).data().toString(), "odd, teaching");
-  filter.setTag("teach");
+  filter.set({.tag = "teach"});
   EXPECT_EQ(filter.rowCount(), 0) << "a tag is a whole word";
-  filter.setTag("");
-  filter.setSearch("odd");
+  filter.set({.search = "odd"});
   EXPECT_EQ(filter.rowCount(), 1) << "the search finds tags, too";
 }
 

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "analytics/checkpoints/registry.h"
+#include "analytics/checkpoints/checkpoint.h"
 
 namespace calot::gui {
 namespace {

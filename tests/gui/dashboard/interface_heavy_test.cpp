@@ -134,7 +134,7 @@ TEST_F(InterfaceHeavy, AnyMomentOfALongRecordingIsShownAtOnce) {
     lock.unlock();
     QElapsedTimer clock;
     clock.start();
-    player.seek(time);
+    player.ask({.time = time});
     lock.lock();
     changed.wait(lock, [&] { return told > before; });
     slowest = std::max(slowest, static_cast<double>(clock.nsecsElapsed()) * 1e-6);

@@ -22,12 +22,10 @@
 
 #include "apps/calot-dashboard/assess_program.h"
 #include "gui/dashboard/attempt_page.h"
-#include "gui/dashboard/attempt_table_model.h"
 #include "gui/dashboard/attempts_page.h"
 #include "gui/dashboard/dashboard_window.h"
 #include "gui/dashboard/figures_page.h"
 #include "gui/dashboard/study_page.h"
-#include "gui/dashboard/trainee_page.h"
 #include "tests/gui/dashboard/support/cohort.h"
 #include "tests/gui/dashboard/support/loop_watch.h"
 #include "tests/gui/dashboard/support/recorded.h"
@@ -191,9 +189,9 @@ TEST_F(LargeCohortHeavy, AStudyIsComputedBrokenOffAndExported) {
   rule->setCurrentIndex(1);
   wait([&] { return !study.busy(); });
   watch.judge("study of means computed", longestTurn);
-  study.exportCsv(folder_.filePath("csv"));
+  study.write(folder_.filePath("csv"), false);
   wait([&] { return !study.busy(); });
-  study.exportHtml(folder_.filePath("study.html"));
+  study.write(folder_.filePath("study.html"), true);
   wait([&] { return !study.busy(); });
   EXPECT_TRUE(fs::exists(root_ / "csv" / "study.csv") && fs::exists(root_ / "study.html"));
   watch.judge("study exported", longestTurn);

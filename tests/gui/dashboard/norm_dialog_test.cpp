@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "gui/dashboard/norm_dialog.h"
+#include "gui/dashboard/dialogs.h"
 
 #include <gtest/gtest.h>
 #include <QCheckBox>

@@ -30,7 +30,6 @@
 #include "analytics/cohort/assessment_database.h"
 #include "apps/calot-dashboard/assess_program.h"
 #include "gui/dashboard/attempt_page.h"
-#include "gui/dashboard/attempt_table_model.h"
 #include "gui/dashboard/attempts_page.h"
 #include "gui/dashboard/dashboard_window.h"
 #include "gui/dashboard/figure_panel.h"
@@ -310,9 +309,9 @@ TEST_F(Pages, AStudyIsShownAndExported) {
   EXPECT_EQ(child<QComboBox>(page, "study-row")->count(), 1);
   EXPECT_TRUE(child<QLabel>(page, "study-effect")->text().replace(QChar(QChar::Nbsp), ' ').contains("A = "));
   QSignalSpy written(&page, &StudyPage::written);
-  page.exportHtml(file("study.html"));
+  page.write(file("study.html"), true);
   ASSERT_TRUE(written.wait(patience));
-  page.exportCsv(file("csv"));
+  page.write(file("csv"), false);
   ASSERT_TRUE(written.wait(patience));
   EXPECT_TRUE(fs::exists(root_ / "study.html"));
   for (const char* name : {"study.csv", "values.csv", "flow.csv"})

@@ -114,7 +114,7 @@ TEST(ReplayPlayer, ShowsTheStateThatTheSimulationGivesWhereverItGoes) {
   ASSERT_TRUE(listener.awaitStep(0));
   for (int i = 0; i < 6; ++i) {
     const std::uint64_t step = std::uniform_int_distribution<std::uint64_t>(0, 319)(random);
-    player.seek((static_cast<double>(step) + 0.5) * 0.01);
+    player.ask({.time = (static_cast<double>(step) + 0.5) * 0.01});
     ASSERT_TRUE(listener.awaitStep(step)) << step;
     // From the very beginning, without any keyframe.
     recorder::Recording recording(recorded().file);
@@ -130,8 +130,8 @@ TEST(ReplayPlayer, TheLastOfManyWishesIsShown) {
   Listener listener;
   ReplayPlayer player(recorded().file, recorded().attempt, listener.receiver());
   ASSERT_TRUE(listener.awaitStep(0));
-  for (int i = 0; i < 300; ++i) player.seek(0.01 * static_cast<double>(319 - i));
-  player.seek(2.505);
+  for (int i = 0; i < 300; ++i) player.ask({.time = 0.01 * static_cast<double>(319 - i)});
+  player.ask({.time = 2.505});
   EXPECT_TRUE(listener.awaitStep(250));
   EXPECT_LT(listener.steps().size(), 300U) << "wishes that were overtaken are not shown";
 }
@@ -139,19 +139,19 @@ TEST(ReplayPlayer, TheLastOfManyWishesIsShown) {
 TEST(ReplayPlayer, SingleStepsAddUpAndStopAtTheEnds) {
   Listener listener;
   ReplayPlayer player(recorded().file, recorded().attempt, listener.receiver());
-  player.seek(1.505);
+  player.ask({.time = 1.505});
   ASSERT_TRUE(listener.awaitStep(150));
-  player.stepBy(1);
+  player.ask({.steps = 1});
   ASSERT_TRUE(listener.awaitStep(151));
-  for (int i = 0; i < 7; ++i) player.stepBy(-1);
+  for (int i = 0; i < 7; ++i) player.ask({.steps = -1});
   ASSERT_TRUE(listener.awaitStep(144));
-  player.stepBy(-1000);
+  player.ask({.steps = -1000});
   ASSERT_TRUE(listener.awaitStep(0));
-  player.stepBy(1000);
+  player.ask({.steps = 1000});
   ASSERT_TRUE(listener.awaitStep(319));
-  player.seek(-5.0);
+  player.ask({.time = -5.0});
   ASSERT_TRUE(listener.awaitStep(0));
-  player.seek(1e9);
+  player.ask({.time = 1e9});
   EXPECT_TRUE(listener.awaitStep(319));
 }
 
@@ -159,14 +159,14 @@ TEST(ReplayPlayer, PlaysToTheEndStopsThereAndBeginsAnew) {
   Listener listener;
   ReplayPlayer player(recorded().file, recorded().attempt, listener.receiver());
   ASSERT_TRUE(listener.awaitStep(0));
-  player.setSpeed(16.0);
-  player.play();
+  player.ask({.speed = 16.0});
+  player.ask({.playing = true});
   ASSERT_TRUE(listener.awaitStep(319));
   const std::vector<std::uint64_t> steps = listener.steps();
   EXPECT_TRUE(std::is_sorted(steps.begin(), steps.end())) << "playing goes forward only";
-  player.play();
+  player.ask({.playing = true});
   EXPECT_TRUE(listener.await([](const PlayerPosition& p) { return p.playing && p.step < 319; }));
-  player.pause();
+  player.ask({.playing = false});
   EXPECT_TRUE(listener.await([](const PlayerPosition& p) { return !p.playing; }));
 }
 
@@ -174,9 +174,9 @@ TEST(ReplayPlayer, SpeedsStayWithinTheirBounds) {
   Listener listener;
   ReplayPlayer player(recorded().file, recorded().attempt, listener.receiver());
   ASSERT_TRUE(listener.awaitStep(0));
-  player.setSpeed(1e6);
+  player.ask({.speed = 1e6});
   EXPECT_TRUE(listener.await([](const PlayerPosition& p) { return p.speed == 16.0; }));
-  player.setSpeed(-1.0);
+  player.ask({.speed = -1.0});
   EXPECT_TRUE(listener.await([](const PlayerPosition& p) { return p.speed == 0.1; }));
 }
 
@@ -199,7 +199,7 @@ TEST(ReplayPlayer, EndsInTheMiddleOfALongWay) {
   Listener listener;
   auto player = std::make_unique<ReplayPlayer>(recorded().file, "", listener.receiver());
   ASSERT_TRUE(listener.awaitStep(0));
-  player->seek(0.9);
+  player->ask({.time = 0.9});
   player.reset();  // joins: hangs here if a wish to end is not heard
 }
 

@@ -7,7 +7,7 @@
 #include <iostream>
 #include <random>
 
-#include "analytics/report/study_tables.h"
+#include "analytics/report/study_output.h"
 #include "analytics/statistics/two_groups.h"
 
 namespace calot::gui {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "gui/dashboard/trace_chart.h"
+#include "gui/dashboard/timeline.h"
 
 #include <gtest/gtest.h>
 
@@ -7,11 +7,12 @@
 #include <QImage>
 #include <QTest>
 
-#include "gui/dashboard/timeline_bar.h"
 #include "tests/gui/dashboard/support/recorded.h"
 
 namespace calot::gui {
 namespace {
+
+const QColor blueOfOkabeAndIto(0x00, 0x72, 0xb2);
 
 QImage pictureOf(TraceChart& chart) { return chart.grab().toImage().convertToFormat(QImage::Format_RGB32); }
 
@@ -61,10 +62,10 @@ TEST(TraceChart, LineOfTheReplayMovesAndTheTracesStay) {
   // The step of the left hand's force, between two bins.
   int blue = 0;
   for (int x = static_cast<int>(scale.x(74.0)); x <= static_cast<int>(scale.x(76.0)); ++x)
-    blue += coloured(after, x, palette::blue);
+    blue += coloured(after, x, blueOfOkabeAndIto);
   EXPECT_GT(blue, 30);
   int between = 0;
-  for (int x = 0; x < 12; ++x) between += coloured(after, static_cast<int>(scale.x(50.0)) + x, palette::blue);
+  for (int x = 0; x < 12; ++x) between += coloured(after, static_cast<int>(scale.x(50.0)) + x, blueOfOkabeAndIto);
   EXPECT_GT(between, 1) << "0 is a line along the axis, seen between the other hand's dashes";
   EXPECT_LT(between, 13);
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "gui/dashboard/trainee_history.h"
+#include "gui/dashboard/comparison.h"
 
 #include <gtest/gtest.h>
 
-#include "analytics/checkpoints/registry.h"
+#include "analytics/checkpoints/checkpoint.h"
 #include "gui/dashboard/figure_panel.h"
-#include "gui/dashboard/pair_side.h"
+#include "gui/dashboard/pair_page.h"
 
 namespace calot::gui {
 namespace {

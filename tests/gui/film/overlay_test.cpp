@@ -108,7 +108,7 @@ TEST(Overlays, StandInTheirCorners) {
   moment.time = 83.456;
   moment.phase = "clipping";
   moment.checkpoints = {"path-length left  152 mm"};
-  moment.events = {{"clip on cystic-duct", false, 1.0}, {"long ago", false, MomentTrack::eventSeconds}};
+  moment.events = {{"clip on cystic-duct", false, 82.456}, {"long ago", false, moment.time - Moment::eventSeconds}};
   struct Case {
     const char* overlay;
     bool right, below;
@@ -134,7 +134,7 @@ TEST(Overlays, MakeRoomForCaptions) {
   };
   Moment moment;
   moment.checkpoints = {"path-length right  1390 mm"};
-  moment.events = {{"clip on cystic-duct", false, 1.0}};
+  moment.events = {{"clip on cystic-duct", false, -1.0}};
   const int line = Lettering(height / 36).lineHeight(), margin = height / 45;
 
   const Image titled =

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "gui/render/png_file.h"
+#include "gui/render/image.h"
 #include "gui/render/renderer.h"
 #include "sim/carving/adaptive_surface.h"
 #include "sim/carving/islands.h"

@@ -12,7 +12,7 @@
 
 #include "gui/render/procedural_textures.h"
 #include "gui/render/renderer.h"
-#include "gui/render/sheet_list.h"
+#include "gui/render/translucent.h"
 #include "recorder/base/errors.h"
 
 namespace calot::gui {

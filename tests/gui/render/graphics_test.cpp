@@ -23,9 +23,9 @@ SceneView organInSight() {
   return view;
 }
 
-bool hasDevice(DeviceKind kind) {
+bool isHere(Graphics graphics) {
   try {
-    return createDeviceContext(kind) != nullptr;
+    return createContext(graphics) != nullptr;
   } catch (const Error&) {
     return false;
   }
@@ -42,7 +42,7 @@ TEST(Graphics, HasAWordForEachChoice) {
 }
 
 TEST(Graphics, TheWayToACardDrawsWhatSoftwareDraws) {
-  if (!hasDevice(DeviceKind::software)) GTEST_SKIP() << "EGL offers no software device here";
+  if (!isHere(Graphics::deviceSoftware)) GTEST_SKIP() << "EGL offers no software device here";
   Renderer software(Graphics::software), device(Graphics::deviceSoftware);
   EXPECT_EQ(software.graphics().substr(0, 8), "OSMesa, ");
   EXPECT_EQ(device.graphics().substr(0, 5), "EGL, ");
@@ -58,7 +58,7 @@ TEST(Graphics, TheWayToACardDrawsWhatSoftwareDraws) {
 }
 
 TEST(Graphics, WithoutACardAutomaticIsSoftwareAndACardThatIsWantedIsAnError) {
-  if (hasDevice(DeviceKind::card)) GTEST_SKIP() << "this machine has a graphics card";
+  if (isHere(Graphics::card)) GTEST_SKIP() << "this machine has a graphics card";
   EXPECT_EQ(Renderer(Graphics::automatic).graphics().substr(0, 8), "OSMesa, ");
   try {
     Renderer card(Graphics::card);
@@ -69,7 +69,7 @@ TEST(Graphics, WithoutACardAutomaticIsSoftwareAndACardThatIsWantedIsAnError) {
 }
 
 TEST(Graphics, AutomaticIsTheCardWhereThereIsOne) {
-  if (!hasDevice(DeviceKind::card)) GTEST_SKIP() << "this machine has no graphics card";
+  if (!isHere(Graphics::card)) GTEST_SKIP() << "this machine has no graphics card";
   Renderer renderer(Graphics::automatic);
   EXPECT_EQ(renderer.graphics().substr(0, 5), "EGL, ");
   EXPECT_FALSE(renderer.render(organInSight(), 320, 240, Quality::interactive).rgba.empty());

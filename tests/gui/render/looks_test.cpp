@@ -51,16 +51,16 @@ TEST(Looks, OneIsNewOnce) {
   const DrawList whole = listOf({{Appearance::liver, false}, {Appearance::steel, false}});
   const DrawList charred = listOf({{Appearance::liver, false}, {Appearance::liver, true}});
   RenderSettings settings = interactiveSettings(false);
-  EXPECT_TRUE(drawn.note(whole, settings));
-  EXPECT_FALSE(drawn.note(whole, settings));
-  EXPECT_TRUE(drawn.note(charred, settings));
-  EXPECT_FALSE(drawn.note(charred, settings));
+  EXPECT_TRUE(noteLooks(drawn, whole, settings));
+  EXPECT_FALSE(noteLooks(drawn, whole, settings));
+  EXPECT_TRUE(noteLooks(drawn, charred, settings));
+  EXPECT_FALSE(noteLooks(drawn, charred, settings));
   DrawList smoky = whole;
   smoky.smoke.index = {0, 1, 2};
-  EXPECT_TRUE(drawn.note(smoky, settings));
-  EXPECT_FALSE(drawn.note(smoky, settings));
+  EXPECT_TRUE(noteLooks(drawn, smoky, settings));
+  EXPECT_FALSE(noteLooks(drawn, smoky, settings));
   settings.quality = Quality::film;
-  EXPECT_TRUE(drawn.note(whole, settings)) << "programs of another quality";
+  EXPECT_TRUE(noteLooks(drawn, whole, settings)) << "programs of another quality";
 }
 
 TEST(Looks, ToComeAreCharClipsAndBloodButNoneThatIsThere) {

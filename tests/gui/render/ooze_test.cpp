@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What an open vessel leaves in the picture.
-#include "gui/render/ooze.h"
+#include "gui/render/draw_list.h"
 
 #include <gtest/gtest.h>
 

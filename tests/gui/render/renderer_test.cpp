@@ -14,7 +14,7 @@
 #include <sstream>
 #include <string>
 
-#include "gui/render/png_file.h"
+#include "gui/render/image.h"
 #include "recorder/base/errors.h"
 #include "sim/instruments/instruments.h"
 #include "tests/gui/render/support/shapes.h"

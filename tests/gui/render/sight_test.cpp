@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What is left out of a picture may not be missed in it.
-#include "gui/render/sight.h"
+#include "gui/render/draw_list.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "gui/render/instrument_mesh.h"
-#include "recorder/sources/scope/picture_geometry.h"
+#include "recorder/sources/scope/endoscope.h"
 #include "sim/instruments/instruments.h"
 #include "sim/math/random.h"
 #include "tests/gui/render/support/shapes.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "gui/render/smoke.h"
+#include "gui/render/translucent.h"
 
 #include <gtest/gtest.h>
 

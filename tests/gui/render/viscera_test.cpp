@@ -53,22 +53,22 @@ TEST(Surroundings, KeepWhatTheOrgansAtRestDoNotChange) {
   Surroundings around;
   around.update(view);
   double top = -1.0;
-  for (const Vec3& p : around.viscera().bowel.position) top = std::max(top, p.y());
+  for (const Vec3& p : around.viscera.bowel.position) top = std::max(top, p.y());
   EXPECT_NEAR(top, -0.022, 0.001);
-  const Vec3* const kept = around.viscera().omentum.position.data();
+  const Vec3* const kept = around.viscera.omentum.position.data();
   for (SurfaceView& surface : view.surface)
     for (Vec3& p : surface.position) p += Vec3(0.0, -0.03, 0.0);
   around.update(view);
-  EXPECT_EQ(around.viscera().omentum.position.data(), kept);
+  EXPECT_EQ(around.viscera.omentum.position.data(), kept);
   view.down = -Vec3::UnitZ();
   around.update(view);
-  EXPECT_TRUE(around.viscera().omentum.position.empty()) << "y is not up";
-  EXPECT_TRUE(around.ligament().position.empty());
+  EXPECT_TRUE(around.viscera.omentum.position.empty()) << "y is not up";
+  EXPECT_TRUE(around.ligament.position.empty());
   view.down = -Vec3::UnitY();
   view.surface.pop_back();
   around.update(view);
-  EXPECT_TRUE(around.viscera().omentum.position.empty());
-  EXPECT_FALSE(around.wall().position.empty());
+  EXPECT_TRUE(around.viscera.omentum.position.empty());
+  EXPECT_FALSE(around.wall.position.empty());
 }
 
 }  // namespace

@@ -50,8 +50,7 @@ ReportDocument report(std::size_t rows, bool synthetic = false) {
   ReportDocument document{"A study <b>of</b> both", synthetic, {}};
   document.add("A paragraph & its words.");
   document.addList({"one", "two"});
-  ReportTable table{
-      "Values", {{"name", analytics::TextTable::Align::left}, {"n", analytics::TextTable::Align::right}}, {}};
+  ReportTable table = analytics::tableOf("Values", {"=name", "n"});
   for (std::size_t i = 0; i < rows; ++i) table.rows.push_back({fmt::format("row {}", i), fmt::format("{}", i)});
   document.parts.emplace_back(table);
   return document;

@@ -6,7 +6,7 @@
 
 #include <QLocale>
 
-#include "analytics/checkpoints/registry.h"
+#include "analytics/checkpoints/checkpoint.h"
 #include "gui/trainer/scenes_page.h"
 #include "tests/recorder/support/small_scene.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Every control is asked for, seen when it is used, and not before.
-#include "gui/trainer/controls_tutorial.h"
+#include "gui/trainer/trainer_texts.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <fstream>
 
 #include "recorder/base/errors.h"
-#include "tests/analytics/assessment/support/schema_agreement.h"
+#include "tests/analytics/assessment/support/texts.h"
 #include "tests/recorder/support/small_scene.h"
 
 namespace calot::gui {
@@ -21,8 +21,6 @@ TEST(Course, LeadsFromTheFirstTouchToTheWholeOperation) {
   EXPECT_EQ(course.tasks.back().scene, "cholecystectomy");
   for (const CourseTask& task : course.tasks) EXPECT_FALSE(scenePicture(task.scene, assets).empty()) << task.scene;
 }
-
-TEST(Course, ReaderAndSchemaAgree) { analytics::support::expectAgreement(courseRules(), "schemas/course.schema.json"); }
 
 TEST(Course, OrdersTheScenes) {
   std::vector<std::string> faults;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "gui/trainer/picture_timing.h"
+#include "gui/trainer/attempt_monitor.h"
 
 #include <gtest/gtest.h>
 

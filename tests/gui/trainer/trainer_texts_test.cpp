@@ -7,7 +7,7 @@
 #include <QLocale>
 #include <set>
 
-#include "gui/trainer/key_bindings.h"
+#include "gui/trainer/operation_view.h"
 #include "sim/instruments/instruments.h"
 
 namespace calot::gui {
@@ -123,7 +123,7 @@ TEST(Hints, FollowTheProcedure) {
 TEST(Hints, AreTheSummaryWhereThereIsNoProcedure) {
   EXPECT_EQ(hintFor(SceneDescription{}, "Touch the liver.", AttemptFigures{}), "Touch the liver.");
   AttemptFigures figures;
-  EXPECT_EQ(whatIsUndone(SceneDescription{}, figures), "nothing was touched") << "holding still is no attempt";
+  EXPECT_EQ(whatIsUndone(SceneDescription{}, figures), "nothing was touched") << "holding still is not an attempt";
   figures.touched = true;
   EXPECT_EQ(whatIsUndone(SceneDescription{}, figures), "");
 }

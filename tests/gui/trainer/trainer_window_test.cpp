@@ -14,10 +14,10 @@
 #include <QTest>
 
 #include "analytics/cohort/cohort_database.h"
-#include "gui/trainer/attempt_input.h"
 #include "gui/trainer/end_page.h"
 #include "gui/trainer/operation_view.h"
 #include "gui/trainer/run_panel.h"
+#include "gui/trainer/training_session.h"
 #include "recorder/base/errors.h"
 #include "recorder/recording/reader.h"
 #include "recorder/sources/devices/scope_device.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "gui/view/picture_loop.h"
+#include "gui/view/scene_picture_widget.h"
 
 #include <gtest/gtest.h>
 

@@ -17,7 +17,6 @@
 #include "sim/scene/scene_viewer.h"
 #include "sim/scene/version.h"
 #include "tests/recorder/support/lying_recording.h"
-#include "tests/support/sanitized.h"
 
 namespace calot::recorder {
 namespace {
@@ -248,8 +247,8 @@ TEST_F(Server, AnswersEveryBrokenMessage) {
                                encodePayload(wire::Explain{wire::toWire(reader.keyframe(0))})};
   const std::uint32_t kinds[] = {1, 3, 4, 5, 8};
   // Each has a scene of its own.
-#ifdef CALOT_TEST_SANITIZED
-  constexpr int rounds = 12;
+#ifdef CALOT_SANITIZED
+  constexpr int rounds = 5;
 #else
   constexpr int rounds = 60;
 #endif

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/calot-organs/vessel_paths.h"
+#include "apps/calot-organs/organ_shapes.h"
 #include "recorder/formats/scene_file.h"
 #include "sim/geometry/closest_point.h"
 #include "sim/geometry/closest_point_transform.h"

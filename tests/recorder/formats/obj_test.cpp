@@ -15,12 +15,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-TriangleMesh parse(const std::string& text, LengthUnit unit = LengthUnit::metre, const ObjLimits& limits = {}) {
+TriangleMesh parse(const std::string& text, LengthUnit unit = LengthUnit::metre, const SurfaceLimits& limits = {}) {
   return parseObj(std::as_bytes(std::span(text.data(), text.size())), "t.obj", unit, limits);
 }
 
 /// The message of the refusal, or empty.
-std::string refusal(const std::string& text, const ObjLimits& limits = {}) {
+std::string refusal(const std::string& text, const SurfaceLimits& limits = {}) {
   try {
     parse(text, LengthUnit::metre, limits);
   } catch (const Error& error) {
@@ -70,7 +70,7 @@ TEST(Obj, RefusesWithTheLine) {
       {"v 1,5 2 3", "t.obj: line 6: \"1,5\" is not a number"},
       {"v 1 2 5000", "t.obj: line 6: a coordinate of 5000 m: is the unit right?"},
       {"v 0x10 2 3", "t.obj: line 6: \"0x10\" is not a number"},
-      {"f 1 2 5", "t.obj: line 6: vertex 5 is wanted, but the file has 4"},
+      {"f 1 2 5", "t.obj: line 6: vertex 5 is expected, but the file has 4"},
       {"f 1 2 0", "t.obj: line 6: index 0: OBJ counts from 1"},
       {"f 1 2 -5", "t.obj: line 6: index -5 reaches before the first of 4 vertices"},
       {"f 1 2", "t.obj: line 6: a face with 2 corners"},
@@ -81,9 +81,9 @@ TEST(Obj, RefusesWithTheLine) {
       {"f 1 2 3/1/1/1", "t.obj: line 6: \"1/1\" is not an index"},
       {"f 1 2 99999999999", "t.obj: line 6: \"99999999999\" is not an index"},
       {"f 1 2 1.5", "t.obj: line 6: \"1.5\" is not an index"},
-      {"curv 0 1 1 2", "t.obj: line 6: \"curv\" is no keyword of a polygonal OBJ file"},
+      {"curv 0 1 1 2", "t.obj: line 6: \"curv\" is not a keyword of a polygonal OBJ file"},
       {"f 1 2 \\", "t.obj: line 6: a line continued with \\ is not understood; join the lines"},
-      {"\x89PNG", "t.obj: line 6: \"?PNG\" is no keyword of a polygonal OBJ file"},
+      {"\x89PNG", "t.obj: line 6: \"?PNG\" is not a keyword of a polygonal OBJ file"},
   };
   for (const auto& [line, message] : bad) EXPECT_EQ(refusal(ok + line + "\n"), message);
   EXPECT_EQ(refusal(ok + std::string(1, '\0')), "t.obj: line 6: a zero byte; this is not a text file");
@@ -92,7 +92,7 @@ TEST(Obj, RefusesWithTheLine) {
 }
 
 TEST(Obj, RefusesTooMuch) {
-  ObjLimits limits;
+  SurfaceLimits limits;
   limits.vertices = 3;
   EXPECT_EQ(refusal(square, limits), "t.obj: line 4: more than 3 vertices");
   limits = {};

@@ -119,13 +119,13 @@ TEST(SceneFat, aSurfaceThatPassesThroughItselfIsTakenForWhatItWindsAroundAndThat
   ASSERT_EQ(loaded.warnings.size(), 1U) << loaded.warnings.at(0);
   EXPECT_EQ(loaded.warnings[0].find("organs/f.obj: the surface passes through itself, as at ("), 0U)
       << loaded.warnings[0];
-  EXPECT_NE(loaded.warnings[0].find("what it winds around is taken as its inside"), std::string::npos);
+  EXPECT_NE(loaded.warnings[0].find("the region that it winds around is taken as its inside"), std::string::npos);
 
   // With one triangle turned nothing tells any more what is inside.
   std::string turned = text.str();
   turned.replace(turned.find("f 1 3 4 2"), 9, "f 1 2 4 3");
   const std::string fault = faultOf([&] { load(sceneWithVessels(), turned); });
-  EXPECT_NE(fault.find("do not agree on what is outside: its inside cannot be told"), std::string::npos) << fault;
+  EXPECT_NE(fault.find("do not agree on what is outside: its inside cannot be determined"), std::string::npos) << fault;
 
   // The potential field that carving starts from does so: its inside is the union.
   const SurfaceDescription& surface = loaded.description.fat[0].surface;

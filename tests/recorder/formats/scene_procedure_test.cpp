@@ -92,36 +92,5 @@ TEST(SceneProcedure, EveryFaultIsNamedWithItsPlace) {
   EXPECT_EQ(fault("/cautery/power", "0"), "/cautery/power: 0 is not in (0, 1000]");
 }
 
-TEST(SceneProcedure, DefaultsAreTheSchemas) {
-  std::ifstream in(std::string(CALOT_SOURCE_DIR) + "/schemas/scene.schema.json");
-  const nlohmann::json d = nlohmann::json::parse(in).at("$defs");
-  const auto number = [&](const char* definition, const char* key) {
-    return d.at(definition).at("properties").at(key).at("default").get<double>();
-  };
-  EXPECT_EQ(DivideDescription().patient, number("divide", "patient"));
-  EXPECT_EQ(DivideDescription().specimen, number("divide", "specimen"));
-  EXPECT_EQ(RetractionDescription().duration, number("retraction", "duration"));
-  EXPECT_EQ(RetractionDescription().stage, number("retraction", "stage"));
-  EXPECT_EQ(RetractionDescription().most, number("retraction", "most"));
-  EXPECT_EQ(RetractionDescription().stiffness, number("retraction", "stiffness"));
-  EXPECT_EQ(RetractionDescription().damping, number("retraction", "damping"));
-  EXPECT_EQ(ClipDescription().width, number("clip", "width"));
-  EXPECT_EQ(ClipDescription().legs, number("clip", "legs"));
-  EXPECT_EQ(ClipDescription().minGap, number("clip", "leastGap"));
-  EXPECT_EQ(ClipDescription().minJunctionGap, number("clip", "leastJunctionGap"));
-  EXPECT_EQ(CauteryDescription().power, number("cautery", "power"));
-  EXPECT_EQ(CauteryDescription().reach, number("cautery", "reach"));
-  EXPECT_EQ(CauteryDescription().spot, number("cautery", "spot"));
-  EXPECT_EQ(CauteryDescription().charTime, number("cautery", "charTime"));
-  EXPECT_EQ(CauteryDescription().recession, number("cautery", "recession"));
-  EXPECT_EQ(CauteryDescription().coagulationPace, number("cautery", "coagulationPace"));
-  EXPECT_EQ(CauteryDescription().cutChar, number("cautery", "cutChar"));
-  EXPECT_EQ(CauteryDescription().sealRadius, number("cautery", "sealRadius"));
-  EXPECT_EQ(CauteryDescription().injury, number("cautery", "injury"));
-  EXPECT_EQ(OrganDescription().burnThrough, number("organ", "burnThrough"));
-  EXPECT_EQ(VesselDescription().burnThrough, number("vessel", "burnThrough"));
-  EXPECT_EQ(HandDescription().clips, number("hand", "clips"));
-}
-
 }  // namespace
 }  // namespace calot::recorder::test

@@ -13,7 +13,6 @@
 #include "recorder/live/haptic_thread.h"
 #include "sim/step/hand_haptics.h"
 #include "tests/recorder/support/small_scene.h"
-#include "tests/support/sanitized.h"
 
 namespace {
 
@@ -22,7 +21,7 @@ thread_local std::optional<std::size_t> allocations;  // counted where it holds 
 }  // namespace
 
 // The sanitizers bring these themselves: nothing is counted there.
-#ifndef CALOT_TEST_SANITIZED
+#ifndef CALOT_SANITIZED
 void* operator new(std::size_t size) {
   if (allocations) ++*allocations;
   if (void* p = std::malloc(size == 0 ? 1 : size)) return p;
@@ -107,7 +106,7 @@ TEST(ContactExchange, TheHapticSideMakesTheSessionsForcesAndAllocatesNothing) {
   std::vector<TickOutcome> ticks(ticksPerStep);
   session.onContactSets([&](const ContactSets& sets) { exchange.publish(sets); });
   std::size_t grownSteps = 0, firm = 0;
-#ifndef CALOT_TEST_SANITIZED
+#ifndef CALOT_SANITIZED
   allocations = 0;
   ::operator delete(::operator new(8));
   EXPECT_GT(*allocations, 0U) << "allocations are not counted";

@@ -287,7 +287,12 @@ TEST(Fuzz, OverwrittenBytesNeverCrashHangOrPass) {
   int refused = 0, broken = 0, unharmed = 0;
   // The first part holds superblock and object headers, the rest chunks and their index: two thirds of the hits go to
   // the front.
-  for (int i = 0; i < 400; ++i) {
+#ifdef CALOT_SANITIZED
+  constexpr int files = 80;
+#else
+  constexpr int files = 400;
+#endif
+  for (int i = 0; i < files; ++i) {
     std::string bytes = all;
     const std::size_t reach = i % 3 != 0 ? std::min<std::size_t>(all.size(), 40000) : all.size();
     const std::size_t at = random.next() % reach;
@@ -318,9 +323,9 @@ TEST(Fuzz, OverwrittenBytesNeverCrashHangOrPass) {
     EXPECT_NE(answer, "SILENT") << "bytes from " << at;
     (answer == "refused" ? refused : answer == "broken" ? broken : unharmed) += 1;
   }
-  std::printf("400 overwritten files: %d refused, %d broken chains, %d unharmed (slack, or outside the chain)\n",
+  std::printf("%d overwritten files: %d refused, %d broken chains, %d unharmed (slack, or outside the chain)\n", files,
               refused, broken, unharmed);
-  EXPECT_GT(refused, 100);
+  EXPECT_GT(refused, files / 4);
 }
 
 TEST(Guarded, ACrashOrAHangBecomesAnError) {

@@ -12,10 +12,10 @@
 
 #include "recorder/base/errors.h"
 #include "recorder/recording/keyframe_code.h"
+#include "recorder/recording/layout.h"
 #include "recorder/recording/reader.h"
 #include "recorder/recording/recording_facts.h"
 #include "recorder/recording/recover.h"
-#include "recorder/recording/layout.h"
 #include "recorder/recording/writer.h"
 #include "tests/recorder/recording/support/synthetic.h"
 

@@ -14,9 +14,9 @@
 #include <thread>
 
 #include "recorder/base/errors.h"
-#include "recorder/recording/recorded_columns.h"
 #include "recorder/recording/probe.h"
 #include "recorder/recording/reader.h"
+#include "recorder/recording/recorded_columns.h"
 #include "recorder/recording/recording_facts.h"
 #include "recorder/recording/recover.h"
 #include "recorder/recording/writer.h"

@@ -8,9 +8,9 @@
 #include <sstream>
 
 #include "recorder/base/errors.h"
-#include "recorder/recording/recorded_columns.h"
 #include "recorder/recording/probe.h"
 #include "recorder/recording/reader.h"
+#include "recorder/recording/recorded_columns.h"
 #include "recorder/recording/recover.h"
 #include "recorder/recording/writer.h"
 #include "tests/recorder/recording/support/synthetic.h"

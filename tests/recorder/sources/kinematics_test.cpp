@@ -136,13 +136,13 @@ TEST(KinematicsFile, everyFaultIsNamedWithItsLine) {
   EXPECT_EQ(faultOf(""), "k.txt: the file is empty");
   EXPECT_EQ(faultOf("\n\n"), "k.txt: 0 row; a motion has at least 2");
   EXPECT_EQ(faultOf(textOf(wave(1))), "k.txt: 1 row; a motion has at least 2");
-  EXPECT_EQ(faultOf(good + "1 2 3\n"), "k.txt: line 4: 3 columns; 76 are wanted");
-  EXPECT_EQ(faultOf(with(75, "1 2")), "k.txt: line 4: 77 columns; 76 are wanted");
-  EXPECT_EQ(faultOf(with(38, "nan")), "k.txt: line 4: column 39: \"nan\" is no finite number");
-  EXPECT_EQ(faultOf(with(3, "inf")), "k.txt: line 4: column 4: \"inf\" is no finite number");
-  EXPECT_EQ(faultOf(with(56, "1e999")), "k.txt: line 4: column 57: \"1e999\" is no finite number");
-  EXPECT_EQ(faultOf(with(56, "0x10")), "k.txt: line 4: column 57: \"0x10\" is no finite number");
-  EXPECT_EQ(faultOf(with(56, "0,5")), "k.txt: line 4: column 57: \"0,5\" is no finite number");
+  EXPECT_EQ(faultOf(good + "1 2 3\n"), "k.txt: line 4: 3 columns; 76 are expected");
+  EXPECT_EQ(faultOf(with(75, "1 2")), "k.txt: line 4: 77 columns; 76 are expected");
+  EXPECT_EQ(faultOf(with(38, "nan")), "k.txt: line 4: column 39: \"nan\" is not a finite number");
+  EXPECT_EQ(faultOf(with(3, "inf")), "k.txt: line 4: column 4: \"inf\" is not a finite number");
+  EXPECT_EQ(faultOf(with(56, "1e999")), "k.txt: line 4: column 57: \"1e999\" is not a finite number");
+  EXPECT_EQ(faultOf(with(56, "0x10")), "k.txt: line 4: column 57: \"0x10\" is not a finite number");
+  EXPECT_EQ(faultOf(with(56, "0,5")), "k.txt: line 4: column 57: \"0,5\" is not a finite number");
   EXPECT_EQ(faultOf(with(39, "43.6")),
             "k.txt: line 4: columns 39 to 41: a position farther than 5 m; positions are in metres");
   EXPECT_EQ(faultOf(with(41, "0.9")),

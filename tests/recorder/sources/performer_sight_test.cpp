@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a performer takes for gallbladder, bed, cystic vessels and fat: what has these roles in the scene.
-#include "recorder/sources/performer_sight.h"
+#include "recorder/sources/operation_mind.h"
 
 #include <gtest/gtest.h>
 

@@ -243,31 +243,6 @@ TEST(PerformerProfile, faultsAreNamedWithTheirPlace) {
   EXPECT_EQ(faultOf(p), "calot_profile.json: /perception: the key \"depthError\" is missing");
 }
 
-TEST(PerformerProfile, readerAndSchemaAgree) {
-  std::ifstream in(fs::path(CALOT_SOURCE_DIR) / "schemas" / "performer.schema.json");
-  ASSERT_TRUE(in);
-  const json schema = json::parse(in);
-  for (const ObjectRule& rule : performerRules()) {
-    SCOPED_TRACE(rule.definition);
-    const json& object = rule.definition.empty() ? schema : schema.at("$defs").at(rule.definition);
-    std::set<std::string> keys, required, schemaKeys;
-    for (const KeyRule& key : rule.keys) {
-      SCOPED_TRACE(key.key);
-      keys.insert(key.key);
-      if (key.required) required.insert(key.key);
-      const json& property = object.at("properties").at(key.key);
-      const std::string type = property.value("type", "");
-      if (type != "number" && type != "integer") continue;
-      EXPECT_EQ(property.at("minimum").get<double>(), key.lower);
-      EXPECT_EQ(property.at("maximum").get<double>(), key.upper);
-    }
-    for (const auto& property : object.at("properties").items()) schemaKeys.insert(property.key());
-    EXPECT_EQ(keys, schemaKeys);
-    EXPECT_EQ(required, object.at("required").get<std::set<std::string>>());
-    EXPECT_EQ(object.at("additionalProperties"), false);
-  }
-}
-
 TEST(FindPerformer, byNameOrPath) {
   const std::vector<fs::path> roots{fs::path(CALOT_SOURCE_DIR) / "assets"};
   EXPECT_EQ(findPerformer("skilled", roots).filename(), "skilled.json");

@@ -6,7 +6,6 @@
 #include <memory>
 #include <vector>
 
-#include "recorder/sources/scope/scope_assistant.h"
 #include "recorder/sources/scope/scope_source.h"
 #include "tests/recorder/sources/support/test_scene.h"
 

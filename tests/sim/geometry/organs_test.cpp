@@ -5,10 +5,9 @@
 #include <algorithm>
 #include <string>
 
-#include "apps/calot-organs/fat_shape.h"
 #include "apps/calot-organs/organ_shapes.h"
 #include "recorder/base/file_bytes.h"
-#include "recorder/formats/obj.h"
+#include "recorder/formats/surface_bytes.h"
 #include "sim/geometry/surface_distance.h"
 #include "sim/geometry/surface_report.h"
 

@@ -328,9 +328,9 @@ TEST(VesselModel, SaysWhatIsWrong) {
     return Model::build(std::move(scene)).error;
   };
   EXPECT_EQ(error([](SceneDescription& s) { s.vessels[1].start.to = "vein"; }),
-            "vessel 'branch': grows out of 'vein', which is no vessel before it");
+            "vessel 'branch': grows out of 'vein', which is not a vessel before it");
   EXPECT_EQ(error([](SceneDescription& s) { s.vessels[1].end.to = "spleen"; }),
-            "vessel 'branch': is grown to 'spleen', which is no organ of the scene");
+            "vessel 'branch': is grown to 'spleen', which is not an organ of the scene");
   EXPECT_EQ(error([](SceneDescription& s) { s.vessels[0].path[1] = s.vessels[0].path[0]; }),
             "vessel 'duct': two neighbouring points of its path coincide");
   EXPECT_FALSE(error([](SceneDescription& s) { s.vessels[0].wall = 0.0; }).empty());

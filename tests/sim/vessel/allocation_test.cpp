@@ -9,7 +9,6 @@
 
 #include "sim/vessel/tube_surface.h"
 #include "tests/sim/vessel/support/beams.h"
-#include "tests/support/sanitized.h"
 
 namespace {
 
@@ -18,7 +17,7 @@ std::size_t allocations = 0;
 }  // namespace
 
 // The sanitizers bring these themselves: nothing is counted there.
-#ifndef CALOT_TEST_SANITIZED
+#ifndef CALOT_SANITIZED
 void* operator new(std::size_t size) {
   ++allocations;
   if (void* p = std::malloc(size == 0 ? 1 : size)) return p;
@@ -52,7 +51,7 @@ TEST(BeamSolver, AStepAllocatesNothing) {
     tube.positions(state, skin);
   };
   step();
-#ifndef CALOT_TEST_SANITIZED
+#ifndef CALOT_SANITIZED
   ::operator delete(::operator new(8));
   ASSERT_GT(allocations, 0U) << "the counter counts";
 #endif

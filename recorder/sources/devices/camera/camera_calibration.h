@@ -12,7 +12,6 @@
 #include "recorder/sources/devices/calibration.h"
 #include "recorder/sources/devices/camera/camera_device.h"
 #include "recorder/sources/devices/camera/lens_calibration.h"
-#include "recorder/sources/devices/camera/open_camera.h"
 #include "recorder/sources/devices/device.h"
 #include "recorder/sources/devices/device_script.h"
 
@@ -33,7 +32,7 @@ struct RigSettings {
 /// @throws Error: invalid, for the number of films; damaged, for what is in them
 RigFit measureRigFromFilms(const std::vector<std::string>& films, const RigSettings& settings);
 
-/// From live cameras. @param step tells the person what to do, and waits until it is begun
+/// From live cameras. @param step instructs the person, and waits until it is begun
 RigFit measureRigLive(const CameraRequest& request, const RigSettings& settings,
                       const std::function<void(const std::string& text)>& step);
 

@@ -3,7 +3,8 @@
 #include "recorder/sources/devices/camera/camera_rig.h"
 
 #include <fmt/format.h>
-#include <cmath>
+
+#include "sim/math/record.h"
 
 namespace calot::recorder {
 namespace {
@@ -11,87 +12,78 @@ namespace {
 constexpr double mostPixels = 100000.0;
 constexpr const char* sideNames[handCount] = {"left", "right"};
 
-const ObjectRule rigRule{"camera", {{"printScale", true, 0.1, 10}, {"cameras"}, {"trocars"}, {"limits"}}};
-const ObjectRule cameraRule{"oneCamera",
-                            {{"width", true, 16, mostPixels},
-                             {"height", true, 16, mostPixels},
-                             {"focal", true, 1, 1e6},
-                             {"centre", true, -mostPixels, mostPixels},
-                             {"distortion", true, -10, 10},
-                             {"readout", true, 0, 1},
-                             {"views", true, 0, 10000},
-                             {"coverage", true, 0, 1},
-                             {"residual", true, 0, mostPixels},
-                             {"focalUncertainty", true, 0, 1e6},
-                             {"position", true, -10, 10},
-                             {"orientation", true, -1, 1},
-                             {"pairResidual", true, 0, mostPixels}}};
-const ObjectRule trocarsRule{"trocars", {{"left", false}, {"right", false}}};
-const ObjectRule trocarRule{"trocar", {{"point", true, -10, 10}, {"residual", true, 0, 10}}};
-const ObjectRule rigLimitsRule{"cameraLimits",
-                               {{"lensResidual", true, 0, mostPixels},
-                                {"focalUncertainty", true, 0, 1e6},
-                                {"coverage", true, 0, 1},
-                                {"views", true, 0, 10000},
-                                {"trocarResidual", true, 0, 10},
-                                {"scaleError", true, 0, 10}}};
-
-template <class Limits, class Visitor>
-void visitRigLimits(Limits& l, const Visitor& visit) {
-  visit("lensResidual", l.lensResidual);
-  visit("focalUncertainty", l.focalUncertainty);
-  visit("coverage", l.coverage);
-  visit("views", l.views);
-  visit("trocarResidual", l.trocarResidual);
-  visit("scaleError", l.scaleError);
-}
-
-template <class Values>
-nlohmann::ordered_json listOf(const Values& values) {
-  auto out = nlohmann::ordered_json::array();
-  for (const double v : values) out.push_back(v);
-  return out;
-}
-
-std::vector<double> numbersAt(const JsonObject& object, const ObjectRule& rule, const char* key, std::size_t count) {
-  std::vector<double> out;
-  for (const KeyRule& k : rule.keys) {
-    if (k.key != key) continue;
-    for (const JsonPlace& place : object.at(key).list(count, count)) out.push_back(place.number(k));
-  }
-  return out;
-}
-
-RigCamera cameraOf(const JsonPlace& place) {
-  const JsonObject o = place.object(cameraRule);
-  const auto numbers = [&](const char* key, std::size_t count) { return numbersAt(o, cameraRule, key, count); };
-  RigCamera out;
-  std::uint32_t width = 0, height = 0, views = 0;
-  o.read("width", width);
-  o.read("height", height);
-  o.read("views", views);
-  CameraLens& lens = out.lens;
-  lens.width = static_cast<int>(width);
-  lens.height = static_cast<int>(height);
-  lens.views = static_cast<int>(views);
-  lens.focal = Eigen::Vector2d(numbers("focal", 2).data());
-  lens.centre = Eigen::Vector2d(numbers("centre", 2).data());
-  const std::vector<double> bend = numbers("distortion", lens.distortion.size());
-  std::copy(bend.begin(), bend.end(), lens.distortion.begin());
-  o.read("readout", lens.readout);
-  o.read("coverage", lens.coverage);
-  o.read("residual", lens.residual);
-  o.read("focalUncertainty", lens.focalUncertainty);
-  o.read("pairResidual", out.pairResidual);
-  o.read("position", out.fromDevice.position);
-  const std::vector<double> q = numbers("orientation", 4);
-  const Quat orientation(q[0], q[1], q[2], q[3]);
-  if (!(std::abs(orientation.norm() - 1.0) <= 1e-6)) o.at("orientation").fail("is no unit quaternion w x y z");
-  out.fromDevice.orientation = orientation.normalized();
-  return out;
+std::vector<Field> trocarsFields() {
+  using S = CameraRig;
+  return {
+      object("trocars", "Trocars that were measured"),
+      optional("left", at<S, &S::trocar, 0>, "Left hand's"),
+      optional("right", at<S, &S::trocar, 1>, "Right hand's"),
+  };
 }
 
 }  // namespace
+
+std::vector<Field> RigCamera::fields() {
+  using S = RigCamera;
+  using Lens = CameraLens;
+  return {
+      object("oneCamera", "Lens (Brown's model) and pose of a camera"),
+      {"width", at<S, &S::lens, &Lens::width>, "pixels", within(16, mostPixels), "Width of the image"},
+      {"height", at<S, &S::lens, &Lens::height>, "pixels", within(16, mostPixels), "Height of the image"},
+      {"focal", at<S, &S::lens, &Lens::focal>, "pixels", within(1, 1e6), "Focal length across and down"},
+      {"centre", at<S, &S::lens, &Lens::centre>, "pixels", within(-mostPixels, mostPixels),
+       "Principal point, from the upper left corner"},
+      {"distortion", at<S, &S::lens, &Lens::distortion>, "", within(-10, 10), "k1, k2 radial; p1, p2 tangential"},
+      {"readout", at<S, &S::lens, &Lens::readout>, "s", within(0, 1),
+       "From the first row's exposure to the last one's"},
+      {"views", at<S, &S::lens, &Lens::views>, "", within(0, 10000), "Views of the board"},
+      {"coverage", at<S, &S::lens, &Lens::coverage>, "1", within(0, 1),
+       "Share of the image in which the board was seen"},
+      {"residual", at<S, &S::lens, &Lens::residual>, "pixels", within(0, mostPixels),
+       "Root mean square reprojection error"},
+      {"focalUncertainty", at<S, &S::lens, &Lens::focalUncertainty>, "1", within(0, 1e6),
+       "Relative standard deviation of the focal length"},
+      {"position", at<S, &S::fromDevice, &Pose::position>, "m", within(-10, 10),
+       "Position of the first camera in this one's frame"},
+      {"orientation", at<S, &S::fromDevice, &Pose::orientation>,
+       "Unit quaternion w, x, y, z: the first camera's coordinates to this one's"},
+      {"pairResidual", at<S, &S::pairResidual>, "pixels", within(0, mostPixels),
+       "Root mean square reprojection error with the first camera's views"},
+  };
+}
+
+std::vector<Field> Trocar::fields() {
+  using S = Trocar;
+  return {
+      object("trocar", "Point through which the shaft passes"),
+      {"point", at<S, &S::point>, "m", within(-10, 10), "Its position in the device's frame"},
+      {"residual", at<S, &S::residual>, "m", within(0, 10), "Root mean square distance of the shaft from it"},
+  };
+}
+
+std::vector<Field> RigLimits::fields() {
+  using S = RigLimits;
+  return {
+      object("cameraLimits", "Largest values; of coverage and views the smallest"),
+      {"lensResidual", at<S, &S::lensResidual>, "pixels", within(0, mostPixels), "Reprojection error, also of a pair"},
+      {"focalUncertainty", at<S, &S::focalUncertainty>, "1", within(0, 1e6), "Relative, of the focal length"},
+      {"coverage", at<S, &S::coverage>, "1", within(0, 1), "Share of the image"},
+      {"views", at<S, &S::views>, "", within(0, 10000), "Views of the board"},
+      {"trocarResidual", at<S, &S::trocarResidual>, "m", within(0, 10), "Distance of the shaft from its trocar"},
+      {"scaleError", at<S, &S::scaleError>, "1", within(0, 10), "Difference of the strokes' scale from 1"},
+  };
+}
+
+std::vector<Field> CameraRig::fields() {
+  using S = CameraRig;
+  return {
+      object("camera", "Cameras; the device's frame is the first one's: x right, y down, z away"),
+      {"printScale", at<S, &S::printScale>, "1", within(0.1, 10), "Length on the printed sheets per length meant"},
+      Field("cameras", at<S, &S::cameras>, "One or two").items(1, 2),
+      {"trocars", keyGroup<S, trocarsFields>, "Trocars that were measured"},
+      {"limits", at<S, &S::limits>, "Limits that the values must meet"},
+  };
+}
 
 std::vector<std::string> rigShortcomings(const CameraRig& rig) {
   std::vector<std::string> out;
@@ -119,56 +111,6 @@ std::vector<std::string> rigShortcomings(const CameraRig& rig) {
                                 1e3 * rig.trocar[h]->residual, 1e3 * limit.trocarResidual));
   }
   return out;
-}
-
-nlohmann::ordered_json rigJson(const CameraRig& rig) {
-  nlohmann::ordered_json out{{"printScale", rig.printScale}, {"cameras", nlohmann::ordered_json::array()}};
-  for (const RigCamera& camera : rig.cameras) {
-    const CameraLens& lens = camera.lens;
-    const Quat& q = camera.fromDevice.orientation;
-    out["cameras"].push_back({{"width", lens.width},
-                              {"height", lens.height},
-                              {"focal", listOf(lens.focal)},
-                              {"centre", listOf(lens.centre)},
-                              {"distortion", listOf(lens.distortion)},
-                              {"readout", lens.readout},
-                              {"views", lens.views},
-                              {"coverage", lens.coverage},
-                              {"residual", lens.residual},
-                              {"focalUncertainty", lens.focalUncertainty},
-                              {"position", listOf(camera.fromDevice.position)},
-                              {"orientation", listOf(std::array{q.w(), q.x(), q.y(), q.z()})},
-                              {"pairResidual", camera.pairResidual}});
-  }
-  auto trocars = nlohmann::ordered_json::object();
-  for (std::size_t h = 0; h < handCount; ++h) {
-    if (rig.trocar[h])
-      trocars[sideNames[h]] = {{"point", listOf(rig.trocar[h]->point)}, {"residual", rig.trocar[h]->residual}};
-  }
-  out["trocars"] = trocars;
-  auto limits = nlohmann::ordered_json::object();
-  visitRigLimits(rig.limits, [&](const char* key, double v) { limits[key] = v; });
-  out["limits"] = limits;
-  return out;
-}
-
-CameraRig rigOf(const JsonPlace& place) {
-  const JsonObject o = place.object(rigRule);
-  CameraRig rig;
-  o.read("printScale", rig.printScale);
-  for (const JsonPlace& camera : o.at("cameras").list(1, 2)) rig.cameras.push_back(cameraOf(camera));
-  const JsonObject trocars = o.at("trocars").object(trocarsRule);
-  for (std::size_t h = 0; h < handCount; ++h) {
-    if (!trocars.has(sideNames[h])) continue;
-    const JsonObject t = trocars.at(sideNames[h]).object(trocarRule);
-    Trocar trocar;
-    t.read("point", trocar.point);
-    t.read("residual", trocar.residual);
-    rig.trocar[h] = trocar;
-  }
-  const JsonObject limits = o.at("limits").object(rigLimitsRule);
-  visitRigLimits(rig.limits, [&](const char* key, double& v) { limits.read(key, v); });
-  return rig;
 }
 
 namespace {

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "recorder/base/json_reader.h"
 #include "sim/math/linear.h"
+#include "sim/math/record.h"
 #include "sim/scene/samples.h"
 
 namespace calot::recorder {
@@ -28,7 +28,7 @@ struct CameraLens {
   double focalUncertainty = 0.0;                     ///< standard deviation of the focal length, relative
 };
 
-/// Where a point of the camera's frame K (x right, y down, z away; m) is seen. @pre z > 0
+/// Pixel of a point of the camera's frame K (x right, y down, z away; m). @pre z > 0
 Eigen::Vector2d projected(const CameraLens& lens, const Vec3& point);
 
 /// Direction in K, as (x / z, y / z), in which a pixel looks.
@@ -38,11 +38,15 @@ struct RigCamera {
   CameraLens lens;
   Pose fromDevice;            ///< x_K = position + orientation x_D; the identity for the first camera
   double pairResidual = 0.0;  ///< root mean square reprojection error with the first camera's views (pixels)
+
+  static std::vector<Field> fields();
 };
 
 struct Trocar {
   Vec3 point = Vec3::Zero();  ///< through which the shaft passes, in D (m)
   double residual = 0.0;      ///< root mean square distance of the shaft from it (m)
+
+  static std::vector<Field> fields();
 };
 
 /// Limits that such a calibration must meet, beside those of every device; stored in it.
@@ -53,6 +57,8 @@ struct RigLimits {
   double views = 8;
   double trocarResidual = 0.003;  ///< m
   double scaleError = 0.03;       ///< of the strokes' scale from 1: the cameras measure true lengths
+
+  static std::vector<Field> fields();
 };
 
 /// Frame D is the first camera's.
@@ -61,14 +67,11 @@ struct CameraRig {
   double printScale = 1.0;         ///< length on the printed sheets per length meant
   std::array<std::optional<Trocar>, handCount> trocar;
   RigLimits limits;
+
+  static std::vector<Field> fields();
 };
 
 /// Violated limits, one phrase each.
 std::vector<std::string> rigShortcomings(const CameraRig& rig);
-
-/// The part "camera" of a calibration file, and its rules, which the published schema repeats.
-nlohmann::ordered_json rigJson(const CameraRig& rig);
-/// @throws Error (damaged) with file and JSON pointer.
-CameraRig rigOf(const JsonPlace& place);
 
 }  // namespace calot::recorder

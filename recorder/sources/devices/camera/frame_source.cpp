@@ -18,36 +18,23 @@ namespace {
 constexpr int mostCorrected = 1;
 constexpr double leastMargin = 20.0;  // grey levels
 
-struct FreeFamily {
-  void operator()(apriltag_family_t* p) const { tag36h11_destroy(p); }
-};
-struct FreeDetector {
-  void operator()(apriltag_detector_t* p) const { apriltag_detector_destroy(p); }
-};
-
 }  // namespace
 
-struct TagDetector::Impl {
-  std::unique_ptr<apriltag_family_t, FreeFamily> family;
-  std::unique_ptr<apriltag_detector_t, FreeDetector> detector;
-};
+void FreeTags::operator()(apriltag_family* p) const { tag36h11_destroy(p); }
+void FreeTags::operator()(apriltag_detector* p) const { apriltag_detector_destroy(p); }
 
-TagDetector::TagDetector() : impl_(std::make_unique<Impl>()) {
-  impl_->family.reset(tag36h11_create());
-  impl_->detector.reset(apriltag_detector_create());
-  apriltag_detector_add_family_bits(impl_->detector.get(), impl_->family.get(), mostCorrected);
-  impl_->detector->nthreads = 1;
-  impl_->detector->quad_decimate = 2.0F;  // edges are refined in the full picture
-  impl_->detector->refine_edges = true;
+TagDetector::TagDetector() : family_(tag36h11_create()), detector_(apriltag_detector_create()) {
+  apriltag_detector_add_family_bits(detector_.get(), family_.get(), mostCorrected);
+  detector_->nthreads = 1;
+  detector_->quad_decimate = 2.0F;  // edges are refined in the full picture
+  detector_->refine_edges = true;
 }
-
-TagDetector::~TagDetector() = default;
 
 std::vector<SeenTag> TagDetector::detect(const GreyImage& image) {
   assert(image.pixels.size() == static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
   // The library reads alone.
   image_u8_t view{image.width, image.height, image.width, const_cast<std::uint8_t*>(image.pixels.data())};
-  zarray_t* const found = apriltag_detector_detect(impl_->detector.get(), &view);
+  zarray_t* const found = apriltag_detector_detect(detector_.get(), &view);
   std::vector<SeenTag> out;
   for (int i = 0; i < zarray_size(found); ++i) {
     apriltag_detection_t* tag = nullptr;
@@ -68,7 +55,7 @@ std::vector<SeenTag> TagDetector::detect(const GreyImage& image) {
 }
 
 std::array<bool, 100> tagCells(int id) {
-  const std::unique_ptr<apriltag_family_t, FreeFamily> family(tag36h11_create());
+  const HeldTags<apriltag_family> family(tag36h11_create());
   assert(id >= 0 && static_cast<std::uint32_t>(id) < family->ncodes);
   const auto width = static_cast<std::uint32_t>(family->total_width);
   const std::uint32_t margin = (width - static_cast<std::uint32_t>(family->width_at_border)) / 2;

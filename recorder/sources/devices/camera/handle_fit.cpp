@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-#include "recorder/sources/devices/camera/handle_fit.h"
+#include "recorder/sources/devices/camera/handle_tracker.h"
 
 #include <algorithm>
 #include <cmath>
@@ -40,12 +40,11 @@ bool linearise(const CameraRig& rig, std::span<const CornerSight> corners, const
   for (const CornerSight& c : corners) {
     const RigCamera& camera = rig.cameras[c.camera];
     const Vec3 arm = pose.orientation * c.point;
-    const Vec3 x = pose.position + arm + c.later * (twist.velocity + twist.angular.cross(arm));
     const Mat3 toCamera = camera.fromDevice.orientation.toRotationMatrix();
-    const Vec3 k = camera.fromDevice.position + toCamera * x;
+    const Vec3 k = inCamera(rig, c, pose, twist);
     if (!(k.z() > nearest)) return false;
     const Eigen::Vector2d focal = camera.lens.focal;
-    const Eigen::Vector2d error = focal.cwiseProduct(k.head<2>() / k.z() - c.direction);
+    const Eigen::Vector2d error = sightError(rig, c, k);
     Eigen::Matrix<double, 2, 3> slope;
     slope << focal.x() / k.z(), 0.0, -focal.x() * k.x() / (k.z() * k.z()),  //
         0.0, focal.y() / k.z(), -focal.y() * k.y() / (k.z() * k.z());
@@ -80,11 +79,29 @@ Pose moved(const Pose& pose, const Pose6& step) {
 
 }  // namespace
 
+Vec3 inCamera(const CameraRig& rig, const CornerSight& corner, const Pose& body, const Twist& twist) {
+  const Pose& camera = rig.cameras[corner.camera].fromDevice;
+  const Vec3 arm = body.orientation * corner.point;
+  const Vec3 x = body.position + arm + corner.later * (twist.velocity + twist.angular.cross(arm));
+  return camera.position + camera.orientation * x;
+}
+
+Eigen::Vector2d sightError(const CameraRig& rig, const CornerSight& corner, const Vec3& inCamera) {
+  const CameraLens& lens = rig.cameras[corner.camera].lens;
+  return lens.focal.cwiseProduct(inCamera.head<2>() / inCamera.z() - corner.direction);
+}
+
 Quat rotationBy(const Vec3& vector) {
   const double angle = vector.norm();
   if (angle < 1e-12) return Quat(1.0, 0.5 * vector.x(), 0.5 * vector.y(), 0.5 * vector.z()).normalized();
   const double s = std::sin(0.5 * angle) / angle;
   return {std::cos(0.5 * angle), s * vector.x(), s * vector.y(), s * vector.z()};
+}
+
+Vec3 rotationVector(const Quat& q) {
+  const Vec3 v = q.w() < 0.0 ? Vec3(-q.vec()) : Vec3(q.vec());
+  const double sine = v.norm();
+  return sine < 1e-12 ? Vec3(2.0 * v) : Vec3(2.0 * std::atan2(sine, std::abs(q.w())) / sine * v);
 }
 
 std::optional<PoseFit> fitPose(const CameraRig& rig, std::span<const CornerSight> corners, const Pose& start,

@@ -22,15 +22,16 @@ constexpr double largestFlap = 1.5;        // rad
 
 double turnBetween(const Quat& a, const Quat& b) { return 2.0 * std::acos(std::min(1.0, std::abs(a.dot(b)))); }
 
-Vec3 turnVector(const Quat& q) {
-  const Vec3 v = q.w() < 0.0 ? Vec3(-q.vec()) : Vec3(q.vec());
-  const double sine = v.norm();
-  return sine < 1e-12 ? Vec3(2.0 * v) : Vec3(2.0 * std::atan2(sine, std::abs(q.w())) / sine * v);
-}
-
 double rowDelay(const CameraLens& lens, double row) { return lens.readout * (row / lens.height - 0.5); }
 
-/// Root mean square error of each tag as one camera sees it, largest first; with its corners' first index.
+/// Root mean square error of corners (pixels).
+double residualOf(const CameraRig& rig, std::span<const CornerSight> corners, const Pose& pose, const Twist& twist) {
+  double squares = 0.0;
+  for (const CornerSight& c : corners) squares += sightError(rig, c, inCamera(rig, c, pose, twist)).squaredNorm();
+  return std::sqrt(squares / static_cast<double>(corners.size()));
+}
+
+/// The tag that one camera sees farthest off, by its first corner's index.
 struct TagError {
   double residual = 0.0;
   std::size_t first = 0;
@@ -39,16 +40,7 @@ struct TagError {
 TagError worstTag(const CameraRig& rig, const std::vector<CornerSight>& corners, const Pose& pose, const Twist& twist) {
   TagError worst;
   for (std::size_t i = 0; i < corners.size(); i += 4) {
-    double squares = 0.0;
-    for (std::size_t k = i; k < i + 4; ++k) {
-      const CornerSight& c = corners[k];
-      const RigCamera& camera = rig.cameras[c.camera];
-      const Vec3 arm = pose.orientation * c.point;
-      const Vec3 x = pose.position + arm + c.later * (twist.velocity + twist.angular.cross(arm));
-      const Vec3 inCamera = camera.fromDevice.position + camera.fromDevice.orientation * x;
-      squares += camera.lens.focal.cwiseProduct(inCamera.head<2>() / inCamera.z() - c.direction).squaredNorm();
-    }
-    const double residual = std::sqrt(0.25 * squares);
+    const double residual = residualOf(rig, std::span(corners).subspan(i, 4), pose, twist);
     if (residual > worst.residual) worst = {residual, i};
   }
   return worst;
@@ -60,7 +52,7 @@ bool allFaceTheirCamera(const CameraRig& rig, const std::vector<CornerSight>& co
     const Pose& camera = rig.cameras[corners[i].camera].fromDevice;
     const Vec3 right = corners[i + 1].point - corners[i].point, down = corners[i].point - corners[i + 3].point;
     const Vec3 normal = camera.orientation * (pose.orientation * down.cross(right));
-    const Vec3 at = camera.position + camera.orientation * (pose.position + pose.orientation * corners[i].point);
+    const Vec3 at = inCamera(rig, corners[i], pose, {});
     if (!(normal.dot(at) < 0.0)) return false;
   }
   return true;
@@ -69,21 +61,13 @@ bool allFaceTheirCamera(const CameraRig& rig, const std::vector<CornerSight>& co
 }  // namespace
 
 const char* wordsFor(PoseFault fault) {
-  switch (fault) {
-    case PoseFault::none:
-      return "";
-    case PoseFault::unseen:
-      return "too few of its tags are seen";
-    case PoseFault::ambiguous:
-      return "two poses explain what is seen";
-    case PoseFault::inconsistent:
-      return "no pose explains what is seen";
-    case PoseFault::uncertain:
-      return "its position would be too uncertain";
-    case PoseFault::leap:
-      return "it would have leapt";
-  }
-  return "";
+  constexpr std::array words{"",
+                             "too few of its tags are seen",
+                             "two poses explain what is seen",
+                             "no pose explains what is seen",
+                             "its position would be too uncertain",
+                             "it would have leapt"};
+  return words[static_cast<std::size_t>(fault)];
 }
 
 HandleTracker::HandleTracker(const CameraRig& rig, Hand hand, TrackerLimits limits)
@@ -196,14 +180,9 @@ HandleSight HandleTracker::track(std::span<const SeenFrame> frames) {
   out.pose = fit.pose;
   out.residual = fit.residual;
   out.uncertainty = fit.uncertainty;
-  if (!(fit.residual <= limits_.residual)) {
-    out.fault = PoseFault::inconsistent;
-    return out;
-  }
-  if (!(fit.uncertainty <= limits_.uncertainty)) {
-    out.fault = PoseFault::uncertain;
-    return out;
-  }
+  if (!(fit.uncertainty <= limits_.uncertainty)) out.fault = PoseFault::uncertain;
+  if (!(fit.residual <= limits_.residual)) out.fault = PoseFault::inconsistent;
+  if (out.fault != PoseFault::none) return out;
   const Known now{out.time, out.pose};
   if (last_ && !reachable(*last_, now.pose, now.time)) {
     if (!waiting_.empty() && !reachable(waiting_.back(), now.pose, now.time)) waiting_.clear();
@@ -219,7 +198,7 @@ HandleSight HandleTracker::track(std::span<const SeenFrame> frames) {
   twist_ = {};
   if (seconds > 0.0 && seconds <= rememberedSeconds) {
     twist_.velocity = (now.pose.position - last_->pose.position) / seconds;
-    twist_.angular = turnVector(now.pose.orientation * last_->pose.orientation.conjugate()) / seconds;
+    twist_.angular = rotationVector(now.pose.orientation * last_->pose.orientation.conjugate()) / seconds;
   }
   last_ = now;
   out.jaw = jawOf(frames, out);
@@ -227,33 +206,21 @@ HandleSight HandleTracker::track(std::span<const SeenFrame> frames) {
 }
 
 std::optional<double> HandleTracker::jawOf(std::span<const SeenFrame> frames, const HandleSight& sight) const {
-  struct Seen {
-    const RigCamera* camera;
-    std::array<Eigen::Vector2d, 4> direction;
-  };
-  std::vector<Seen> seen;
+  std::vector<CornerSight> seen;
   for (const SeenFrame& frame : frames) {
     for (const SeenTag& tag : frame.tags) {
       if (tag.id != firstTagOf(hand_) + flapTag) continue;
-      Seen s{&rig_->cameras[frame.camera], {}};
-      for (std::size_t k = 0; k < 4; ++k) s.direction[k] = undistorted(s.camera->lens, tag.corner[k]);
-      seen.push_back(s);
+      for (const Eigen::Vector2d& corner : tag.corner)
+        seen.push_back(
+            {frame.camera, tag.id, Vec3::Zero(), undistorted(rig_->cameras[frame.camera].lens, corner), 0.0});
     }
   }
   if (seen.empty()) return std::nullopt;
   const auto residual = [&](double angle) {
     const TagPlace flap = flapAt(hand_, angle, rig_->printScale);
-    double squares = 0.0;
-    for (const Seen& s : seen) {
-      for (int k = 0; k < 4; ++k) {
-        const Vec3 x = sight.pose.position + sight.pose.orientation * flap.corner(k, tagSide * rig_->printScale);
-        const Vec3 inCamera = s.camera->fromDevice.position + s.camera->fromDevice.orientation * x;
-        squares += s.camera->lens.focal
-                       .cwiseProduct(inCamera.head<2>() / inCamera.z() - s.direction[static_cast<std::size_t>(k)])
-                       .squaredNorm();
-      }
-    }
-    return squares / (4.0 * static_cast<double>(seen.size()));
+    for (std::size_t i = 0; i < seen.size(); ++i)
+      seen[i].point = flap.corner(static_cast<int>(i % 4), tagSide * rig_->printScale);
+    return residualOf(*rig_, seen, sight.pose, {});
   };
   // One unknown: a scan, then golden sections.
   constexpr int steps = 32;
@@ -276,7 +243,7 @@ std::optional<double> HandleTracker::jawOf(std::span<const SeenFrame> frames, co
     }
   }
   const double angle = 0.5 * (lower + upper);
-  if (!(std::sqrt(residual(angle)) <= limits_.tagResidual)) return std::nullopt;
+  if (!(residual(angle) <= limits_.tagResidual)) return std::nullopt;
   return std::max(0.0, angle);
 }
 

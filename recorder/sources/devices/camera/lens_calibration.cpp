@@ -8,12 +8,13 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <Eigen/SVD>
+#include <functional>
 #include <map>
 #include <optional>
 #include <set>
 
 #include "recorder/base/errors.h"
-#include "recorder/sources/devices/camera/handle_fit.h"
+#include "recorder/sources/devices/camera/handle_tracker.h"
 #include "recorder/sources/devices/camera/marker_sheets.h"
 #include "recorder/sources/pointing.h"
 
@@ -90,15 +91,128 @@ Pose poseOfHomography(const Mat3& h, double focal) {
   return {m.col(2), quaternionOf(planeRotation(m.col(0), m.col(1)))};
 }
 
+using Block6 = Eigen::Matrix<double, 6, 1>;
+
+/// A least-squares problem whose unknowns are a few shared ones and six of each block, as bundle adjustment has them
+/// (Triggs et al. 2000, "Bundle adjustment, a modern synthesis").
+struct BlockProblem {
+  /// Residuals of a block; always as many for one block, and finite where the pose is in front of the camera.
+  std::function<Eigen::VectorXd(std::size_t block, const Eigen::VectorXd& shared, const Block6& local)> residual;
+  Eigen::VectorXd unknowns;  ///< the shared ones, then those of each block: start, then solution
+  Eigen::VectorXd step;      ///< of the shared ones, for differences
+  std::size_t blocks = 0;
+
+  [[nodiscard]] Eigen::VectorXd shared() const { return unknowns.head(step.size()); }
+  [[nodiscard]] Block6 local(std::size_t b) const {
+    return unknowns.segment<6>(step.size() + 6 * static_cast<Eigen::Index>(b));
+  }
+};
+
+struct BlockSolution {
+  bool converged = false;
+  double residual = 0.0;        ///< root mean square
+  Eigen::VectorXd uncertainty;  ///< standard deviation of each shared unknown
+};
+
+struct NormalEquations {
+  Eigen::MatrixXd matrix;
+  Eigen::VectorXd gradient;
+  double cost = 0.0;
+  Eigen::Index count = 0;  ///< of residuals
+};
+
+double costOf(const BlockProblem& p) {
+  double cost = 0.0;
+  for (std::size_t b = 0; b < p.blocks; ++b) cost += p.residual(b, p.shared(), p.local(b)).squaredNorm();
+  return cost;
+}
+
+/// With central differences.
+NormalEquations normalEquations(const BlockProblem& p) {
+  constexpr double localStep = 1e-6;
+  const Eigen::Index n = p.step.size(), all = p.unknowns.size();
+  NormalEquations out{Eigen::MatrixXd::Zero(all, all), Eigen::VectorXd::Zero(all)};
+  for (std::size_t b = 0; b < p.blocks; ++b) {
+    const Eigen::VectorXd r = p.residual(b, p.shared(), p.local(b));
+    Eigen::MatrixXd slope(r.size(), n + 6);
+    for (Eigen::Index i = 0; i < n + 6; ++i) {
+      const double step = i < n ? p.step[i] : localStep;
+      const auto moved = [&](double by) {
+        Eigen::VectorXd shared = p.shared();
+        Block6 local = p.local(b);
+        (i < n ? shared[i] : local[i - n]) += by;
+        return p.residual(b, shared, local);
+      };
+      slope.col(i) = (moved(step) - moved(-step)) / (2.0 * step);
+    }
+    const Eigen::MatrixXd square = slope.transpose() * slope;
+    const Eigen::VectorXd gradient = slope.transpose() * r;
+    const Eigen::Index at = n + 6 * static_cast<Eigen::Index>(b);
+    out.matrix.topLeftCorner(n, n) += square.topLeftCorner(n, n);
+    out.matrix.block(0, at, n, 6) = square.topRightCorner(n, 6);
+    out.matrix.block(at, 0, 6, n) = square.bottomLeftCorner(6, n);
+    out.matrix.block<6, 6>(at, at) = square.bottomRightCorner<6, 6>();
+    out.gradient.head(n) += gradient.head(n);
+    out.gradient.segment<6>(at) = gradient.tail<6>();
+    out.cost += r.squaredNorm();
+    out.count += r.size();
+  }
+  return out;
+}
+
+/// Levenberg and Marquardt.
+BlockSolution solveBlocks(BlockProblem& problem) {
+  constexpr int mostIterations = 60;
+  double damping = 1e-3;
+  BlockSolution out;
+  NormalEquations system = normalEquations(problem);
+  for (int iteration = 0; iteration < mostIterations && !out.converged && std::isfinite(system.cost); ++iteration) {
+    for (;;) {
+      Eigen::MatrixXd matrix = system.matrix;
+      matrix.diagonal() *= 1.0 + damping;
+      BlockProblem next = problem;
+      next.unknowns -= matrix.ldlt().solve(system.gradient);
+      const double cost = costOf(next);
+      if (std::isfinite(cost) && cost <= system.cost) {
+        out.converged = system.cost - cost <= 1e-10 * (1.0 + system.cost);
+        problem.unknowns = next.unknowns;
+        system = normalEquations(problem);
+        damping = std::max(1e-12, 0.1 * damping);
+        break;
+      }
+      damping *= 10.0;
+      if (damping > 1e9) {
+        out.converged = true;  // no step is downhill
+        break;
+      }
+    }
+  }
+  if (!std::isfinite(system.cost) || system.count == 0) return {};
+  out.residual = std::sqrt(2.0 * system.cost / static_cast<double>(system.count));  // of points: two residuals each
+  const Eigen::Index freedom = std::max<Eigen::Index>(1, system.count - problem.unknowns.size());
+  const Eigen::MatrixXd covariance = system.cost / static_cast<double>(freedom) * system.matrix.inverse();
+  out.uncertainty = covariance.diagonal().head(problem.step.size()).cwiseMax(0.0).cwiseSqrt();
+  return out;
+}
+
 Block6 vectorOf(const Pose& pose) {
-  const Quat q = pose.orientation.w() < 0.0 ? Quat(-pose.orientation.coeffs()) : pose.orientation;
-  const double sine = q.vec().norm();
   Block6 out;
-  out << (sine < 1e-12 ? Vec3(2.0 * q.vec()) : Vec3(2.0 * std::atan2(sine, q.w()) / sine * q.vec())), pose.position;
+  out << rotationVector(pose.orientation), pose.position;
   return out;
 }
 
 Pose poseOf(const Block6& v) { return {v.tail<3>(), rotationBy(v.head<3>())}; }
+
+BlockProblem problemOf(const Eigen::VectorXd& shared, const Eigen::VectorXd& step, const std::vector<Pose>& boards) {
+  BlockProblem out;
+  out.step = step;
+  out.blocks = boards.size();
+  out.unknowns.resize(step.size() + 6 * static_cast<Eigen::Index>(boards.size()));
+  out.unknowns.head(step.size()) = shared;
+  for (std::size_t b = 0; b < boards.size(); ++b)
+    out.unknowns.segment<6>(step.size() + 6 * static_cast<Eigen::Index>(b)) = vectorOf(boards[b]);
+  return out;
+}
 
 Eigen::Vector2d errorOf(const CameraLens& lens, const Pose& board, const BoardCorner& corner) {
   const Vec3 at = board.position + board.orientation * corner.point;
@@ -152,12 +266,12 @@ LensFit fitLens(const std::vector<BoardView>& views, int width, int height, doub
   const std::optional<double> focal = focalOf(homographies);
   if (!focal)
     refuseViews(name, "the views of the board are too alike: tilt it to the left, right, up and down by 30 degrees");
-  BlockProblem problem;
-  problem.shared = Eigen::VectorXd::Zero(8);
-  problem.shared << *focal * width, *focal * width, middle, 0.0, 0.0, 0.0, 0.0;
-  problem.step = Eigen::VectorXd::Constant(8, 1e-6);
-  problem.step.head<4>().setConstant(1e-3);
-  for (const Mat3& h : homographies) problem.local.push_back(vectorOf(poseOfHomography(h, *focal)));
+  Eigen::VectorXd start = Eigen::VectorXd::Zero(8), step = Eigen::VectorXd::Constant(8, 1e-6);
+  start.head<4>() << *focal * width, *focal * width, middle;
+  step.head<4>().setConstant(1e-3);
+  std::vector<Pose> boards;
+  for (const Mat3& h : homographies) boards.push_back(poseOfHomography(h, *focal));
+  BlockProblem problem = problemOf(start, step, boards);
   problem.residual = [&](std::size_t b, const Eigen::VectorXd& shared, const Block6& local) {
     const CameraLens lens = lensOf(shared, width, height);
     const Pose board = poseOf(local);
@@ -168,7 +282,7 @@ LensFit fitLens(const std::vector<BoardView>& views, int width, int height, doub
   };
   const BlockSolution solution = solveBlocks(problem);
   LensFit out;
-  out.lens = lensOf(problem.shared, width, height);
+  out.lens = lensOf(problem.shared(), width, height);
   if (!solution.converged || !(out.lens.focal.minCoeff() > 0.1 * width) || !(out.lens.focal.maxCoeff() < 20.0 * width))
     refuseViews(name, "no lens explains the views of the board: keep it flat, and film it sharp");
   out.lens.views = static_cast<int>(views.size());
@@ -176,7 +290,7 @@ LensFit fitLens(const std::vector<BoardView>& views, int width, int height, doub
   out.lens.coverage = coverageOf(corners, width, height);
   out.lens.focalUncertainty = std::max(solution.uncertainty[0], solution.uncertainty[1]) / out.lens.focal.mean();
   for (std::size_t b = 0; b < views.size(); ++b) {
-    out.board.push_back(poseOf(problem.local[b]));
+    out.board.push_back(poseOf(problem.local(b)));
     for (const BoardCorner& c : corners[b]) out.residuals.push_back({c.pixel, errorOf(out.lens, out.board.back(), c)});
   }
   return out;
@@ -188,33 +302,17 @@ PairFit fitPair(const std::vector<BoardView>& first, const LensFit& firstLens, c
     refuseViews(name, fmt::format("both cameras saw the board standing still at {} moments, {} or more are needed",
                                   first.size(), fewestViews));
   }
-  // Poses of the board by each camera alone, with its lens.
-  const auto poseBy = [&](const BoardView& view, const CameraLens& lens) {
-    const BoardCorners corners = cornersOfView(view, printScale);
-    BlockProblem alone;
-    alone.shared = Eigen::VectorXd::Zero(1);  // none: without influence
-    alone.step = Eigen::VectorXd::Constant(1, 1.0);
-    const Mat3 h = homographyOf(corners, lens.centre, lens.width);
-    alone.local.push_back(vectorOf(poseOfHomography(h, lens.focal.mean() / lens.width)));
-    alone.residual = [&](std::size_t, const Eigen::VectorXd& none, const Block6& local) {
-      Eigen::VectorXd out(2 * static_cast<Eigen::Index>(corners.size()) + 1);
-      for (std::size_t i = 0; i < corners.size(); ++i)
-        out.segment<2>(2 * static_cast<Eigen::Index>(i)) = errorOf(lens, poseOf(local), corners[i]);
-      out[out.size() - 1] = none[0];
-      return out;
-    };
-    solveBlocks(alone);
-    return poseOf(alone.local.front());
+  // Pose of the board by one camera alone.
+  const auto poseBy = [](BoardCorners corners, const CameraLens& lens) {
+    for (BoardCorner& c : corners) c.pixel = undistorted(lens, c.pixel);
+    return poseOfHomography(homographyOf(corners, Eigen::Vector2d::Zero(), 1.0), 1.0);
   };
   std::vector<BoardCorners> a, b;
-  BlockProblem problem;
-  Pose best;
-  double least = 1e300;
   std::vector<Pose> board;
   for (std::size_t i = 0; i < first.size(); ++i) {
     a.push_back(cornersOfView(first[i], printScale));
     b.push_back(cornersOfView(second[i], printScale));
-    board.push_back(poseBy(first[i], firstLens.lens));
+    board.push_back(poseBy(a.back(), firstLens.lens));
   }
   const auto errors = [&](std::size_t v, const Pose& pair, const Pose& at) {
     Eigen::VectorXd out(2 * static_cast<Eigen::Index>(a[v].size() + b[v].size()));
@@ -231,8 +329,10 @@ PairFit fitPair(const std::vector<BoardView>& first, const LensFit& firstLens, c
     return out;
   };
   // The view whose relative pose explains the others best begins.
+  Pose best;
+  double least = 1e300;
   for (std::size_t i = 0; i < first.size(); ++i) {
-    const Pose there = poseBy(second[i], secondLens.lens);
+    const Pose there = poseBy(b[i], secondLens.lens);
     const Quat turn = there.orientation * board[i].orientation.conjugate();
     const Pose pair{there.position - turn * board[i].position, turn};
     double cost = 0.0;
@@ -242,133 +342,13 @@ PairFit fitPair(const std::vector<BoardView>& first, const LensFit& firstLens, c
       best = pair;
     }
   }
-  problem.shared = vectorOf(best);
-  problem.step = Eigen::VectorXd::Constant(6, 1e-6);
-  for (const Pose& pose : board) problem.local.push_back(vectorOf(pose));
+  BlockProblem problem = problemOf(vectorOf(best), Eigen::VectorXd::Constant(6, 1e-6), board);
   problem.residual = [&](std::size_t v, const Eigen::VectorXd& shared, const Block6& local) {
     return errors(v, poseOf(Block6(shared)), poseOf(local));
   };
   const BlockSolution solution = solveBlocks(problem);
   if (!solution.converged) refuseViews(name, "no place of the second camera explains what both saw");
-  return {poseOf(Block6(problem.shared)), solution.residual, static_cast<int>(first.size())};
-}
-
-namespace {
-
-using Matrix6 = Eigen::Matrix<double, 6, 6>;
-constexpr int mostIterations = 60;
-
-struct BlockTerms {
-  Matrix6 own;
-  Eigen::MatrixXd across;  // shared x 6
-  Block6 gradient;
-};
-
-struct BlockSystem {
-  Eigen::MatrixXd shared;
-  Eigen::VectorXd gradient;
-  std::vector<BlockTerms> block;
-};
-
-double costOf(const BlockProblem& p, const Eigen::VectorXd& shared, const std::vector<Block6>& local,
-              Eigen::Index& count) {
-  double cost = 0.0;
-  count = 0;
-  for (std::size_t b = 0; b < local.size(); ++b) {
-    const Eigen::VectorXd r = p.residual(b, shared, local[b]);
-    cost += r.squaredNorm();
-    count += r.size();
-  }
-  return cost;
-}
-
-BlockSystem systemOf(const BlockProblem& p) {
-  const Eigen::Index n = p.shared.size();
-  BlockSystem out{Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n), {}};
-  for (std::size_t b = 0; b < p.local.size(); ++b) {
-    const Eigen::VectorXd r = p.residual(b, p.shared, p.local[b]);
-    Eigen::MatrixXd toShared(r.size(), n), toLocal(r.size(), 6);
-    for (Eigen::Index i = 0; i < n; ++i) {
-      Eigen::VectorXd up = p.shared, down = p.shared;
-      up[i] += p.step[i];
-      down[i] -= p.step[i];
-      toShared.col(i) = (p.residual(b, up, p.local[b]) - p.residual(b, down, p.local[b])) / (2.0 * p.step[i]);
-    }
-    for (Eigen::Index i = 0; i < 6; ++i) {
-      Block6 up = p.local[b], down = p.local[b];
-      up[i] += p.localStep;
-      down[i] -= p.localStep;
-      toLocal.col(i) = (p.residual(b, p.shared, up) - p.residual(b, p.shared, down)) / (2.0 * p.localStep);
-    }
-    out.shared += toShared.transpose() * toShared;
-    out.gradient += toShared.transpose() * r;
-    out.block.push_back({toLocal.transpose() * toLocal, toShared.transpose() * toLocal, toLocal.transpose() * r});
-  }
-  return out;
-}
-
-/// Normal matrix of the shared unknowns, and its right side, after the blocks' own are eliminated.
-void reduce(const BlockSystem& s, double damping, Eigen::MatrixXd& matrix, Eigen::VectorXd& right) {
-  matrix = s.shared;
-  matrix.diagonal() += damping * s.shared.diagonal();
-  right = -s.gradient;
-  for (const BlockTerms& b : s.block) {
-    Matrix6 own = b.own;
-    own.diagonal() += damping * b.own.diagonal();
-    const Matrix6 inverse = own.inverse();
-    matrix -= b.across * inverse * b.across.transpose();
-    right += b.across * (inverse * b.gradient);
-  }
-}
-
-}  // namespace
-
-BlockSolution solveBlocks(BlockProblem& problem) {
-  Eigen::Index count = 0;
-  double cost = costOf(problem, problem.shared, problem.local, count);
-  double damping = 1e-3;
-  BlockSolution out;
-  for (int iteration = 0; iteration < mostIterations && !out.converged && std::isfinite(cost); ++iteration) {
-    const BlockSystem system = systemOf(problem);
-    for (;;) {
-      Eigen::MatrixXd matrix;
-      Eigen::VectorXd right;
-      reduce(system, damping, matrix, right);
-      const Eigen::VectorXd step = matrix.ldlt().solve(right);
-      const Eigen::VectorXd shared = problem.shared + step;
-      std::vector<Block6> local = problem.local;
-      for (std::size_t b = 0; b < local.size(); ++b) {
-        const BlockTerms& t = system.block[b];
-        Matrix6 own = t.own;
-        own.diagonal() += damping * t.own.diagonal();
-        local[b] += own.ldlt().solve(Block6(-t.gradient - t.across.transpose() * step));
-      }
-      Eigen::Index ignored = 0;
-      const double next = costOf(problem, shared, local, ignored);
-      if (std::isfinite(next) && next <= cost) {
-        out.converged = cost - next <= 1e-10 * (1.0 + cost);
-        problem.shared = shared;
-        problem.local = std::move(local);
-        cost = next;
-        damping = std::max(1e-12, 0.1 * damping);
-        break;
-      }
-      damping *= 10.0;
-      if (damping > 1e9) {
-        out.converged = true;  // no step is downhill
-        break;
-      }
-    }
-  }
-  if (!std::isfinite(cost) || count == 0) return {};
-  const auto unknowns = problem.shared.size() + 6 * static_cast<Eigen::Index>(problem.local.size());
-  out.residual = std::sqrt(2.0 * cost / static_cast<double>(count));  // of points, which have two residuals each
-  Eigen::MatrixXd matrix;
-  Eigen::VectorXd right;
-  reduce(systemOf(problem), 0.0, matrix, right);
-  const double variance = cost / static_cast<double>(std::max<Eigen::Index>(1, count - unknowns));
-  out.uncertainty = (variance * matrix.inverse().diagonal()).cwiseMax(0.0).cwiseSqrt();
-  return out;
+  return {poseOf(Block6(problem.shared())), solution.residual, static_cast<int>(first.size())};
 }
 
 }  // namespace calot::recorder

@@ -4,8 +4,6 @@
 
 #include <cstdint>
 #include <Eigen/Core>
-#include <functional>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -24,7 +22,7 @@ struct BoardView {
 /// @param source is read to its end
 std::vector<BoardView> boardViews(FrameSource& source);
 
-/// Where a corner was seen, and how far from where the lens has it.
+/// Pixel of a corner, and its distance from the lens model's projection.
 struct CornerResidual {
   Eigen::Vector2d pixel, error;
 };
@@ -55,27 +53,5 @@ PairFit fitPair(const std::vector<BoardView>& first, const LensFit& firstLens, c
 /// Moments at which both cameras of a pair saw the board, standing still; views of both, of equal number and order.
 void pairedViews(FrameSource& first, FrameSource& second, std::vector<BoardView>& ofFirst,
                  std::vector<BoardView>& ofSecond);
-
-using Block6 = Eigen::Matrix<double, 6, 1>;
-
-/// A least-squares problem whose unknowns are a few shared ones and six of each block, as bundle adjustment has them
-/// (Triggs et al. 2000, "Bundle adjustment, a modern synthesis").
-struct BlockProblem {
-  /// Residuals of a block; always as many for one block, and finite where the pose is in front of the camera.
-  std::function<Eigen::VectorXd(std::size_t block, const Eigen::VectorXd& shared, const Block6& local)> residual;
-  Eigen::VectorXd shared;     ///< start, then solution
-  std::vector<Block6> local;  ///< likewise
-  Eigen::VectorXd step;       ///< of the shared unknowns, for differences
-  double localStep = 1e-6;
-};
-
-struct BlockSolution {
-  bool converged = false;
-  double residual = 0.0;        ///< root mean square
-  Eigen::VectorXd uncertainty;  ///< standard deviation of each shared unknown
-};
-
-/// Levenberg and Marquardt with central differences and the Schur complement.
-BlockSolution solveBlocks(BlockProblem& problem);
 
 }  // namespace calot::recorder

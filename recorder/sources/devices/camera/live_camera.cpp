@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "recorder/sources/devices/camera/live_camera.h"
+#include "recorder/sources/devices/camera/frame_source.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -28,6 +28,7 @@ namespace {
 constexpr std::int64_t reopenPeriod = 500'000'000;  // ns
 constexpr std::uint32_t buffersWanted = 4;
 constexpr int usualWidth = 1280, usualHeight = 720;
+constexpr double usualRate = 30.0;  // 1/s
 
 int call(int handle, unsigned long request, void* argument) {
   int result = 0;
@@ -35,6 +36,13 @@ int call(int handle, unsigned long request, void* argument) {
     result = ioctl(handle, request, argument);
   } while (result < 0 && errno == EINTR);
   return result;
+}
+
+v4l2_buffer captureBuffer() {
+  v4l2_buffer out{};
+  out.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
+  out.memory = V4L2_MEMORY_MMAP;
+  return out;
 }
 
 std::string textOf(const std::uint8_t* bytes, std::size_t size) {
@@ -54,20 +62,20 @@ std::string cardOf(int handle) {
 }  // namespace
 
 LiveCamera::LiveCamera(std::string file, int width, int height)
-    : file_(std::move(file)), width_(width > 0 ? width : usualWidth), height_(height > 0 ? height : usualHeight) {
+    : FrameSource(std::move(file), width > 0 ? width : usualWidth, height > 0 ? height : usualHeight, usualRate) {
   const std::string fault = start();
   if (fault.empty()) return;
   stop();
-  throw Error(ErrorKind::failure, Where{file_}, fault);
+  throw Error(ErrorKind::failure, Where{name_}, fault);
 }
 
 LiveCamera::~LiveCamera() { stop(); }
 
 std::string LiveCamera::start() {
-  handle_ = ::open(file_.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
+  handle_ = ::open(name_.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
   if (handle_ < 0) return fmt::format("the camera cannot be opened: {}", std::strerror(errno));
   card_ = cardOf(handle_);
-  if (card_.empty()) return "is no camera";
+  if (card_.empty()) return "is not a camera";
   v4l2_format format{};
   for (const std::uint32_t pixels : {V4L2_PIX_FMT_MJPEG, V4L2_PIX_FMT_YUYV}) {
     format = {};
@@ -98,9 +106,7 @@ std::string LiveCamera::start() {
   wanted.memory = V4L2_MEMORY_MMAP;
   if (call(handle_, VIDIOC_REQBUFS, &wanted) < 0 || wanted.count < 2) return "gives no buffers";
   for (std::uint32_t i = 0; i < wanted.count; ++i) {
-    v4l2_buffer buffer{};
-    buffer.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
-    buffer.memory = V4L2_MEMORY_MMAP;
+    v4l2_buffer buffer = captureBuffer();
     buffer.index = i;
     if (call(handle_, VIDIOC_QUERYBUF, &buffer) < 0) return "gives no buffers";
     void* const address = mmap(nullptr, buffer.length, PROT_READ, MAP_SHARED, handle_, buffer.m.offset);
@@ -158,12 +164,10 @@ FrameStatus LiveCamera::next(std::chrono::nanoseconds wait, Frame& out) {
   pollfd ready{handle_, POLLIN, 0};
   const auto milliseconds = std::chrono::duration_cast<std::chrono::milliseconds>(wait).count();
   if (::poll(&ready, 1, static_cast<int>(milliseconds)) <= 0) return FrameStatus::none;
-  v4l2_buffer buffer{};
-  buffer.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
-  buffer.memory = V4L2_MEMORY_MMAP;
+  v4l2_buffer buffer = captureBuffer();
   if (call(handle_, VIDIOC_DQBUF, &buffer) < 0) {
     if (errno == EAGAIN) return FrameStatus::none;
-    reason_ = fmt::format("{}: {}", file_, std::strerror(errno));
+    reason_ = fmt::format("{}: {}", name_, std::strerror(errno));
     stop();
     return FrameStatus::lost;
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-#include "recorder/sources/devices/camera/video_file.h"
+#include "recorder/sources/devices/camera/frame_source.h"
 
 #include <fmt/format.h>
 #include <cmath>
@@ -20,10 +20,6 @@ namespace {
 constexpr int mostWidth = 8192;
 constexpr double lateBy = 1.5;  // periods from frame to frame; more: one is missing between them
 
-struct CloseInput {
-  void operator()(AVFormatContext* p) const { avformat_close_input(&p); }
-};
-
 std::string reasonOfAv(int error) {
   std::array<char, AV_ERROR_MAX_STRING_SIZE> text{};
   av_strerror(error, text.data(), text.size());
@@ -32,109 +28,81 @@ std::string reasonOfAv(int error) {
 
 }  // namespace
 
-struct VideoFile::Impl {
-  std::string name, reason;
-  std::unique_ptr<AVFormatContext, CloseInput> format;
-  GreyDecoder decoder;
-  HeldAv<AVFrame> frame;
-  HeldAv<AVPacket> packet;
-  AVStream* stream = nullptr;  // of the format
-  int width = 0, height = 0;
-  double rate = 0.0;
-  std::int64_t first = AV_NOPTS_VALUE;  // in the stream's units
-  std::int64_t last = -1;               // ns
-  bool drained = false, ended = false;
+void VideoFile::fail(const std::string& why) const { throw Error(ErrorKind::damaged, Where{name_}, why); }
 
-  [[noreturn]] void fail(const std::string& why) const { throw Error(ErrorKind::damaged, Where{name}, why); }
-
-  void open(const std::filesystem::path& file) {
-    std::error_code ignored;
-    if (!std::filesystem::is_regular_file(file, ignored)) fail("there is no such file");
-    AVDictionary* options = nullptr;
-    av_dict_set(&options, "protocol_whitelist", "file", 0);  // a play list may not lead elsewhere
-    AVFormatContext* opened = nullptr;
-    const int result = avformat_open_input(&opened, fmt::format("file:{}", file.string()).c_str(), nullptr, &options);
-    av_dict_free(&options);
-    if (result < 0) fail(fmt::format("is no film that can be read: {}", reasonOfAv(result)));
-    format.reset(opened);
-    if (avformat_find_stream_info(format.get(), nullptr) < 0) fail("is no film that can be read");
-    const int which = av_find_best_stream(format.get(), AVMEDIA_TYPE_VIDEO, -1, -1, nullptr, 0);
-    if (which < 0) fail("holds no pictures");
-    stream = format->streams[which];
-    width = stream->codecpar->width;
-    height = stream->codecpar->height;
-    if (width < 16 || height < 16 || width > mostWidth || height > mostWidth)
-      fail(fmt::format("its pictures have {} x {} pixels", width, height));
-    const AVRational guess = stream->r_frame_rate.num > 0 ? stream->r_frame_rate : stream->avg_frame_rate;
-    rate = guess.den > 0 ? av_q2d(guess) : 0.0;
-    if (!(rate >= 1.0 && rate <= 1000.0)) fail("does not say how many frames a second it has");
-    if (!decoder.open(*stream->codecpar)) fail("its pictures are of a kind that this libav cannot decode");
-    frame.reset(av_frame_alloc());
-    packet.reset(av_packet_alloc());
-    if (!frame || !packet) fail("not enough memory");
-  }
-
-  /// @returns false at the end
-  bool decode() {
-    for (;;) {
-      const int result = avcodec_receive_frame(decoder.context(), frame.get());
-      if (result >= 0) return true;
-      if (result != AVERROR(EAGAIN) || drained) return false;
-      for (;;) {
-        const int read = av_read_frame(format.get(), packet.get());
-        if (read < 0) {
-          if (read != AVERROR_EOF) reason = fmt::format("{}: breaks off: {}", name, reasonOfAv(read));
-          drained = true;
-          avcodec_send_packet(decoder.context(), nullptr);
-          break;
-        }
-        const bool ours = packet->stream_index == stream->index;
-        const int sent = ours ? avcodec_send_packet(decoder.context(), packet.get()) : 0;
-        av_packet_unref(packet.get());
-        if (sent < 0) reason = fmt::format("{}: a damaged frame was left out: {}", name, reasonOfAv(sent));
-        if (ours && sent >= 0) break;
-      }
-    }
-  }
-};
-
-VideoFile::VideoFile(const std::filesystem::path& file) : impl_(std::make_unique<Impl>()) {
+VideoFile::VideoFile(const std::filesystem::path& file) : FrameSource(file.filename().string(), 0, 0, 0.0) {
+  static_assert(AV_NOPTS_VALUE == INT64_MIN);
   av_log_set_level(AV_LOG_QUIET);  // errors are reported by return values
-  impl_->name = file.filename().string();
-  impl_->open(file);
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(file, ignored)) fail("there is no such file");
+  AVDictionary* options = nullptr;
+  av_dict_set(&options, "protocol_whitelist", "file", 0);  // a play list may not lead elsewhere
+  AVFormatContext* opened = nullptr;
+  const int result = avformat_open_input(&opened, fmt::format("file:{}", file.string()).c_str(), nullptr, &options);
+  av_dict_free(&options);
+  if (result < 0) fail(fmt::format("is no film that can be read: {}", reasonOfAv(result)));
+  format_.reset(opened);
+  if (avformat_find_stream_info(format_.get(), nullptr) < 0) fail("is no film that can be read");
+  const int which = av_find_best_stream(format_.get(), AVMEDIA_TYPE_VIDEO, -1, -1, nullptr, 0);
+  if (which < 0) fail("holds no pictures");
+  stream_ = format_->streams[which];
+  width_ = stream_->codecpar->width;
+  height_ = stream_->codecpar->height;
+  if (width_ < 16 || height_ < 16 || width_ > mostWidth || height_ > mostWidth)
+    fail(fmt::format("its pictures have {} x {} pixels", width_, height_));
+  const AVRational guess = stream_->r_frame_rate.num > 0 ? stream_->r_frame_rate : stream_->avg_frame_rate;
+  rate_ = guess.den > 0 ? av_q2d(guess) : 0.0;
+  if (!(rate_ >= 1.0 && rate_ <= 1000.0)) fail("does not say how many frames a second it has");
+  if (!decoder_.open(*stream_->codecpar)) fail("its pictures are of a kind that this libav cannot decode");
+  frame_.reset(av_frame_alloc());
+  packet_.reset(av_packet_alloc());
+  if (!frame_ || !packet_) fail("not enough memory");
 }
 
-VideoFile::~VideoFile() = default;
+bool VideoFile::decode() {
+  for (;;) {
+    const int result = avcodec_receive_frame(decoder_.context(), frame_.get());
+    if (result >= 0) return true;
+    if (result != AVERROR(EAGAIN) || drained_) return false;
+    for (;;) {
+      const int read = av_read_frame(format_.get(), packet_.get());
+      if (read < 0) {
+        if (read != AVERROR_EOF) reason_ = fmt::format("{}: breaks off: {}", name_, reasonOfAv(read));
+        drained_ = true;
+        avcodec_send_packet(decoder_.context(), nullptr);
+        break;
+      }
+      const bool ours = packet_->stream_index == stream_->index;
+      const int sent = ours ? avcodec_send_packet(decoder_.context(), packet_.get()) : 0;
+      av_packet_unref(packet_.get());
+      if (sent < 0) reason_ = fmt::format("{}: a damaged frame was left out: {}", name_, reasonOfAv(sent));
+      if (ours && sent >= 0) break;
+    }
+  }
+}
 
 FrameStatus VideoFile::next(std::chrono::nanoseconds, Frame& out) {
-  Impl& i = *impl_;
-  while (!i.ended) {
-    if (!i.decode()) break;
-    const std::int64_t stamp = i.frame->best_effort_timestamp;
+  while (!ended_) {
+    if (!decode()) break;
+    const std::int64_t stamp = frame_->best_effort_timestamp;
     if (stamp == AV_NOPTS_VALUE) {
-      i.reason = i.name + ": a frame without a time was left out";
+      reason_ = name_ + ": a frame without a time was left out";
       continue;
     }
-    if (i.first == AV_NOPTS_VALUE) i.first = stamp;
-    const std::int64_t time = av_rescale_q(stamp - i.first, i.stream->time_base, AVRational{1, 1'000'000'000});
-    if (time <= i.last || !i.decoder.convert(*i.frame, i.width, i.height, out.image)) {
-      i.reason = i.name + ": a frame out of order or of another size was left out";
+    if (first_ == AV_NOPTS_VALUE) first_ = stamp;
+    const std::int64_t time = av_rescale_q(stamp - first_, stream_->time_base, AVRational{1, 1'000'000'000});
+    if (time <= last_ || !decoder_.convert(*frame_, width_, height_, out.image)) {
+      reason_ = name_ + ": a frame out of order or of another size was left out";
       continue;
     }
-    const double periods = i.last < 0 ? 1.0 : 1e-9 * static_cast<double>(time - i.last) * i.rate;
+    const double periods = last_ < 0 ? 1.0 : 1e-9 * static_cast<double>(time - last_) * rate_;
     out.missed = periods > lateBy ? static_cast<std::uint64_t>(std::floor(periods - 0.5)) : 0;
-    out.time = i.last = time;
+    out.time = last_ = time;
     return FrameStatus::frame;
   }
-  i.ended = true;
+  ended_ = true;
   return FrameStatus::ended;
 }
-
-int VideoFile::width() const { return impl_->width; }
-int VideoFile::height() const { return impl_->height; }
-double VideoFile::rate() const { return impl_->rate; }
-std::string VideoFile::name() const { return impl_->name; }
-std::string VideoFile::reason() const { return impl_->reason; }
 
 }  // namespace calot::recorder
 
@@ -168,6 +136,7 @@ bool start(AVCodecContext* context, const AVCodec* codec) {
 }  // namespace
 
 void FreeAv::operator()(AVCodecContext* p) const { avcodec_free_context(&p); }
+void FreeAv::operator()(AVFormatContext* p) const { avformat_close_input(&p); }
 void FreeAv::operator()(AVFrame* p) const { av_frame_free(&p); }
 void FreeAv::operator()(AVPacket* p) const { av_packet_free(&p); }
 void FreeAv::operator()(SwsContext* p) const { sws_freeContext(p); }

@@ -3,52 +3,20 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <charconv>
-#include <thread>
 #include <utility>
-
-#include "recorder/base/errors.h"
 
 namespace calot::recorder {
 namespace {
 
-constexpr std::int64_t reconnectPeriod = 500'000'000;  // ns from one attempt to connect to the next
 constexpr std::chrono::milliseconds connectPatience{300};
 constexpr std::int64_t greetingPatience = 1'000'000'000;  // ns
-constexpr std::int64_t longestFall = 200'000'000;         // ns
-
-ForceDeviceSettings settingsOf(const DeviceRequest& request) {
-  ForceDeviceSettings out;
-  out.hands = request.hand ? static_cast<std::uint8_t>(1U << static_cast<unsigned>(*request.hand)) : std::uint8_t{3};
-  if (request.argument.empty()) return out;
-  std::string port;
-  out.host = request.argument;
-  if (const std::size_t colon = out.host.rfind(':'); colon != std::string::npos) {
-    port = out.host.substr(colon + 1);
-    out.host = out.host.substr(0, colon);
-    if (port.empty()) request.refuse("a port is missing behind the colon");
-  }
-  if (out.host.empty() || out.host.size() > 253) request.refuse("a host is missing: force:HOST:PORT");
-  for (const char c : out.host) {
-    if (c <= 0x20 || c >= 0x7f || c == '/' || c == ':') request.refuse("the host is no name or address");
-  }
-  if (port.empty()) return out;
-  const auto [end, fault] = std::from_chars(port.data(), port.data() + port.size(), out.port);
-  if (fault != std::errc() || end != port.data() + port.size() || out.port < 1 || out.port > 65535)
-    request.refuse("the port is no number from 1 to 65535");
-  return out;
-}
 
 }  // namespace
 
 ForceDevice::ForceDevice(ForceDeviceSettings settings, DeviceClock clock)
-    : settings_(std::move(settings)), clock_(std::move(clock)) {
-  const std::string fault = connect();
-  if (!fault.empty()) {
-    throw Error(ErrorKind::failure, fmt::format("force device {}:{}: {}", settings_.host, settings_.port, fault),
-                {Remedy::listDevices});
-  }
+    : ForceFeedbackDevice(std::move(clock)), settings_(std::move(settings)) {
+  connectFirst(fmt::format("force device {}:{}", settings_.host, settings_.port));
+  gone_ = "the device is gone";
   const forcewire::Hello& hello = *hello_;
   info_.name = forceKind.name;
   info_.identity = fmt::format("force:{}/{}", hello.name, hello.serial);
@@ -69,15 +37,13 @@ ForceDevice::ForceDevice(ForceDeviceSettings settings, DeviceClock clock)
   c.rate = hello.rate;
 }
 
-ForceDevice::~ForceDevice() { close(); }
-
 std::string ForceDevice::connect() {
   std::string fault;
-  nextAttempt_ = clock_() + reconnectPeriod;
   stream_ = TcpStream::connect(settings_.host, settings_.port, connectPatience, fault);
   if (!stream_.open()) return fault;
   decoder_.reset();
   frames_.clear();
+  toldInvalid_ = false;
   std::array<std::byte, 4096> buffer;
   const std::int64_t until = clock_() + greetingPatience;
   while (frames_.empty() && stream_.open() && clock_() < until) {
@@ -95,9 +61,9 @@ std::string ForceDevice::connect() {
   if (frames_.empty()) return refuse("it does not say what it is");
   if (const auto* told = std::get_if<forcewire::Fault>(&frames_.front())) return refuse("it says: " + told->text);
   const auto* hello = std::get_if<forcewire::Hello>(&frames_.front());
-  if (hello == nullptr) return refuse("its first frame is no greeting");
+  if (hello == nullptr) return refuse("its first frame is not a greeting");
   if (std::string wrong = forcewire::faultOf(*hello); !wrong.empty()) return refuse(std::move(wrong));
-  if ((hello->hands & settings_.hands) == 0) return refuse("it has not the hand that is wanted");
+  if ((hello->hands & settings_.hands) == 0) return refuse("it does not have the requested hand");
   if (hello_ && (hello_->name != hello->name || hello_->serial != hello->serial || hello_->hands != hello->hands ||
                  hello_->handle.force.maxEffort != hello->handle.force.maxEffort))
     return refuse(fmt::format("another device answers there: {} ({})", hello->name, hello->serial));
@@ -105,25 +71,6 @@ std::string ForceDevice::connect() {
   frames_.erase(frames_.begin());
   stream_.send(forcewire::encode(forcewire::Welcome{forcewire::version, settings_.hands}));
   return {};
-}
-
-void ForceDevice::reconnect(DeviceInput& out) {
-  const std::string fault = connect();
-  if (fault == refusal_) return;
-  refusal_ = fault;
-  if (!fault.empty())
-    out.events.push_back({DeviceEvent::Kind::disconnected, clock_(), fmt::format("{}: {}", info_.identity, fault)});
-}
-
-void ForceDevice::lose(const std::string& why, DeviceInput& out) {
-  stream_.close();
-  nextAttempt_ = clock_() + reconnectPeriod;
-  greeted_ = false;
-  refusal_.clear();
-  for (auto& output : output_) {
-    if (output) output->lost();
-  }
-  out.events.push_back({DeviceEvent::Kind::disconnected, clock_(), fmt::format("{}: {}", info_.identity, why)});
 }
 
 void ForceDevice::take(const forcewire::Pose& pose, DeviceInput& out) {
@@ -142,103 +89,51 @@ void ForceDevice::take(const forcewire::Pose& pose, DeviceInput& out) {
     sample.gripper = pose.gripper;
     sample.buttons = pose.buttons;
   } else if (pose.valid && !std::exchange(toldInvalid_, true)) {
-    out.events.push_back({DeviceEvent::Kind::malformed, now,
-                          fmt::format("{}: a pose that is not finite, too far, or no rotation", info_.identity)});
+    tell(DeviceEvent::Kind::malformed, info_.identity + ": a pose that is not finite, too far, or no rotation", out);
   }
   out.samples.push_back(sample);
 
-  HandleMeasurement m;
-  m.position = sample.position;
-  m.orientation = sample.orientation;
-  m.deviceTime = pose.deviceTime;
-  m.number = pose.number;
-  m.valid = sample.valid;
-  if (sample.valid) m.shown = pose.shown;
-  m.clutched = (sample.buttons & clutchButton) != 0;
-  const Wrench wrench = output_[h]->measured(m, now);
+  const HandleMeasurement measurement{.position = sample.position,
+                                      .orientation = sample.orientation,
+                                      .deviceTime = pose.deviceTime,
+                                      .number = pose.number,
+                                      .shown = sample.valid ? pose.shown : Wrench{},
+                                      .valid = sample.valid,
+                                      .clutched = (sample.buttons & clutchButton) != 0};
+  const Wrench wrench = measured(h, measurement, now);
   stream_.send(forcewire::encode(forcewire::WrenchFrame{pose.hand, output_[h]->number(), pose.deviceTime, wrench}));
-  reports_.note(h, output_[h]->statistics());
 }
 
-void ForceDevice::receive(DeviceInput& out) {
-  std::array<std::byte, 16384> buffer;
-  // Bounded, so that a sender that never stops cannot hold the thread.
-  for (int i = 0; i < 16 && stream_.open(); ++i) {
-    const std::size_t n = stream_.receive(buffer);
-    if (n == 0) break;
-    if (!decoder_.take(std::span(buffer.data(), n), frames_)) {
-      lose("disconnected: " + decoder_.fault(), out);
-      return;
-    }
+void ForceDevice::read(std::chrono::nanoseconds wait, DeviceInput& out) {
+  if (wait.count() > 0 && frames_.empty() && !stream_.readable(wait)) return;
+  if (!stream_.receiveAll([this](std::span<const std::byte> bytes) { return decoder_.take(bytes, frames_); })) {
+    lose("disconnected: " + decoder_.fault(), out);
+    return;
   }
   for (const forcewire::Frame& frame : std::exchange(frames_, {})) {
     if (const auto* pose = std::get_if<forcewire::Pose>(&frame)) {
       take(*pose, out);
     } else if (const auto* told = std::get_if<forcewire::Fault>(&frame)) {
-      out.events.push_back(
-          {DeviceEvent::Kind::status, clock_(), fmt::format("{} says: {}", info_.identity, told->text)});
+      tell(DeviceEvent::Kind::status, fmt::format("{} says: {}", info_.identity, told->text), out);
     } else if (std::holds_alternative<forcewire::End>(frame)) {
       stream_.close();
       break;
     }
   }
-  if (!stream_.open()) lose("the device is gone", out);
-}
-
-void ForceDevice::poll(std::chrono::nanoseconds wait, DeviceInput& out) {
-  if (!open_) return;
-  if (!stream_.open()) {
-    if (clock_() < nextAttempt_) {
-      std::this_thread::sleep_for(std::min<std::chrono::nanoseconds>(wait, std::chrono::milliseconds(20)));
-      return;
-    }
-    reconnect(out);
-    if (!stream_.open()) return;
-  }
-  if (!greeted_) {
-    greeted_ = true;
-    toldInvalid_ = false;
-    out.events.push_back({DeviceEvent::Kind::connected, clock_(), info_.identity + ": there"});
-  }
-  if (wait.count() > 0 && frames_.empty() && !stream_.readable(wait)) return;
-  receive(out);
-}
-
-void ForceDevice::setWrench(Hand hand, const Wrench& wrench) {
-  auto& output = output_[static_cast<std::size_t>(hand)];
-  if (output) output->command(wrench, clock_());
-}
-
-void ForceDevice::close() {
-  if (!open_) return;
-  for (auto& output : output_) {
-    if (output) output->release();
-  }
-  const std::int64_t until = clock_() + longestFall;
-  DeviceInput unread;
-  const auto idle = [this] {
-    return std::all_of(output_.begin(), output_.end(), [](const auto& o) { return !o || o->idle(); });
-  };
-  while (stream_.open() && !idle() && clock_() < until) poll(std::chrono::milliseconds(2), unread);
-  open_ = false;
-  if (stream_.open()) stream_.send(forcewire::encode(forcewire::End{}));
-  stream_.close();
 }
 
 constinit const DeviceKind forceKind{
     .name = "force",
     .usage = "force[:HOST[:PORT]]",
     .help = "a force device by Calot's own protocol; calot devices simulate plays one",
-    .list =
-        [] {
-          return std::vector<ListedDevice>{
-              {"force:HOST:PORT",
-               fmt::format("a force device by Calot's own protocol; default localhost:{}", forcewire::defaultPort),
-               true, "2", "6, jaw, buttons; shows force", "1000"}};
-        },
+    .row = {"force:HOST:PORT", "a force device by Calot's own protocol; default localhost:18950", "2",
+            "6, jaw, buttons; shows force", "1000"},
     .open =
         [](const DeviceRequest& request) {
-          return OpenedDevice{std::make_unique<ForceDevice>(settingsOf(request)), nullptr};
+          ForceDeviceSettings settings;
+          if (request.hand) settings.hands = static_cast<std::uint8_t>(1U << static_cast<unsigned>(*request.hand));
+          request.readAddress(settings.host, settings.port);
+          return OpenedDevice{std::make_unique<ForceDevice>(std::move(settings)), nullptr};
         },
 };
 

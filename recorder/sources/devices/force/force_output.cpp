@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace calot::recorder {
 namespace {
@@ -64,6 +65,7 @@ void EnergyTank::reset() {
 namespace {
 
 constexpr double torqueShare = 1.0 / 25.0;
+constexpr std::int64_t longestFall = 200'000'000;  // ns, of the force when the device is closed
 constexpr double longestPeriod = 0.02;  // s; a device that was silent for longer does not make the force jump
 
 Vec3 limited(const Vec3& v, double longest) {
@@ -96,20 +98,6 @@ std::string forceReport(const char* hand, const ForceStatistics& s) {
       "force on the {} hand: {} wrenches, at most {:.2f} N, changes of at most {:.3f} N, {} softened to stay passive, "
       "round trip at most {:.1f} ms",
       hand, s.sent, s.maxForce, s.maxChange, s.softened, 1e-6 * static_cast<double>(s.maxRoundTrip));
-}
-
-void ForceReports::note(std::size_t hand, const ForceStatistics& statistics) {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  statistics_[hand] = statistics;
-}
-
-std::vector<std::string> ForceReports::lines() const {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  std::vector<std::string> out;
-  for (std::size_t h = 0; h < handCount; ++h) {
-    if (statistics_[h].sent > 0) out.push_back(forceReport(handNames[h], statistics_[h]));
-  }
-  return out;
 }
 
 ForceOutput::ForceOutput(const HandleModel& model) : model_(model), force_(model.force), torque_(model.torque) {}
@@ -154,7 +142,7 @@ Wrench ForceOutput::measured(const HandleMeasurement& measurement, std::int64_t 
     const Vec3 wanted = gain_ * asked;
     tank.settle(std::max(wanted.norm(), sent.norm()));
     const Vec3 reached = towards(sent, wanted, slew * seconds);
-    // Where the motion is not known, nor is its energy: the force falls.
+    // If the motion is unknown, so is its energy: the force falls.
     if (!measurement.valid) return limited(reached, sent.norm());
     const Vec3 out = limited(reached, tank.bound());
     if (out.norm() < reached.norm()) ++statistics_.softened;
@@ -180,6 +168,48 @@ void ForceOutput::lost() {
   sent_ = {};
   gain_ = 0.0;
   seen_ = heard_ = false;
+}
+
+void ForceFeedbackDevice::setWrench(Hand hand, const Wrench& wrench) {
+  auto& output = output_[static_cast<std::size_t>(hand)];
+  if (output) output->command(wrench, clock_());
+}
+
+Wrench ForceFeedbackDevice::measured(std::size_t hand, const HandleMeasurement& measurement, std::int64_t now) {
+  const Wrench wrench = output_[hand]->measured(measurement, now);
+  const std::lock_guard<std::mutex> lock(mutex_);
+  statistics_[hand] = output_[hand]->statistics();
+  return wrench;
+}
+
+std::vector<std::string> ForceFeedbackDevice::report() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  std::vector<std::string> out;
+  for (std::size_t h = 0; h < handCount; ++h) {
+    if (statistics_[h].sent > 0) out.push_back(forceReport(handNames[h], statistics_[h]));
+  }
+  return out;
+}
+
+void ForceFeedbackDevice::lose(const std::string& why, DeviceInput& out) {
+  for (auto& output : output_) {
+    if (output) output->lost();
+  }
+  ReopeningDevice::lose(why, out);
+}
+
+void ForceFeedbackDevice::close() {
+  if (std::exchange(closed_, true)) return;
+  for (auto& output : output_) {
+    if (output) output->release();
+  }
+  const auto idle = [](const auto& output) { return !output || output->idle(); };
+  const std::int64_t until = clock_() + longestFall;
+  DeviceInput unread;
+  while (connected() && !std::all_of(output_.begin(), output_.end(), idle) && clock_() < until)
+    poll(std::chrono::milliseconds(2), unread);
+  if (connected()) sayGoodbye();
+  ReopeningDevice::close();
 }
 
 }  // namespace calot::recorder

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -105,18 +106,6 @@ struct ForceStatistics {
 /// A line for people: "force on the left hand: ...".
 std::string forceReport(const char* hand, const ForceStatistics& statistics);
 
-/// State of both hands' outputs, for a thread that reads while another one drives the device.
-class ForceReports {
- public:
-  void note(std::size_t hand, const ForceStatistics& statistics);
-  /// A line for each hand that was sent a wrench.
-  [[nodiscard]] std::vector<std::string> lines() const;
-
- private:
-  mutable std::mutex mutex_;
-  std::array<ForceStatistics, handCount> statistics_;
-};
-
 /// Between the simulation's force and a device's motors, for one hand. What is sent
 ///   - never exceeds the device's limits, and is finite;
 ///   - is passive (EnergyTank), whatever stiffness, delay and jitter there is;
@@ -143,7 +132,7 @@ class ForceOutput {
   void release() { released_ = true; }
   /// Has it fallen?
   [[nodiscard]] bool idle() const { return sent_.force.isZero() && sent_.torque.isZero(); }
-  /// The device is gone: its motors are off by themselves. When it is back, the force rises anew.
+  /// The device is gone: its motors are off by themselves. When it is back, the force rises again.
   void lost();
 
   [[nodiscard]] const ForceStatistics& statistics() const { return statistics_; }
@@ -166,6 +155,31 @@ class ForceOutput {
   std::uint32_t shown_ = 0;
   std::array<std::int64_t, 1024> sentAt_{};  ///< by number
   ForceStatistics statistics_;
+};
+
+/// A device with motors: each hand's wrench goes through a ForceOutput.
+class ForceFeedbackDevice : public ReopeningDevice {
+ public:
+  void setWrench(Hand hand, const Wrench& wrench) final;
+  /// Lets the force fall to zero first, for at most a fifth of a second.
+  void close() final;
+  /// A line for each hand that was sent a wrench.
+  [[nodiscard]] std::vector<std::string> report() const final;
+
+ protected:
+  using ReopeningDevice::ReopeningDevice;
+  /// The last message of an open connection, after the force has fallen.
+  virtual void sayGoodbye() = 0;
+  /// A pose came. @returns the wrench to be sent now @pre the hand has an output
+  Wrench measured(std::size_t hand, const HandleMeasurement& measurement, std::int64_t now);
+  void lose(const std::string& why, DeviceInput& out) final;
+
+  std::array<std::optional<ForceOutput>, handCount> output_;
+
+ private:
+  mutable std::mutex mutex_;  ///< report() may come from another thread
+  std::array<ForceStatistics, handCount> statistics_;
+  bool closed_ = false;
 };
 
 }  // namespace calot::recorder

@@ -81,8 +81,8 @@ IntendedPath::IntendedPath(const DeviceScript& script, Hand hand) {
   }
 }
 
-Intention IntendedPath::at(double seconds) const {
-  Intention out;
+DeviceSample IntendedPath::at(double seconds) const {
+  DeviceSample out;
   if (samples_.empty()) {
     const double turn = 2.0 * std::numbers::pi * seconds;
     const double reach = 0.5 - 0.5 * std::cos(0.25 * turn);
@@ -93,7 +93,7 @@ Intention IntendedPath::at(double seconds) const {
   const auto after = std::upper_bound(samples_.begin(), samples_.end(), time,
                                       [](std::int64_t t, const DeviceSample& s) { return t < s.hostTime; });
   const DeviceSample& a = after == samples_.begin() ? samples_.front() : *(after - 1);
-  out = {a.position, a.orientation, a.gripper, a.buttons};
+  out = a;
   if (after == samples_.begin() || after == samples_.end()) return out;
   const DeviceSample& b = *after;
   const double share = static_cast<double>(time - a.hostTime) / static_cast<double>(b.hostTime - a.hostTime);
@@ -165,7 +165,7 @@ bool ForceServer::receive(TcpStream& client, double now) {
 }
 
 forcewire::Pose ForceServer::tick(Handle& handle, double now) const {
-  const Intention wish = handle.path.at(now);
+  const DeviceSample wish = handle.path.at(now);
   // The interval that ends now was spent under the wrench that was in force.
   const double silent = now - handle.heard - 0.001 * hello_.watchdog;
   const double share = std::clamp(1.0 - silent / watchdogFall, 0.0, 1.0);
@@ -224,14 +224,7 @@ void ForceServer::serve(TcpStream client, const std::atomic<bool>& stop,
 }
 
 void ForceServer::run(const std::atomic<bool>& stop, const std::function<void(const std::string&)>& tell) {
-  while (!stop) {
-    std::optional<TcpStream> client = listener_.accept(patience);
-    if (!client) continue;
-    tell("a client is there");
-    serve(std::move(*client), stop, tell);
-    tell("the client is gone");
-    if (settings_.once) return;
-  }
+  listener_.serve(stop, settings_.once, tell, [&](TcpStream client) { serve(std::move(client), stop, tell); });
 }
 
 }  // namespace calot::recorder

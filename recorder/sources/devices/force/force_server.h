@@ -73,22 +73,15 @@ struct ForceServerSettings {
   bool once = false;  ///< end when the first client has gone
 };
 
-/// Intention of the hand: its path, roll, jaw and buttons.
-struct Intention {
-  Vec3 position = Vec3::Zero();
-  Quat orientation = Quat::Identity();
-  double gripper = 0.0;
-  std::uint8_t buttons = 0;
-};
-
-/// Where a hand of a script wants to be, in between its samples on the straight line. At its end it stays.
+/// Target of a scripted hand, between its samples on the straight line. At its end it stays.
 class IntendedPath {
  public:
   IntendedPath(const DeviceScript& script, Hand hand);
   /// A path of its own: reaches 65 mm away and back every four seconds, in small circles: in touch-liver the right hand
   /// meets the liver.
   IntendedPath() = default;
-  [[nodiscard]] Intention at(double seconds) const;
+  /// Pose, gripper and buttons.
+  [[nodiscard]] DeviceSample at(double seconds) const;
 
  private:
   std::vector<DeviceSample> samples_;

@@ -22,13 +22,13 @@ inline constexpr std::size_t maxText = 200;
 /// Description of a device: its first frame.
 struct Hello {
   std::uint16_t version = forcewire::version;
-  std::uint8_t hands = 2;         ///< bit 0 left, bit 1 right
-  std::uint32_t watchdog = 50;    ///< ms without a wrench after which its motors go off
-  double rate = 1000.0;           ///< poses a second and hand
-  HandleModel handle;             ///< limits, least damping and friction, quanta
-  std::array<Vec3, 2> workspace;  ///< lower and upper corner in D (m); both zero: without bounds
-  std::string name, serial;       ///< at most 63 and 31 bytes
-  Hello() { workspace.fill(Vec3::Zero()); }
+  std::uint8_t hands = 2;       ///< bit 0 left, bit 1 right
+  std::uint32_t watchdog = 50;  ///< ms without a wrench after which its motors go off
+  double rate = 1000.0;         ///< poses a second and hand
+  HandleModel handle;           ///< limits, least damping and friction, quanta
+  /// Lower and upper corner in D (m); both zero: without bounds.
+  std::array<Vec3, 2> workspace{Vec3::Zero(), Vec3::Zero()};
+  std::string name, serial;  ///< at most 63 and 31 bytes
 };
 
 /// The host's reply.
@@ -65,9 +65,9 @@ struct End {};
 
 using Frame = std::variant<Hello, Welcome, Pose, WrenchFrame, Fault, End>;
 
-std::vector<std::byte> encode(const Frame& frame);
+std::vector<std::byte> encode(Frame frame);
 
-/// Takes a stream apart. A stream that is none is refused as a whole; numbers that make no sense are the receiver's.
+/// Parses a stream. A malformed stream is refused as a whole; the receiver checks the numbers.
 class Decoder {
  public:
   /// Appends the frames that are complete. @returns false, with `fault()`, where the stream is not this protocol.

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <array>
+#include <chrono>
+#include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
@@ -9,9 +11,28 @@
 
 #include "recorder/sources/devices/device.h"
 #include "recorder/sources/devices/force/force_output.h"
-#include "recorder/sources/devices/force/websocket_stream.h"
 
 namespace calot::recorder {
+
+/// Client's end of a WebSocket (RFC 6455) that carries text, by Boost.Beast. Never blocks longer than asked; nothing
+/// throws: a broken connection is closed, which callers can query.
+class WebSocketStream {
+ public:
+  /// @returns a stream that is not open where nobody answered within `wait`; `fault` then says why.
+  static WebSocketStream connect(const std::string& host, int port, std::chrono::milliseconds wait, std::string& fault);
+
+  [[nodiscard]] bool open() const;
+  /// The next message. @returns false where none came within `wait`, or the stream is closed.
+  bool receive(std::string& text, std::chrono::nanoseconds wait);
+  /// Sends a message; one that waits for the one before it is replaced by a newer one.
+  void send(std::string text);
+  /// Says good-bye and closes.
+  void close() { inside_.reset(); }
+
+ private:
+  struct Inside;
+  std::shared_ptr<Inside> inside_;
+};
 
 struct HaplySettings {
   std::string host = "localhost";
@@ -25,46 +46,36 @@ struct HaplySettings {
 /// The service answers each message with one state: a force is sent for each state, at most a thousand a second. Its
 /// frame (x right, y forward, z up) is turned into D (x right, y down, z away). A VerseGrip gives orientation and
 /// buttons: A closes the jaw, B opens it, both are the clutch, C cuts or fires.
-class HaplyDevice final : public Device {
+class HaplyDevice final : public ForceFeedbackDevice {
  public:
   /// @throws Error (failure) where no service answers, or it has no Inverse3.
   explicit HaplyDevice(HaplySettings settings, DeviceClock clock = monotonicNanoseconds);
-  ~HaplyDevice() override;
+  ~HaplyDevice() override { close(); }
 
-  [[nodiscard]] const DeviceInfo& info() const override { return info_; }
-  void poll(std::chrono::nanoseconds wait, DeviceInput& out) override;
   [[nodiscard]] bool connected() const override { return stream_.open(); }
-  void setWrench(Hand hand, const Wrench& wrench) override;
-  /// Lets the force fall to zero first, for at most a fifth of a second.
-  void close() override;
-  [[nodiscard]] std::vector<std::string> report() const override { return reports_.lines(); }
 
  private:
   struct Handle {
     std::string id;  ///< of the Inverse3
-    ForceOutput output;
-    Wrench shown;  ///< command before the last: what was in force until the last state
+    Wrench shown;    ///< command before the last: what was in force until the last state
     Wrench last;
     std::uint64_t sequence = 0;
     double jaw = 0.0;
     std::int64_t time = 0;  ///< ns, of the last state
-    explicit Handle(std::string name);
   };
-  std::string connect();
+  std::string connect() override;
+  void disconnect() override { stream_.close(); }
+  void read(std::chrono::nanoseconds wait, DeviceInput& out) override;
+  void sayGoodbye() override { sendForces(); }
   void take(const std::string& text, DeviceInput& out);
   void sample(std::size_t hand, const nlohmann::json& device, const nlohmann::json* grip, DeviceInput& out);
   void sendForces();
-  void lose(const std::string& why, DeviceInput& out);
 
   HaplySettings settings_;
-  DeviceInfo info_;
-  DeviceClock clock_;
   WebSocketStream stream_;
   std::array<std::optional<Handle>, handCount> handle_;
-  bool open_ = true, greeted_ = false, introduced_ = false, due_ = false, toldMalformed_ = false;
-  std::int64_t sent_ = 0, nextAttempt_ = 0;
-  std::string refusal_;
-  ForceReports reports_;
+  bool introduced_ = false, due_ = false, toldMalformed_ = false;
+  std::int64_t sent_ = 0;
 };
 
 extern const DeviceKind haplyKind;

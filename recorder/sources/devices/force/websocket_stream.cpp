@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "recorder/sources/devices/force/websocket_stream.h"
+#include "recorder/sources/devices/force/haply_device.h"
 
 #include <boost/asio/connect.hpp>
 #include <boost/asio/io_context.hpp>
@@ -36,6 +36,21 @@ struct WebSocketStream::Inside {
   bool writing = false;
   bool open = false;
 
+  ~Inside() {
+    if (open) {
+      io.restart();
+      io.run_for(std::chrono::milliseconds(writing ? 20 : 0));
+      socket.async_close(websocket::close_code::normal, [](error_code) {});
+      io.restart();
+      io.run_for(goodbye);
+    }
+    // Handlers that are under way refer to this: they run out first.
+    error_code ignored;
+    socket.next_layer().close(ignored);
+    io.restart();
+    io.run_for(goodbye);
+  }
+
   void read() {
     socket.async_read(buffer, [this](error_code fault, std::size_t) {
       if (fault) {
@@ -63,31 +78,15 @@ struct WebSocketStream::Inside {
   }
 };
 
-WebSocketStream::WebSocketStream() = default;
-WebSocketStream::~WebSocketStream() { close(); }
-WebSocketStream::WebSocketStream(WebSocketStream&&) noexcept = default;
-WebSocketStream& WebSocketStream::operator=(WebSocketStream&& o) noexcept {
-  if (this != &o) {
-    close();
-    inside_ = std::move(o.inside_);
-  }
-  return *this;
-}
-
 WebSocketStream WebSocketStream::connect(const std::string& host, int port, std::chrono::milliseconds wait,
                                          std::string& fault) {
   WebSocketStream out;
-  auto inside = std::make_unique<Inside>();
+  auto inside = std::make_shared<Inside>();
   error_code wrong;
   tcp::resolver resolver(inside->io);
   const auto found = resolver.resolve(host, std::to_string(port), wrong);
-  // What is under way refers to `inside`; where it is given up, its socket is closed and its handlers run out first.
   const auto giveUp = [&](const error_code& why) {
     fault = why.message();
-    error_code ignored;
-    inside->socket.next_layer().close(ignored);
-    inside->io.restart();
-    inside->io.run_for(wait);
     return WebSocketStream();
   };
   if (wrong) return giveUp(wrong);
@@ -136,23 +135,6 @@ void WebSocketStream::send(std::string text) {
   inside_->write();
   inside_->io.restart();
   inside_->io.poll();
-}
-
-void WebSocketStream::close() {
-  if (!inside_) return;
-  Inside& in = *inside_;
-  if (in.open) {
-    in.io.restart();
-    in.io.run_for(std::chrono::milliseconds(in.writing ? 20 : 0));
-    in.socket.async_close(websocket::close_code::normal, [](error_code) {});
-    in.io.restart();
-    in.io.run_for(goodbye);
-  }
-  error_code ignored;
-  in.socket.next_layer().close(ignored);
-  in.io.restart();
-  in.io.run_for(goodbye);
-  inside_.reset();
 }
 
 }  // namespace calot::recorder

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "analytics/checkpoints/registry.h"
+#include "analytics/checkpoints/checkpoint.h"
 #include "analytics/cohort/cohort_database.h"
 
 namespace calot::analytics::support {

@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "analytics/statistics/method_agreement.h"
 #include "analytics/statistics/rank_tests.h"
 #include "analytics/statistics/reliability.h"
 #include "analytics/statistics/resampling.h"
@@ -20,7 +19,7 @@ using Values = std::vector<double>;
 /// Upper limit of agreement of two methods with these errors.
 inline Expected<Interval> upperLimit(const Values& x, const Values& y) {
   const auto r = blandAltman(x, y);
-  return r ? Expected<Interval>(r->upperInterval) : Expected<Interval>::none(r.reason());
+  return r ? Expected<Interval>(r->upperInterval) : NoResult{r.reason()};
 }
 
 /// Slope of two methods that measure x with normal errors of deviation 1/2.
@@ -32,7 +31,7 @@ inline Expected<Interval> demingSlope(const Values& x, std::uint64_t seed) {
     second.push_back(v + 0.5 * random.normal());
   }
   const auto r = demingRegression(first, second);
-  return r ? Expected<Interval>(r->slopeInterval) : Expected<Interval>::none(r.reason());
+  return r ? Expected<Interval>(r->slopeInterval) : NoResult{r.reason()};
 }
 
 /// Smallest detectable change from three attempts each, errors of deviation 1: normal or exponential.
@@ -46,7 +45,7 @@ inline Expected<Interval> detectableChange(const Values& x, bool normal, std::ui
     }
   }
   const auto r = measurementError(values);
-  return r ? Expected<Interval>(r->sdcInterval) : Expected<Interval>::none(r.reason());
+  return r ? Expected<Interval>(r->sdcInterval) : NoResult{r.reason()};
 }
 
 /// Cut at mark 2 of ratings 1 to 5, scores 2 rating + x.
@@ -58,7 +57,7 @@ inline Expected<Interval> borderlineCut(const Values& x, std::uint64_t seed) {
     scores.push_back(2.0 * ratings.back() + error);
   }
   const auto r = borderlineRegression(ratings, scores, 2.0, Better::higher);
-  return r ? Expected<Interval>(r->interval) : Expected<Interval>::none(r.reason());
+  return r ? Expected<Interval>(r->interval) : NoResult{r.reason()};
 }
 
 /// Spearman's correlation of x and r x + sqrt(1 - r^2) y.
@@ -66,7 +65,7 @@ inline Expected<Interval> rankCorrelation(const Values& x, const Values& y, doub
   Values mixed;
   for (std::size_t i = 0; i < x.size(); ++i) mixed.push_back(r * x[i] + std::sqrt(1.0 - r * r) * y[i]);
   const auto rho = spearman(x, mixed);
-  return rho ? spearmanInterval(rho->rho, x.size()) : Expected<Interval>::none(rho.reason());
+  return rho ? spearmanInterval(rho->rho, x.size()) : NoResult{rho.reason()};
 }
 
 }  // namespace calot::analytics::simulated

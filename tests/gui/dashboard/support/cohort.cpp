@@ -8,7 +8,7 @@
 #include <cstdio>
 #include <vector>
 
-#include "analytics/checkpoints/registry.h"
+#include "analytics/checkpoints/checkpoint.h"
 
 namespace calot::gui::test {
 

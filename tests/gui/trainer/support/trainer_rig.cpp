@@ -8,8 +8,8 @@
 
 #include "recorder/base/errors.h"
 #include "recorder/replay.h"
+#include "recorder/sources/devices/device_script.h"
 #include "recorder/sources/devices/device_source.h"
-#include "recorder/sources/devices/scripted_device.h"
 
 namespace calot::gui::trainertest {
 
@@ -22,14 +22,6 @@ std::unique_ptr<recorder::SampleSource> ScriptInput::open(const SceneDescription
       settings);
   source->waitForFirst(1.0);
   return source;
-}
-
-void ScriptInput::setOut(recorder::SampleSource& source, const SceneDescription& /*scene*/, const TickSamples& start) {
-  source.device()->setOutFrom(start);
-}
-
-void ScriptInput::record(recorder::SampleSource& source, recorder::RecordingWriter& writer, std::uint64_t firstTick) {
-  writer.takeRawSamples(source.device()->rawSamples(), firstTick);
 }
 
 recorder::DeviceScript swayingScript(double seconds) {

@@ -18,9 +18,6 @@ class ScriptInput final : public AttemptInput {
  public:
   explicit ScriptInput(recorder::DeviceScript script) : script_(std::move(script)) {}
   std::unique_ptr<recorder::SampleSource> open(const SceneDescription& scene) override;
-  void setOut(recorder::SampleSource& source, const SceneDescription& scene, const TickSamples& start) override;
-  void drive(recorder::SampleSource&, recorder::RunSettings&) override {}
-  void record(recorder::SampleSource& source, recorder::RecordingWriter& writer, std::uint64_t firstTick) override;
 
   std::string refusal;  ///< not empty: open() throws it
 

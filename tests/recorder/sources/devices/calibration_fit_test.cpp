@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "recorder/sources/devices/calibration_fit.h"
+#include "recorder/sources/devices/calibration.h"
 
 #include <gtest/gtest.h>
 

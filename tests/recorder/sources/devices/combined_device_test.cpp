@@ -9,8 +9,8 @@
 #include <fstream>
 
 #include "recorder/base/errors.h"
+#include "recorder/sources/devices/device_script.h"
 #include "recorder/sources/devices/device_source.h"
-#include "recorder/sources/devices/scripted_device.h"
 #include "tests/recorder/sources/devices/support/device_support.h"
 
 namespace calot::recorder {

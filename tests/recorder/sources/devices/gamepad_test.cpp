@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Against SDL's virtual joystick.
-#include "recorder/sources/devices/gamepad_device.h"
+#include "recorder/sources/devices/pointer_device.h"
 
 #include <gtest/gtest.h>
 

@@ -15,7 +15,7 @@
 #include "recorder/recording/writer.h"
 #include "recorder/replay.h"
 #include "recorder/sources/devices/device_source.h"
-#include "recorder/sources/devices/gamepad_device.h"
+#include "recorder/sources/devices/pointer_device.h"
 #include "tests/recorder/sources/devices/support/virtual_pad.h"
 
 namespace calot::recorder {

@@ -4,8 +4,8 @@
 
 #include <memory>
 
+#include "recorder/sources/devices/device_script.h"
 #include "recorder/sources/devices/scope_device.h"
-#include "recorder/sources/devices/scripted_device.h"
 #include "tests/recorder/sources/devices/support/device_support.h"
 
 namespace calot::recorder {

@@ -7,7 +7,6 @@
 
 #include "recorder/base/errors.h"
 #include "recorder/sources/devices/open_device.h"
-#include "recorder/sources/devices/scripted_device.h"
 #include "tests/recorder/sources/devices/support/device_support.h"
 
 namespace calot::recorder {
@@ -151,7 +150,7 @@ TEST(DeviceTable, RowsAreCompleteAndNamesUnique) {
     EXPECT_EQ(findDeviceKind(kind->name), kind);
     EXPECT_EQ(findDeviceKind(std::string(kind->name) + ":more"), kind);
     EXPECT_EQ(deviceUsage().find(kind->usage) == std::string::npos, kind->needsWindow) << kind->name;
-    const std::vector<ListedDevice> listed = kind->list();
+    const std::vector<ListedDevice> listed = kind->listed();
     EXPECT_FALSE(listed.empty()) << kind->name;
     for (const ListedDevice& device : listed) EXPECT_EQ(findDeviceKind(device.name), kind) << device.name;
   }

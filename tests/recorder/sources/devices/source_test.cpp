@@ -15,7 +15,7 @@
 #include "recorder/recording/reader.h"
 #include "recorder/recording/writer.h"
 #include "recorder/replay.h"
-#include "recorder/sources/devices/scripted_device.h"
+#include "recorder/sources/devices/device_script.h"
 #include "recorder/sources/pointing.h"
 #include "sim/scene/model.h"
 #include "tests/recorder/sources/devices/support/device_support.h"

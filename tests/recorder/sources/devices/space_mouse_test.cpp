@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The driver against a daemon that says what spacenavd says, on a socket of the test's own.
-#include "recorder/sources/devices/space_mouse.h"
+#include "recorder/sources/devices/pointer_device.h"
 
 #include <gtest/gtest.h>
 #include <sys/socket.h>

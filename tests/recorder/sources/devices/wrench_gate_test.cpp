@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "recorder/sources/devices/scripted_device.h"
+#include "recorder/sources/devices/device_script.h"
 
 #include <gtest/gtest.h>
 

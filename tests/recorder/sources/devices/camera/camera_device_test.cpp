@@ -14,7 +14,6 @@
 
 #include "recorder/base/errors.h"
 #include "recorder/sources/devices/calibration.h"
-#include "recorder/sources/devices/camera/open_camera.h"
 #include "recorder/sources/devices/open_device.h"
 #include "tests/recorder/sources/devices/camera/support/film_of_scene.h"
 #include "tests/recorder/sources/devices/camera/support/marker_scene.h"
@@ -33,7 +32,7 @@ class PlayedSource final : public FrameSource {
     FrameStatus status = FrameStatus::frame;
     Frame frame;
   };
-  explicit PlayedSource(std::deque<Item> items) : items_(std::move(items)) {}
+  explicit PlayedSource(std::deque<Item> items) : FrameSource("played", 1280, 720, 30.0), items_(std::move(items)) {}
   FrameStatus next(std::chrono::nanoseconds, Frame& out) override {
     if (items_.empty()) return FrameStatus::ended;
     const Item item = std::move(items_.front());
@@ -41,10 +40,6 @@ class PlayedSource final : public FrameSource {
     if (item.status == FrameStatus::frame) out = item.frame;
     return item.status;
   }
-  [[nodiscard]] int width() const override { return 1280; }
-  [[nodiscard]] int height() const override { return 720; }
-  [[nodiscard]] double rate() const override { return 30.0; }
-  [[nodiscard]] std::string name() const override { return "played"; }
 
  private:
   std::deque<Item> items_;

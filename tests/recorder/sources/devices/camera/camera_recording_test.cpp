@@ -32,7 +32,10 @@ constexpr std::int64_t lastPicture = 700'000'000;
 class UnpluggedCamera final : public FrameSource {
  public:
   UnpluggedCamera(RigCamera camera, std::shared_ptr<TickClock> clock)
-      : camera_(std::move(camera)), clock_(std::move(clock)), begin_(clock_->now) {}
+      : FrameSource("camera", camera.lens.width, camera.lens.height, 30.0),
+        camera_(std::move(camera)),
+        clock_(std::move(clock)),
+        begin_(clock_->now) {}
 
   FrameStatus next(std::chrono::nanoseconds, Frame& out) override {
     const std::int64_t now = clock_->now - begin_;
@@ -49,10 +52,6 @@ class UnpluggedCamera final : public FrameSource {
     time_ += betweenPictures;
     return FrameStatus::frame;
   }
-  [[nodiscard]] int width() const override { return camera_.lens.width; }
-  [[nodiscard]] int height() const override { return camera_.lens.height; }
-  [[nodiscard]] double rate() const override { return 30.0; }
-  [[nodiscard]] std::string name() const override { return "camera"; }
 
  private:
   RigCamera camera_;

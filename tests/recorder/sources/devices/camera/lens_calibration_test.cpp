@@ -8,7 +8,7 @@
 #include "recorder/base/errors.h"
 #include "recorder/sources/devices/calibration.h"
 #include "recorder/sources/devices/camera/camera_calibration.h"
-#include "recorder/sources/devices/camera/handle_fit.h"
+#include "recorder/sources/devices/camera/handle_tracker.h"
 #include "tests/recorder/sources/devices/camera/support/marker_scene.h"
 
 namespace calot::recorder {

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Films in real time.
-#include "recorder/sources/devices/camera/open_camera.h"
+#include "recorder/sources/devices/camera/camera_device.h"
 
 #include <gtest/gtest.h>
 
 #include "recorder/base/errors.h"
-#include "recorder/sources/devices/camera/camera_device.h"
 
 namespace calot::recorder {
 namespace {
@@ -13,6 +12,7 @@ namespace {
 /// Ten frames, 40 ms apart; the sixth is missing.
 class TenFrames final : public FrameSource {
  public:
+  TenFrames() : FrameSource("ten frames", 640, 360, 25.0) {}
   FrameStatus next(std::chrono::nanoseconds /*wait*/, Frame& out) override {
     if (next_ == 10) return FrameStatus::ended;
     out.missed = next_ == 5 ? 1 : 0;
@@ -20,10 +20,6 @@ class TenFrames final : public FrameSource {
     out.time = next_++ * 40'000'000;
     return FrameStatus::frame;
   }
-  [[nodiscard]] int width() const override { return 640; }
-  [[nodiscard]] int height() const override { return 360; }
-  [[nodiscard]] double rate() const override { return 25.0; }
-  [[nodiscard]] std::string name() const override { return "ten frames"; }
 
  private:
   std::int64_t next_ = 0;

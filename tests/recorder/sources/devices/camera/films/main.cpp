@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <string>
 
-#include "recorder/sources/devices/camera/handle_fit.h"
+#include "recorder/sources/devices/camera/handle_tracker.h"
 #include "recorder/sources/pointing.h"
 #include "tests/recorder/sources/devices/camera/support/film_of_scene.h"
 #include "tests/recorder/sources/devices/camera/support/marker_scene.h"

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <map>
 
-#include "recorder/sources/devices/camera/handle_fit.h"
+#include "recorder/sources/devices/camera/handle_tracker.h"
 
 namespace calot::recorder::cameratest {
 namespace {

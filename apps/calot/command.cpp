@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#include "apps/calot/command.h"
+
+#include <sys/ioctl.h>
+#include <unistd.h>
+#include <algorithm>
+#include <cstdio>
+#include <iostream>
+#include <sstream>
+
+#include "recorder/base/nearest_word.h"
+#include "recorder/base/text_words.h"
+
+namespace calot::apps {
+namespace {
+
+/// The parser fills positional arguments in order and cannot know that a later option makes one of them unnecessary.
+bool hasCohortOption = false;
+
+}  // namespace
+
+void lookForCohort(const std::vector<std::string>& words) {
+  hasCohortOption = std::any_of(words.begin(), words.end(), [](const std::string& word) {
+    return word == "--cohort" || word.starts_with("--cohort=");
+  });
+}
+
+CLI::Option* addCohortOption(CLI::App& command, std::string& database, const std::string& help) {
+  return command.add_option(hasCohortOption ? "--cohort" : "cohort,--cohort", database, help);
+}
+
+namespace {
+
+/// Version of every result. A command whose members change gets its own version here.
+constexpr int resultVersion = 1;
+
+void print(const std::string& text) {
+  Progress::erase();
+  // In order with what was printed through the other of the two streams.
+  std::cout << std::flush;
+  fmt::print("{}\n", text);
+  if (std::fflush(stdout) != 0) throw Error(ErrorKind::failure, "standard output cannot be written");
+}
+
+}  // namespace
+
+Json resultOf(std::string_view what, const Json& body) {
+  Json result{{"schema", fmt::format("calot-{}", what)}, {"version", resultVersion}};
+  for (const auto& member : body.items()) result[member.key()] = member.value();
+  return result;
+}
+
+void printResult(std::string_view what, const Json& body) {
+  print(resultOf(what, body).dump(2, ' ', false, Json::error_handler_t::replace));
+}
+
+void printResultLine(std::string_view what, const Json& body) {
+  print(resultOf(what, body).dump(-1, ' ', false, Json::error_handler_t::replace));
+}
+
+CLI::Validator oneOf(std::vector<std::string> words) {
+  const std::string description = fmt::format("{{{}}}", fmt::join(words, ","));
+  return {[words = std::move(words)](std::string& word) {
+            if (std::find(words.begin(), words.end(), word) != words.end()) return std::string();
+            return fmt::format("\"{}\" is not one of {}{}", recorder::shown(word), fmt::join(words, ", "),
+                               recorder::didYouMean(word, words));
+          },
+          description};
+}
+
+CLI::Option* addChoice(CLI::App& command, const std::string& name, std::string& value, const std::string& help,
+                       std::vector<std::string> words) {
+  return command.add_option(name, value, help)->check(oneOf(std::move(words)))->capture_default_str();
+}
+
+std::optional<std::string> givenOf(const CLI::App& command, const std::string& option, const std::string& value) {
+  return command.count(option) > 0 ? std::optional(value) : std::nullopt;
+}
+
+namespace {
+
+constexpr std::size_t withoutTerminal = 80;
+
+/// Columns of a word: code points.
+std::size_t columnsOf(const std::string& word) {
+  return static_cast<std::size_t>(
+      std::count_if(word.begin(), word.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
+}
+
+}  // namespace
+
+std::size_t terminalColumns() {
+  winsize size{};
+  if (isatty(STDOUT_FILENO) == 0 || ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0)
+    return withoutTerminal;
+  return std::clamp<std::size_t>(size.ws_col, 60, 160);
+}
+
+std::string wrappedText(const std::string& text, std::size_t columns, std::size_t indent, std::size_t used) {
+  std::string out;
+  std::istringstream lines(text);
+  bool first = true;
+  for (std::string line; std::getline(lines, line); first = false) {
+    if (!first) out += '\n' + std::string(indent, ' ');
+    std::size_t at = first ? used : indent;
+    bool empty = true;
+    std::istringstream words(line);
+    for (std::string word; words >> word; empty = false) {
+      const std::size_t width = columnsOf(word);
+      if (!empty && at + 1 + width > columns) {
+        out += '\n' + std::string(indent, ' ');
+        at = indent;
+        empty = true;
+      }
+      if (!empty) {
+        out += ' ';
+        ++at;
+      }
+      out += word;
+      at += width;
+    }
+  }
+  return out;
+}
+
+}  // namespace calot::apps

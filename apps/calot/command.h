@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Every command of `calot` is made with this: its options, its cohort, its result as JSON, its text on the terminal.
+#pragma once
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "analytics/report/report_document.h"
+#include "apps/calot/environment.h"
+#include "apps/common/program.h"
+#include "recorder/base/errors.h"
+
+namespace calot::apps {
+
+using Json = nlohmann::ordered_json;
+
+/// The chosen command's work, called by main(): returns the exit code or throws calot::Error.
+using Run = std::function<int()>;
+
+/// Each function adds a command with its options to the application. A new command is a file that defines its function,
+/// with an example in help.cpp, and a line of this list.
+// In the order of `calot --help`.
+#define CALOT_COMMAND_LIST(X) \
+  X(Record)                   \
+  X(Replay)                   \
+  X(Engine)                   \
+  X(Branch)                   \
+  X(Inspect)                  \
+  X(Recover)                  \
+  X(Export)                   \
+  X(State)                    \
+  X(Diff)                     \
+  X(Import)                   \
+  X(Assess)                   \
+  X(Verify)                   \
+  X(Study)                    \
+  X(Protocol)                 \
+  X(Power)                    \
+  X(Rate)                     \
+  X(Norm)                     \
+  X(Grade)                    \
+  X(Participant)              \
+  X(Attempt)                  \
+  X(Regrade)                  \
+  X(Cohort)                   \
+  X(Station)                  \
+  X(Render)                   \
+  X(Mesh)                     \
+  X(Scenes)                   \
+  X(Scene)                    \
+  X(Checkpoints)              \
+  X(Devices)                  \
+  X(Golden)                   \
+  X(Cache)
+
+#define CALOT_DECLARE_COMMAND(name) void add##name(CLI::App& app, Run& run);
+CALOT_COMMAND_LIST(CALOT_DECLARE_COMMAND)
+#undef CALOT_DECLARE_COMMAND
+
+/// `calot devices calibrate`, in a file of its own.
+void addCalibrateDevice(CLI::App& devices, Run& run);
+
+/// Adds a command whose work has these options. The options live as long as the command.
+/// @param run is set to the work when the command is chosen, unless a command below it was
+/// @param work returns an exit code, or nothing: ExitCode::yes
+template <class Result, class Options>
+auto addCommand(CLI::App& parent, Run& run, const std::string& name, const std::string& help, Result (*work)(Options&),
+                std::shared_ptr<std::remove_const_t<Options>> options = {}) {
+  if (!options) options = std::make_shared<std::remove_const_t<Options>>();
+  CLI::App* const command = parent.add_subcommand(name, help);
+  command->callback([options, work, &run] {
+    if (run) return;
+    run = [options, work] {
+      if constexpr (!std::is_void_v<Result>) return static_cast<int>(work(*options));
+      work(*options);
+      return static_cast<int>(ExitCode::yes);
+    };
+  });
+  return std::pair{command, std::move(options)};
+}
+
+/// Options of a command that has but --json.
+struct JsonOption {
+  bool json = false;
+};
+
+/// Adds `--cohort`, as every command has that works with one database. It may be given without the option's name, too,
+/// as the first word: calot study c.db. Where the command line has the option, all words are other arguments: calot
+/// norm show clinic --cohort c.db.
+CLI::Option* addCohortOption(CLI::App& command, std::string& database, const std::string& help = "Cohort database");
+
+/// Looks whether a command line has `--cohort`. Before commands are added.
+/// @param words the command line without the program's name
+void lookForCohort(const std::vector<std::string>& words);
+
+/// For CLI::Option::check: one of these words. The fault names the nearest.
+CLI::Validator oneOf(std::vector<std::string> words);
+
+/// Adds an option that is one of these words; its value is the default.
+CLI::Option* addChoice(CLI::App& command, const std::string& name, std::string& value, const std::string& help,
+                       std::vector<std::string> words);
+
+/// Adds an option for several values, "A,B".
+template <class Value>
+CLI::Option* addList(CLI::App& command, const std::string& name, std::vector<Value>& values, const std::string& help) {
+  return command.add_option(name, values, help)->delimiter(',')->allow_extra_args(false);
+}
+
+/// Adds an option that is a number from `least` to `most`; its value is the default.
+template <class Number>
+CLI::Option* addNumber(CLI::App& command, const std::string& name, Number& value, const std::string& help,
+                       std::type_identity_t<Number> least, std::type_identity_t<Number> most) {
+  return command.add_option(name, value, help)->check(CLI::Range(least, most))->capture_default_str();
+}
+
+/// Adds `--threads` or `--jobs`: 0 to 64.
+inline CLI::Option* addThreads(CLI::App& command, unsigned& count, const std::string& help,
+                               const std::string& name = "--threads") {
+  return addNumber(command, name, count, help, 0U, 64U);
+}
+
+/// The value of an option that the command line has, which may be empty: --group "" takes a group away.
+std::optional<std::string> givenOf(const CLI::App& command, const std::string& option, const std::string& value);
+
+/// Head of every result: {"schema": "calot-<what>", "version": N}. The version is raised when a member
+/// changes its meaning or goes; new members alone do not raise it.
+/// @param body an object without these two members
+[[nodiscard]] Json resultOf(std::string_view what, const Json& body);
+
+/// Prints it on stdout, over several lines. Erases a line of progress first.
+void printResult(std::string_view what, const Json& body);
+
+/// The same on one line, flushed: of results that come one after the other.
+void printResultLine(std::string_view what, const Json& body);
+
+/// Columns of the terminal on stdout, from 60 to 160; 80 without a terminal.
+std::size_t terminalColumns();
+
+/// The text in lines of at most `columns`, broken at blanks; its own line breaks stay. Lines below the first begin with
+/// `indent` blanks. A longer word has a line of its own.
+/// @param used columns that the first line begins with
+std::string wrappedText(const std::string& text, std::size_t columns, std::size_t indent = 0, std::size_t used = 0);
+
+}  // namespace calot::apps

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <QWidget>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "analytics/assessment/moments.h"
+#include "gui/attempt/attempt_recording.h"
+#include "gui/attempt/long_work.h"
+#include "gui/attempt/replay_transport.h"
+#include "gui/dashboard/cohort_document.h"
+#include "gui/dashboard/timeline.h"
+#include "gui/view/scene_picture_widget.h"
+
+namespace calot::gui {
+
+/// The recording of an attempt: the picture of its replay and its timeline. The recording is read on a worker thread:
+/// its timeline, then the moments of figures. Pauses where it is not seen.
+class RecordingView : public QWidget {
+  Q_OBJECT
+ public:
+  using Figures = std::vector<std::pair<std::string, std::string>>;  ///< checkpoint and subject
+  struct Parts {
+    bool transport = true, timeline = true;  ///< without a timeline nothing is read
+  };
+
+  explicit RecordingView(Parts with, QWidget* parent = nullptr);
+  ~RecordingView() override;
+
+  /// Finds the attempt's recording beside the cohort or in a folder that is known, and opens it.
+  /// @return false where it was not found, which is then said
+  bool open(const analytics::AttemptRow& attempt, const CohortDocument& document, const Figures& figures = {});
+  void openFile(const std::filesystem::path& file, const std::string& attempt, const Figures& figures = {});
+  /// Shows texts instead of a recording.
+  void close(const QString& text, const QString& timelineText = {});
+
+  [[nodiscard]] Replay& replay() const { return *replay_; }
+  [[nodiscard]] bool isOpen() const { return replay_->isOpen(); }
+  [[nodiscard]] const ScenePictureWidget& picture() const { return *picture_; }
+  [[nodiscard]] TimelineBar& timeline() const { return *timeline_; }
+  [[nodiscard]] const std::filesystem::path& file() const { return file_; }          ///< that was opened last, or empty
+  [[nodiscard]] const std::optional<AttemptTrack>& track() const { return track_; }  ///< once it was read
+  /// True if everything readable was read and the replay is at its target, or there is no recording.
+  [[nodiscard]] bool settled() const;
+
+ signals:
+  void opened();
+  void trackRead(const calot::gui::AttemptTrack& track);
+  void momentsFound(const std::vector<calot::analytics::FigureMoments>& moments);
+  void failed();  ///< to open, or to be read: why stands in the view
+
+ protected:
+  void hideEvent(QHideEvent* event) override;
+
+ private:
+  using Back = std::shared_ptr<Link<RecordingView>>;
+  static void read(const Back& back, const std::filesystem::path& file, const Figures& figures);
+  void stopReading();
+  void fail(const QString& timelineText);
+
+  std::filesystem::path file_;
+  Figures figures_;
+  std::optional<AttemptTrack> track_;
+  bool reads_;
+  bool busy_ = false;  ///< something is still to come of the recording
+  ScenePictureWidget* picture_;
+  TimelineBar* timeline_;
+  std::unique_ptr<Replay> replay_;
+  Back back_;  ///< from what is being read
+};
+
+}  // namespace calot::gui

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Film quality.
+#define FIELD_SIDES 96
+#define OCCLUSION_SAMPLES 24
+#define BLOCKERS 8
+#define SHADOW_SAMPLES 16
+#define SHEET_SHADOW_SAMPLES 4
+#define PATTERN 4
+#define STRIDE 1
+#define SAMPLES_ASIDE 2
+#define DIRECT 0
+#define NOISE_BYTES 0
+#define BROAD_PER_VERTEX 0
+#define FINE 1
+#define EXACT 1
+#define SOFT_SHADOWS 1
+#define SHADOW_OFFSET 0.0006

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "recorder/base/record_reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "recorder/base/json_reader.h"
+#include "recorder/base/nearest_word.h"
+
+namespace calot::recorder {
+namespace {
+
+bool isKey(const Field& field) { return *field.name != '\0'; }
+
+void checkKeys(const JsonPlace& place, const Record& record) {
+  std::vector<std::string> known;
+  for (const Field& field : record.fields) {
+    if (isKey(field)) known.emplace_back(field.name);
+  }
+  for (const std::string& key : place.keys()) {
+    if (std::find(known.begin(), known.end(), key) != known.end()) continue;
+    JsonFaults::part([&] {
+      place.named(key).fail(fmt::format("unknown key{}; known are {}", didYouMean(key, known), fmt::join(known, ", ")));
+    });
+  }
+  for (const Field& field : record.fields) {
+    if (field.required) JsonFaults::part([&] { static_cast<void>(place.at(field.name)); });
+  }
+}
+
+/// Copies a plain value, or nothing where it is stored nowhere.
+void store(const void* from, std::size_t size, void* value) {
+  if (value != nullptr) std::memcpy(value, from, size);
+}
+
+void readValue(const JsonPlace& place, const Field& field, const Access& access, void* value) {
+  using Type = Access::Type;
+  switch (access.type) {
+    case Type::numbers: {
+      std::vector<double> numbers;
+      if (access.count == 0) {
+        numbers.push_back(place.number(field.range));
+      } else {
+        for (const JsonPlace& part : place.list(access.count, access.count))
+          numbers.push_back(part.number(field.range));
+      }
+      return store(numbers.data(), access.size, value);
+    }
+    case Type::rotation: {
+      double q[4];
+      const std::vector<JsonPlace> parts = place.list(4, 4);
+      for (std::size_t i = 0; i < 4; ++i) q[i] = parts[i].number(within(-1, 1));
+      const Quat given(q[0], q[1], q[2], q[3]);
+      if (!(std::abs(given.norm() - 1.0) <= 1e-6)) place.fail("is not an unit quaternion w x y z");
+      const Quat rotation = given.normalized();
+      return store(&rotation, access.size, value);
+    }
+    case Type::integer: {
+      const std::uint32_t number = place.integer(field.range);
+      return store(&number, access.size, value);
+    }
+    case Type::flag: {
+      const bool flag = place.boolean();
+      return store(&flag, access.size, value);
+    }
+    case Type::word: {
+      const std::uint32_t number = place.word(field.words);
+      return store(&number, access.size, value);
+    }
+    case Type::text: {
+      std::string text = place.text(field.text);
+      if (value != nullptr) *static_cast<std::string*>(value) = std::move(text);
+      return;
+    }
+    case Type::record:
+      if (access.reset != nullptr) access.reset(value);
+      return readRecord(place, access.record(), value);
+    case Type::list: {
+      std::size_t i = 0;
+      for (const JsonPlace& item : place.list(field.least, field.most)) {
+        void* const to = value == nullptr           ? nullptr
+                         : access.append != nullptr ? access.append(value)
+                                                    : access.itemAt(value, i++);
+        JsonFaults::part([&] { readValue(item, field, *access.item, to); });
+      }
+      return;
+    }
+    case Type::bytes:
+      return;
+  }
+}
+
+}  // namespace
+
+void readRecord(const JsonPlace& place, const Record& record, void* object) {
+  if (std::none_of(record.fields.begin(), record.fields.end(), isKey)) return;
+  checkKeys(place, record);
+  for (const Field& field : record.fields) {
+    if (!isKey(field) || !place.has(field.name)) continue;
+    JsonFaults::part([&] {
+      void* const value = field.value.get == nullptr ? nullptr : field.value.get(object);
+      readValue(place.at(field.name), field, field.value, value);
+    });
+  }
+}
+
+}  // namespace calot::recorder
