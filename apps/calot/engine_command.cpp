@@ -11,6 +11,7 @@
 #include "recorder/base/text_output.h"
 #include "recorder/kept/engine_folders.h"
 #include "recorder/kept/engine_process.h"
+#include "recorder/kept/transcript.h"
 #include "recorder/recording/probe.h"
 #include "recorder/replay.h"
 #include "sim/scene/version.h"

@@ -10,6 +10,7 @@
 #include "recorder/formats/scene_file.h"
 #include "recorder/live/worker_pool.h"
 #include "recorder/live/wrapped_sources.h"
+#include "recorder/branch.h"
 #include "recorder/loop.h"
 #include "recorder/prepared_scene.h"
 #include "recorder/recording/probe.h"

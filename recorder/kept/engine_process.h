@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// An engine that is another program, and transcripts: requests to an engine and its answers, recorded once, prove that
-// a program is the engine that it claims to be (schemas/engine.md, "Transcripts").
 #pragma once
 
-#include <cstddef>
-#include <filesystem>
 #include <optional>
 #include <span>
 #include <string>
@@ -16,7 +12,6 @@
 #include "recorder/engine/engine.h"
 #include "recorder/engine/wire.h"
 #include "recorder/recording/layout.h"
-#include "recorder/recording/reader.h"
 #include "sim/scene/model.h"
 #include "sim/scene/scene_view.h"
 
@@ -107,23 +102,5 @@ std::string nameFault(const AttemptHeader& header, const Model& model);
 
 /// The same of digests alone, for an engine that is another program.
 std::string nameFault(const DigestLayout& recorded, const DigestLayout& engine);
-
-/// Requests and answers, each a whole message.
-struct Exchange {
-  std::vector<std::byte> request, answer;
-};
-using Transcript = std::vector<Exchange>;
-
-/// Has an engine greet, take a recording's scene, do its first steps with all that a step can come with, go back to a
-/// keyframe and on again, and refuse one. @param command starts the engine
-/// @throws Error as ChildProcess; (failure) where the engine ends before its time
-Transcript makeTranscript(const std::vector<std::string>& command, Recording& recording, std::uint64_t steps);
-
-/// Asks an engine what was asked then. @returns what the first other answer is, or nothing @throws as makeTranscript()
-std::string compareWith(const Transcript& transcript, const std::vector<std::string>& command);
-
-std::vector<std::byte> bytesOf(const Transcript& transcript);
-/// @throws Error (damaged)
-Transcript readTranscript(const std::filesystem::path& file);
 
 }  // namespace calot::recorder

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "recorder/loop.h"
+#include "recorder/branch.h"
 
 #include <gtest/gtest.h>
 

@@ -10,6 +10,7 @@
 
 #include "recorder/base/errors.h"
 #include "recorder/kept/engine_folders.h"
+#include "recorder/kept/transcript.h"
 #include "recorder/replay.h"
 #include "sim/scene/version.h"
 #include "tests/recorder/support/lying_recording.h"
