@@ -20,7 +20,7 @@ using recorder::shown;
 
 /// One row that is taken.
 struct TakenRow {
-  const Record* record = nullptr;
+  const TableRecord* record = nullptr;
   std::string stratum;
   bool finished = true;
 };
@@ -129,7 +129,7 @@ DesignData tableDesignData(const CsvTable& table, const TableStudyOptions& asked
       options.outcomes.push_back(choices.against);
   }
   const std::vector<Outcome> outcomes = outcomesOf(table, options);
-  const std::vector<Record> records = recordsOf(table, options, outcomes);
+  const std::vector<TableRecord> records = recordsOf(table, options, outcomes);
   askForOccasion(table, records, options.occasion);
   DesignData data;
   data.source = "table";
@@ -146,7 +146,7 @@ DesignData tableDesignData(const CsvTable& table, const TableStudyOptions& asked
   std::vector<TakenRow> taken;
   std::set<std::string> strata;
   for (std::size_t i = 0; i < records.size(); ++i) {
-    const Record& r = records[i];
+    const TableRecord& r = records[i];
     if (!data.groups.empty() && placeOf(data.groups, r.group) == data.groups.size()) {
       if (!r.group.empty()) ++otherGroup;
     } else if (!options.occasion.empty() && r.occasion != options.occasion) {

@@ -21,7 +21,7 @@ namespace {
 
 using recorder::shown;
 
-using Rows = std::map<std::string, std::vector<const Record*>>;  ///< by participant
+using Rows = std::map<std::string, std::vector<const TableRecord*>>;  ///< by participant
 
 /// The rule reduces several rows of a participant to one value; without a rule they are refused.
 /// @param[out] several set where there were any @return how many rows went out because the first counts
@@ -29,7 +29,7 @@ std::uint64_t applyRule(std::array<Rows, 2>& rows, const CsvTable& table, const 
                         bool& several) {
   std::uint64_t later = 0;
   std::size_t repeated = 0;
-  const std::vector<const Record*>* example = nullptr;
+  const std::vector<const TableRecord*>* example = nullptr;
   for (Rows& group : rows) {
     for (auto& [person, list] : group) {
       if (list.size() < 2) continue;
@@ -49,9 +49,10 @@ std::uint64_t applyRule(std::array<Rows, 2>& rows, const CsvTable& table, const 
               {Remedy::chooseOccasion, Remedy::chooseAttemptRule});
 }
 
-void nameAbsent(Study& study, const std::map<std::string, std::string>& groupOf, const std::vector<Record>& records) {
+void nameAbsent(Study& study, const std::map<std::string, std::string>& groupOf,
+                const std::vector<TableRecord>& records) {
   std::map<std::string, std::set<std::string>> seen;
-  for (const Record& r : records) seen[r.participant].insert(r.occasion);
+  for (const TableRecord& r : records) seen[r.participant].insert(r.occasion);
   std::set<std::string> occasions;
   for (const auto& [person, group] : groupOf) occasions.insert(seen[person].begin(), seen[person].end());
   for (const auto& [person, group] : groupOf) {
@@ -95,7 +96,7 @@ StudySample sampleOf(const std::array<Rows, 2>& rows, std::size_t outcome) {
   StudySample sample;
   for (std::size_t g = 0; g < 2; ++g) {
     for (const auto& [person, list] : rows[g]) {
-      for (const Record* r : list) {
+      for (const TableRecord* r : list) {
         if (r->values[outcome]) {
           sample.values[g].push_back({person, r->line, *r->values[outcome]});
         } else {
@@ -139,7 +140,7 @@ Study makeTableStudy(const CsvTable& table, const TableStudyOptions& asked) {
   const TableStudyOptions options = chosen(table, asked);
   checkOptions(options);
   const std::vector<Outcome> outcomes = outcomesOf(table, options);
-  const std::vector<Record> records = recordsOf(table, options, outcomes);
+  const std::vector<TableRecord> records = recordsOf(table, options, outcomes);
   askForOccasion(table, records, options.occasion);
   askForOccasion(table, records, options.baselineOccasion);
 
@@ -160,7 +161,7 @@ Study makeTableStudy(const CsvTable& table, const TableStudyOptions& asked) {
 
   std::map<std::string, std::string> groupOf;
   std::array<Rows, 2> rows, baseline;
-  for (const Record& r : records) {
+  for (const TableRecord& r : records) {
     const auto at = std::find(study.groups.begin(), study.groups.end(), r.group);
     if (at == study.groups.end()) {
       if (!r.group.empty()) ++otherGroup;
@@ -278,17 +279,17 @@ std::vector<Outcome> outcomesOf(const CsvTable& table, const TableStudyOptions& 
   return outcomes;
 }
 
-std::vector<Record> recordsOf(const CsvTable& table, const TableStudyOptions& options,
-                              const std::vector<Outcome>& outcomes) {
+std::vector<TableRecord> recordsOf(const CsvTable& table, const TableStudyOptions& options,
+                                   const std::vector<Outcome>& outcomes) {
   const std::size_t participant = table.column(options.participantColumn);
   const std::optional<std::size_t> group =
       options.groupColumn.empty() ? std::nullopt : std::optional(table.column(options.groupColumn));
   std::vector<std::size_t> occasion;
   for (const std::string& name : options.occasionColumns) occasion.push_back(table.column(name));
-  std::vector<Record> records;
+  std::vector<TableRecord> records;
   records.reserve(table.rows.size());
   for (const CsvRow& row : table.rows) {
-    Record record{row.line, row.cells[participant], group ? row.cells[*group] : std::string(), "", {}};
+    TableRecord record{row.line, row.cells[participant], group ? row.cells[*group] : std::string(), "", {}};
     if (record.participant.empty())
       failAt(table, row.line, options.participantColumn, "is empty; every row needs its participant");
     askForPlainName(table, row.line, options.participantColumn, record.participant);
@@ -327,9 +328,9 @@ void checkColumns(const TableStudyOptions& options, bool needsGroup) {
     fail("an occasion needs the column that names occasions", {Remedy::nameOccasionColumn});
 }
 
-RowsByGroup rowsByGroup(const std::vector<Record>& records) {
+RowsByGroup rowsByGroup(const std::vector<TableRecord>& records) {
   RowsByGroup rows;
-  for (const Record& r : records) ++(r.group.empty() ? rows.ungrouped : rows.present[r.group]);
+  for (const TableRecord& r : records) ++(r.group.empty() ? rows.ungrouped : rows.present[r.group]);
   if (rows.ungrouped > 0) rows.left = fmt::format(" ({} rows have none)", rows.ungrouped);
   return rows;
 }
@@ -339,9 +340,9 @@ void addReasons(std::vector<FlowRow>& flow, const std::vector<FlowRow>& counted)
                [](const FlowRow& row) { return row.attempts > 0; });
 }
 
-void askForOccasion(const CsvTable& table, const std::vector<Record>& records, const std::string& occasion) {
+void askForOccasion(const CsvTable& table, const std::vector<TableRecord>& records, const std::string& occasion) {
   std::set<std::string> known;
-  for (const Record& r : records) known.insert(r.occasion);
+  for (const TableRecord& r : records) known.insert(r.occasion);
   if (occasion.empty() || known.count(occasion) > 0) return;
   std::string list;
   for (const std::string& name : known) list += (list.empty() ? "" : ", ") + shown(name);

@@ -44,7 +44,7 @@ struct Outcome {
 };
 
 /// Data of one row for the study.
-struct Record {
+struct TableRecord {
   std::size_t line = 0;
   std::string participant, group, occasion;   ///< group: empty without a column of groups
   std::vector<std::optional<double>> values;  ///< by outcome
@@ -55,8 +55,8 @@ std::vector<Outcome> outcomesOf(const CsvTable& table, const TableStudyOptions& 
 
 /// @throws Error (invalid) for a column that is not there; Error (damaged), naming line and column, for a row without
 /// participant or occasion, a name with control characters, a cell that is no finite number.
-std::vector<Record> recordsOf(const CsvTable& table, const TableStudyOptions& options,
-                              const std::vector<Outcome>& outcomes);
+std::vector<TableRecord> recordsOf(const CsvTable& table, const TableStudyOptions& options,
+                                   const std::vector<Outcome>& outcomes);
 
 /// Columns that a study or a design of a table needs. @throws Error (invalid)
 void checkColumns(const TableStudyOptions& options, bool needsGroup);
@@ -67,12 +67,12 @@ struct RowsByGroup {
   std::uint64_t ungrouped = 0;
   std::string left;  ///< " (2 rows have none)", or empty
 };
-RowsByGroup rowsByGroup(const std::vector<Record>& records);
+RowsByGroup rowsByGroup(const std::vector<TableRecord>& records);
 
 /// Adds the reasons for which rows went out.
 void addReasons(std::vector<FlowRow>& flow, const std::vector<FlowRow>& counted);
 
 /// @throws Error (invalid) where an occasion is named that no row has.
-void askForOccasion(const CsvTable& table, const std::vector<Record>& records, const std::string& occasion);
+void askForOccasion(const CsvTable& table, const std::vector<TableRecord>& records, const std::string& occasion);
 
 }  // namespace calot::analytics

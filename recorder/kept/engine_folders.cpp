@@ -17,7 +17,7 @@ namespace calot::recorder {
 
 namespace {
 
-EnginePlaces& known() {
+EnginePlaces& usedPlaces() {
   static EnginePlaces places;
   return places;
 }
@@ -61,12 +61,12 @@ std::optional<std::uint32_t> numberIn(std::string_view name, std::string_view be
 
 }  // namespace
 
-void useEngines(EnginePlaces places) { known() = std::move(places); }
-const EnginePlaces& enginePlaces() { return known(); }
+void useEngines(EnginePlaces places) { usedPlaces() = std::move(places); }
+const EnginePlaces& enginePlaces() { return usedPlaces(); }
 
 std::vector<KeptEngine> listEngines() {
   std::vector<KeptEngine> engines;
-  for (const std::filesystem::path& folder : known().folders) {
+  for (const std::filesystem::path& folder : usedPlaces().folders) {
     std::error_code fault;
     std::vector<KeptEngine> here;
     for (std::filesystem::directory_iterator it(folder, fault), end; !fault && it != end; it.increment(fault)) {
@@ -75,7 +75,7 @@ std::vector<KeptEngine> listEngines() {
         here.push_back({*native, it->path(), false, {it->path().string()}});
       const auto module = numberIn(name, "engine-", ".wasm");
       if (!module) continue;
-      const bool runs = !known().runtime.empty();
+      const bool runs = !usedPlaces().runtime.empty();
       here.push_back({*module, it->path(), true, runs ? commandOf(it->path()) : std::vector<std::string>{}});
     }
     engines.insert(engines.end(), here.begin(), here.end());
@@ -94,7 +94,7 @@ std::vector<std::string> commandOf(const std::filesystem::path& file) {
   // A program without a folder in its name would be looked for in PATH.
   const std::string path = std::filesystem::absolute(file).string();
   if (file.extension() != ".wasm") return {path};
-  std::vector<std::string> command = known().runtime;
+  std::vector<std::string> command = usedPlaces().runtime;
   if (command.empty())
     throw Error(ErrorKind::failure, Where{file.string()}, "is a WebAssembly module, and no node is here to run it");
   command.push_back(path);
