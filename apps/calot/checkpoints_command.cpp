@@ -15,7 +15,7 @@ std::vector<std::string> originNames(const CheckpointDefinition& d) {
   return names;
 }
 
-Json jsonOf(const CheckpointDefinition& d) {
+Json definitionJson(const CheckpointDefinition& d) {
   return {{"name", d.name},
           {"title", d.title},
           {"unit", d.unit},
@@ -60,7 +60,7 @@ void listCheckpoints(const JsonOption& o) {
   Json list = Json::array();
   for (const analytics::CheckpointEntry& entry : analytics::checkpointRegistry()) {
     if (o.json) {
-      list.push_back(jsonOf(entry.definition));
+      list.push_back(definitionJson(entry.definition));
     } else {
       printDefinition(entry.definition);
     }

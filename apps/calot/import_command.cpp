@@ -162,7 +162,7 @@ Json fileJson(const std::string& file, const ImportedFile& result) {
     row["rows"] = result.motion->time.size();
     row["seconds"] = result.motion->time.back();
   }
-  row["checkpoints"] = apps::jsonOf(result.values);
+  row["checkpoints"] = jsonOf(result.values);
   if (!result.external.failures.empty()) row["failed_metrics"] = failuresJson(result.external);
   return row;
 }

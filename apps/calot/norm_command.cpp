@@ -93,7 +93,7 @@ std::string figureName(const analytics::NormCheckpoint& c) {
   return c.subject.empty() ? c.checkpoint : c.checkpoint + " " + c.subject;
 }
 
-Json jsonOf(const analytics::Norm& norm) {
+Json normJson(const analytics::Norm& norm) {
   const auto [competent, others] = analytics::passRates(norm);
   Json j{{"name", norm.name},
          {"version", norm.version},
@@ -171,7 +171,7 @@ void listNorms(NormOptions& o) {
   Json rows = Json::array();
   std::string text;
   for (const analytics::Norm& norm : analytics::AssessmentDatabase(o.database, Access::read).norms()) {
-    rows.push_back(jsonOf(norm));
+    rows.push_back(normJson(norm));
     const analytics::PassRate own = analytics::passRates(norm).first;
     text += fmt::format("{} version {}, {}: {} members, judged by {}{}{}{}\n", norm.name, norm.version, norm.createdUtc,
                         norm.members.size(), norm.judgedBy, norm.evidence.empty() ? ", formative" : "",
@@ -190,7 +190,7 @@ void listNorms(NormOptions& o) {
 void showNorm(NormOptions& o) {
   const analytics::Norm norm = analytics::AssessmentDatabase(o.database, Access::read).norm(o.name, o.version);
   if (o.json) {
-    printResult("norm", jsonOf(norm));
+    printResult("norm", normJson(norm));
   } else {
     printNorm(norm);
   }

@@ -90,8 +90,8 @@ Json regradeJson(const analytics::Regrade& regrade) {
     row["changes"] = Json::array();
     for (const analytics::ValueChange& c : a.changes) {
       Json change = {{"name", c.any().name}, {"subject", c.any().subject}};
-      change["before"] = c.before ? apps::jsonOf(std::vector{*c.before}).front() : Json();
-      change["now"] = c.now ? apps::jsonOf(std::vector{*c.now}).front() : Json();
+      change["before"] = c.before ? jsonOf(std::vector{*c.before}).front() : Json();
+      change["now"] = c.now ? jsonOf(std::vector{*c.now}).front() : Json();
       row["changes"].push_back(change);
     }
     out["attempts"].push_back(row);

@@ -179,17 +179,4 @@ std::string keyFaultOf(const analytics::AttemptRecord& attempt, const std::strin
   }
 }
 
-Json jsonOf(const analytics::Fields& fields) {
-  Json object;
-  for (const auto& [name, value] : fields) {
-    Json& member = object[name];
-    std::visit(
-        [&](const auto& v) {
-          if constexpr (!std::is_same_v<std::remove_cvref_t<decltype(v)>, std::monostate>) member = v;
-        },
-        value);
-  }
-  return object;
-}
-
 }  // namespace calot::apps

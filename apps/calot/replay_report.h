@@ -52,9 +52,6 @@ const char* importedName(analytics::Imported imported);
 Json jsonOf(const std::vector<analytics::CheckpointValue>& values,
             const std::vector<analytics::ValueInterval>& intervals = {});
 
-/// Fields of a list as an object; a missing value is null.
-Json jsonOf(const analytics::Fields& fields);
-
 /// Adds --cohort, where values are stored, and --cutoff, with which they are only shown.
 /// @param[out] cutoff Hz; 0: not given
 void addStoring(CLI::App& command, std::string& cohort, double& cutoff);
