@@ -4,16 +4,12 @@
 
 pictures.py FILE.png...             converts each (what `calot render`, screenshots.sh and tests draw); NAME.png becomes docs/pictures/NAME.webp
 pictures.py --operation REC.h5      draws docs/pictures/operation.webp: the attempt in a few seconds, and beneath it its replay as it runs,
-                                    with the number of steps whose digests are equal to the recorded ones
-Needs python3-pil; --operation needs build/release/bin/calot (or CALOT_PROGRAM).
+                                    verified before, with the number of steps that it has come to
+Needs python3-pil; --operation needs the Python module of build/release.
 """
 import argparse
-import json
-import os
 import pathlib
-import subprocess
 import sys
-import tempfile
 
 from PIL import Image, ImageDraw, ImageFont
 
@@ -31,36 +27,24 @@ def convert(file: pathlib.Path) -> pathlib.Path:
     return out
 
 
-def calot(*words: str) -> str:
-    program = os.environ.get("CALOT_PROGRAM", str(ROOT / "build/release/bin/calot"))
-    done = subprocess.run([program, *words], capture_output=True, text=True, check=False)
-    if done.returncode != 0:
-        sys.exit(f"pictures: {' '.join(words)}: {done.stderr.strip()}")
-    return done.stdout
+def operation(file: str) -> pathlib.Path:
+    """One replay, step by step: each frame is drawn from it, and its foot counts its steps."""
+    sys.path.insert(0, str(ROOT / "build/release/python"))
+    import calot  # the build's  # pylint: disable=import-outside-toplevel
 
-
-def operation(recording: str) -> pathlib.Path:
-    """The replay is done once, whole, before a frame is drawn: the foot counts what it compared."""
-    replayed = json.loads(calot("replay", recording, "--json"))["recordings"][0]
-    if replayed["verdict"] != "exact":
-        sys.exit(f"pictures: {recording}: {replayed['verdict']}")
-    steps = replayed["steps"]
-    seconds = json.loads(calot("inspect", recording, "--json"))["seconds"]
+    recording = calot.Recording(file)
+    recording.verify()  # raises where anything differs
     font = ImageFont.truetype(FONT, 13)
     frames = []
-    with tempfile.TemporaryDirectory() as folder:
-        for k in range(FRAMES):
-            share = k / (FRAMES - 1)
-            file = f"{folder}/{k}.png"
-            calot("render", recording, "--at", f"{share * seconds * 0.995:.3f}", "--size", f"{SIZE[0]}x{SIZE[1]}", "--overlay", "time,phase", "-o", file)
-            frame = Image.new("RGB", (SIZE[0], SIZE[1] + FOOT), "#10151a")
-            frame.paste(Image.open(file).convert("RGB"), (0, 0))
-            draw = ImageDraw.Draw(frame)
-            done = round(share * steps)
-            draw.text((10, SIZE[1] + 6), f"$ calot replay {pathlib.Path(recording).name}", font=font, fill="#c8d2dc")
-            verdict = f"step {done:>7,} of {steps:,}: same bits" if k + 1 < FRAMES else f"{steps:,} steps and every force: same bits"
-            draw.text((10, SIZE[1] + 24), verdict, font=font, fill="#7ee787")
-            frames.append(frame)
+    for k in range(FRAMES):
+        step = round(k / (FRAMES - 1) * (recording.steps - 1))
+        frame = Image.new("RGB", (SIZE[0], SIZE[1] + FOOT), "#10151a")
+        frame.paste(Image.fromarray(recording.moment(step).render(*SIZE)).convert("RGB"), (0, 0))
+        draw = ImageDraw.Draw(frame)
+        draw.text((10, SIZE[1] + 6), f"$ calot replay {pathlib.Path(file).name}", font=font, fill="#c8d2dc")
+        text = f"step {step:>6,} of {recording.steps:,}: bit-exact" if k + 1 < FRAMES else f"bit-exact: {recording.steps:,} steps and every force"
+        draw.text((10, SIZE[1] + 24), text, font=font, fill="#7ee787")
+        frames.append(frame)
     out = PICTURES / "operation.webp"
     for quality in (70, 55, 40, 25):
         pause = round(1000 * SECONDS / FRAMES)

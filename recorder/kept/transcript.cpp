@@ -54,15 +54,22 @@ wire::Step stepOf(const RecordedStep& recorded, std::uint8_t wanted) {
   return step;
 }
 
-/// Two programs that are the same engine may differ in what they are called and how they are confined.
+/// Both messages, where each is one of this type.
+template <class Message>
+bool decodeBoth(const std::vector<std::byte>& a, const std::vector<std::byte>& b, Message& first, Message& second) {
+  return parseHead(a).kind == Message::kind && parseHead(b).kind == Message::kind && decode(payloadOf(a), first) &&
+         decode(payloadOf(b), second);
+}
+
+/// Two programs that are the same engine may differ in their names, in how they are confined and in the words of a
+/// fault.
 bool isSame(const std::vector<std::byte>& a, const std::vector<std::byte>& b) {
   if (a == b) return true;
-  if (parseHead(a).kind != wire::IsHello::kind || parseHead(b).kind != wire::IsHello::kind) return false;
-  wire::IsHello first;
-  wire::IsHello second;
-  if (!decode(payloadOf(a), first) || !decode(payloadOf(b), second)) return false;
-  return first.magic == second.magic && first.protocol == second.protocol && first.simulation == second.simulation &&
-         first.result == second.result;
+  wire::Fault fault, other;
+  if (decodeBoth(a, b, fault, other)) return fault.code == other.code;
+  wire::IsHello first, second;
+  return decodeBoth(a, b, first, second) && first.magic == second.magic && first.protocol == second.protocol &&
+         first.simulation == second.simulation && first.result == second.result;
 }
 
 }  // namespace

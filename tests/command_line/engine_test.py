@@ -121,7 +121,7 @@ class Engine(program.ProgramTest):
         self.refused(2, "engine", "build", 12, "-o", self.path("e"), "--source", self.folder, names=["clone"])
         self.refused(4, "replay", "--engine", self.path("none"), file, names=["no such engine"])
         self.refused(5, "replay", "--engine", "/bin/true", file, names=["ended"])
-        self.refused(5, "replay", "--engine", "/bin/cat", file, names=["no engine"])
+        self.refused(5, "replay", "--engine", "/bin/cat", file, names=["not an engine"])
         text = self.path("text")
         pathlib.Path(text).write_text("no program")
         self.refused(5, "replay", "--engine", text, file, names=["started"])
