@@ -10,9 +10,9 @@ jobs=${CALOT_JOBS:-$(nproc)}
 
 # Options of a build tree that has what the first attempt needs, and of one that has all.
 # shellcheck disable=SC2034  # used by those that source this
-first=(-DCALOT_DEVICES=OFF -DCALOT_WINDOWS=OFF -DCALOT_PYTHON_MODULE=OFF -DBUILD_TESTING=OFF)
+first=(-DCALOT_WINDOWS=OFF -DCALOT_PYTHON_MODULE=OFF -DBUILD_TESTING=OFF)
 # shellcheck disable=SC2034
-whole=(-DCALOT_DEVICES=ON -DCALOT_WINDOWS=ON -DCALOT_PYTHON_MODULE=ON)
+whole=(-DCALOT_WINDOWS=ON -DCALOT_PYTHON_MODULE=ON)
 
 # say WORDS...: a progress line with the seconds since the script started.
 say() { printf '[%4ds] %s: %s\n' "$SECONDS" "$(basename "$0" .sh)" "$*"; }

@@ -23,7 +23,7 @@ if [[ -z ${CALOT_PROGRAM:-} ]]; then
   "$root/scripts/setup.sh" demo
   # A tree that has more keeps it.
   [[ -f $root/build/release/CMakeCache.txt ]] || configure release "${first[@]}"
-  build release calot
+  build release calot calot-engine
 fi
 calot=${CALOT_PROGRAM:-$root/build/release/bin/calot}
 built=$SECONDS
@@ -77,7 +77,7 @@ echo "pictures:        $demo/operation-*.png"
 if [[ ${1:-} == --windows ]]; then
   "$root/scripts/setup.sh" build
   configure release "${whole[@]}" -DBUILD_TESTING=OFF
-  build release calot calot-dashboard calot-trainer calot-modules
+  build release calot calot-dashboard calot-trainer calot-engine
   echo "look at it:      $(dirname "$calot")/calot-dashboard $demo/cohort.db"
 else
   echo "look at it:      scripts/demo.sh --windows builds the dashboard and the trainer"

@@ -21,7 +21,7 @@ std::optional<Measured> refusalOf(double minCoverage, const MotionCoverage& cove
   if (share < minCoverage) {
     return Measured::none(
         Availability::tooLittleCoverage,
-        fmt::format("samples cover {:.1f} % of the time; {:g} % are expected", 100.0 * share, 100.0 * minCoverage));
+        fmt::format("samples cover {:.1f} % of the time; {:g} % are wanted", 100.0 * share, 100.0 * minCoverage));
   }
   if (!hasSegments) return Measured::notAvailable(fmt::format("no measured motion of 0.1 s or longer{}", ofHand));
   return std::nullopt;

@@ -52,7 +52,7 @@ std::filesystem::path findAsset(const std::string& name, const std::string& fold
   std::error_code ignored;
   if (name.size() > 5 && name.substr(name.size() - 5) == ".json") {
     if (std::filesystem::is_regular_file(name, ignored)) return name;
-    throw Error(ErrorKind::damaged, fmt::format("{}: there is no such file", recorder::shown(name)));
+    throw Error(ErrorKind::damaged, Where{name}, "there is no such file");
   }
   std::string known;
   std::vector<std::string> names;

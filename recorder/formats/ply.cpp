@@ -90,7 +90,7 @@ class HeaderReader {
       } else if (keyword == "property") {
         readProperty(words);
       } else {
-        fail(fmt::format("\"{}\" is no keyword of a PLY header", shown(keyword)));
+        fail(fmt::format("\"{}\" is not a keyword of a PLY header", shown(keyword)));
       }
     }
     check();
@@ -152,7 +152,7 @@ class HeaderReader {
     for (std::size_t i = 0; i < std::size(plyTypes); ++i) {
       if (word == plyTypes[i].name || word == plyTypes[i].oldName) return static_cast<PlyType>(i);
     }
-    fail(fmt::format("\"{}\" is no type of PLY", shown(word)));
+    fail(fmt::format("\"{}\" is not a type of PLY", shown(word)));
   }
 
   void readProperty(Words& words) {
@@ -192,7 +192,7 @@ class HeaderReader {
         const int at = element.corners();
         if (at < 0) fail("faces have no property \"vertex_indices\"");
         const PlyProperty& corners = element.properties[static_cast<std::size_t>(at)];
-        if (!corners.list) fail("\"vertex_indices\" is no list");
+        if (!corners.list) fail("\"vertex_indices\" is not a list");
         if (!isWhole(corners.type)) fail("indices are whole numbers");
       }
     }

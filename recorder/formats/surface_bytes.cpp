@@ -115,7 +115,7 @@ class ObjParser {
     } else if (keyword == "f") {
       readFace(words);
     } else if (std::find(passedOver.begin(), passedOver.end(), keyword) == passedOver.end()) {
-      fail(fmt::format("\"{}\" is no keyword of a polygonal OBJ file", shown(keyword)));
+      fail(fmt::format("\"{}\" is not a keyword of a polygonal OBJ file", shown(keyword)));
     }
   }
 

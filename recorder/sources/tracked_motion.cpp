@@ -87,7 +87,7 @@ class LineReader {
     if (fault != std::errc() || end != word.data() + word.size() || !std::isfinite(value)) {
       std::string shown;
       for (const char c : word.substr(0, 20)) shown += c > 0x20 && c < 0x7f ? c : '?';
-      fail(fmt::format("column {}: \"{}\" is no finite number", column, shown));
+      fail(fmt::format("column {}: \"{}\" is not a finite number", column, shown));
     }
     return value;
   }

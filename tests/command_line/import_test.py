@@ -284,7 +284,7 @@ class Exported(program.ProgramTest):
         self.assertEqual(sorted(said), sorted(str(file) for file in self.path("out").iterdir()))
         self.assertGives(self.path("out"), values)
         self.refused(2, "export", path, "--motion", self.path("out"), names=("already exists",))
-        self.refused(2, "export", path, "--motion", self.path("new"), "--csv", self.path("csv"), names=("k.txt", "no recording"))
+        self.refused(2, "export", path, "--motion", self.path("new"), "--csv", self.path("csv"), names=("k.txt", "not a recording"))
 
     def test_motion_of_a_recording(self):
         recording = program.skilled()
@@ -455,7 +455,7 @@ class BadFiles(program.ProgramTest):
         self.bad("text.csv", csv_of("1,2,3", "1,2,three"), *with_map, names=("line 3", "three"))
         self.bad("cut.csv", csv_of("1,2,3", "1,2,3") + "1,2", *with_map, names=("line 4", "2 cells"))
         self.bad("unit.csv", csv_of("1,2,3", "1,2,9000"), *with_map, names=("line 3", "unit of length"))
-        for change, words in (({"length": "inch"}, ("/length", "m, cm, mm")), ({"rate": 0}, ("/rate",)), ({"more": 1}, ("/more",)),
+        for change, words in (({"length": "inch"}, ("/length", "cm, m, mm")), ({"rate": 0}, ("/rate",)), ({"more": 1}, ("/more",)),
                               ({"left": {"position": ["x", "y"]}}, ("/left/position",)), ({"rate": "fast"}, ("/rate",))):
             self.columns.write_text(json.dumps({**MAP, **change}))
             path = self.path("well.csv")

@@ -67,7 +67,7 @@ std::string tooSlow(const Motion& motion, double wanted) {
   if (motion.interval == 0.0 && maxSpeed(motion) < minSpeed) return {};
   const double rate = motion.interval > 0.0 ? 1.0 / motion.interval : 0.0;
   if (rate >= wanted) return {};
-  return fmt::format("effective rate {:.1f} Hz; {:g} Hz is expected", rate,
+  return fmt::format("effective rate {:.1f} Hz; {:g} Hz is wanted", rate,
                      wanted < 30.0 && wanted > 29.0 ? 30.0 : wanted);
 }
 

@@ -77,7 +77,7 @@ std::vector<Field> CalibrationLimits::fields() {
 std::vector<Field> Calibration::fields() {
   using S = Calibration;
   static constexpr TextRule date{32, "^[0-9]{4}-[0-9]{2}-[0-9]{2}T[0-9]{2}:[0-9]{2}:[0-9]{2}Z$",
-                                 "is no date like 2026-01-31T23:59:59Z"};
+                                 "is not a date like 2026-01-31T23:59:59Z"};
   return {
       object("",
              "Measurements of a device, their date and their verdict. The compact text is "
@@ -169,7 +169,7 @@ Calibration parseCalibration(std::span<const std::byte> bytes, const std::string
   const JsonPlace root(document, file);
   Calibration c;
   readRecord(root, c);
-  if (!isDate(c.date)) root.at("date").fail("is no date like 2026-01-31T23:59:59Z");
+  if (!isDate(c.date)) root.at("date").fail("is not a date like 2026-01-31T23:59:59Z");
   if (root.at("passed").boolean() != shortcomings(c).empty())
     root.at("passed").fail("does not agree with the values and the limits");
   return c;

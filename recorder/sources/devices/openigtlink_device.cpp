@@ -77,7 +77,7 @@ void OpenIgtLinkDevice::take(const Item& item, DeviceInput& out) {
       if (std::isfinite(item.value) && std::abs(item.value) <= maxGripper)
         gripper_[h] = std::max(0.0, item.value);
       else
-        tellOnce(DeviceEvent::Kind::malformed, fmt::format("{}: an opening that is no angle", item.name), out);
+        tellOnce(DeviceEvent::Kind::malformed, fmt::format("{}: an opening that is not an angle", item.name), out);
       return;
     }
     if (item.name != tool) continue;

@@ -417,7 +417,7 @@ TEST(Study, needsTwoIndependentGroups) {
   named.groups = {"skilled", "absent"};
   expectRefusal(ErrorKind::refused, "\"absent\"", [&] { (void)makeStudy(database, named); });
   named.groups = {"skilled", "skilled"};
-  expectRefusal(ErrorKind::invalid, "two, with different names", [&] { (void)makeStudy(database, named); },
+  expectRefusal(ErrorKind::invalid, "two groups with different names", [&] { (void)makeStudy(database, named); },
                 {{Remedy::nameGroups}});
   AttemptRecord a = attemptOf(4, "skilled"), b = attemptOf(5, "unskilled");
   a.participant = b.participant = "P1";

@@ -40,9 +40,9 @@ VideoFile::VideoFile(const std::filesystem::path& file) : FrameSource(file.filen
   AVFormatContext* opened = nullptr;
   const int result = avformat_open_input(&opened, fmt::format("file:{}", file.string()).c_str(), nullptr, &options);
   av_dict_free(&options);
-  if (result < 0) fail(fmt::format("is no film that can be read: {}", reasonOfAv(result)));
+  if (result < 0) fail(fmt::format("is not a film that can be read: {}", reasonOfAv(result)));
   format_.reset(opened);
-  if (avformat_find_stream_info(format_.get(), nullptr) < 0) fail("is no film that can be read");
+  if (avformat_find_stream_info(format_.get(), nullptr) < 0) fail("is not a film that can be read");
   const int which = av_find_best_stream(format_.get(), AVMEDIA_TYPE_VIDEO, -1, -1, nullptr, 0);
   if (which < 0) fail("holds no pictures");
   stream_ = format_->streams[which];
