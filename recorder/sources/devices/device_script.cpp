@@ -206,7 +206,7 @@ ScriptedDevice::ScriptedDevice(DeviceScript script, DeviceClock clock)
       gate_{WrenchGate(script_.maxForce, 0.0), WrenchGate(script_.maxForce, 0.0)},
       origin_(clock_()) {
   std::sort(script_.unpluggings.begin(), script_.unpluggings.end(),
-            [](const auto& a, const auto& b) { return a.at < b.at; });
+            [](const auto& a, const auto& b) { return b.at > a.at; });
   info_.name = scriptedKind.name;
   info_.identity = "scripted:" + script_.name;
   info_.detail = "plays " + script_.file;
