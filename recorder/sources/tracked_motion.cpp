@@ -177,7 +177,7 @@ std::vector<Field> timeFields() {
 
 }  // namespace
 
-std::vector<Field> ColumnMap::HandColumns::fields() {
+std::vector<Field> HandColumns::fields() {
   using S = HandColumns;
   return {
       object("hand", "Columns of one hand's instrument"),
@@ -221,7 +221,7 @@ namespace {
 /// Motions of one length are equal in ranks whenever they began, which a difference of two times in binary is not.
 double toPicosecond(double seconds) { return std::round(seconds * 1e12) / 1e12; }
 
-void checkHand(const JsonPlace& place, ColumnMap::HandColumns& hand) {
+void checkHand(const JsonPlace& place, HandColumns& hand) {
   if (place.has("quaternion") && place.has("matrix"))
     place.fail("has a quaternion and a matrix; one of them is expected");
   if (!place.has("axis")) return;

@@ -68,15 +68,17 @@ struct TrackedMotion {
 /// The slave instruments of a kinematics file.
 TrackedMotion trackedMotion(const KinematicsMotion& motion);
 
+/// Columns of one hand's instrument.
+struct HandColumns {
+  std::array<std::string, 3> position;   ///< x y z
+  std::vector<std::string> orientation;  ///< none; 4: quaternion w x y z; 9: rotation matrix row by row
+  Quat axis = Quat::Identity();          ///< rotates z onto the instrument's axis in its own frame, towards the tip
+
+  static std::vector<Field> fields();
+};
+
 /// Columns of a CSV file, their units and frame.
 struct ColumnMap {
-  struct HandColumns {
-    std::array<std::string, 3> position;   ///< x y z
-    std::vector<std::string> orientation;  ///< none; 4: quaternion w x y z; 9: rotation matrix row by row
-    Quat axis = Quat::Identity();          ///< rotates z onto the instrument's axis in its own frame, towards the tip
-
-    static std::vector<Field> fields();
-  };
   std::string device;  ///< class of tracker, or empty
   std::string frame;
   char delimiter = ',';

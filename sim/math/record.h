@@ -148,7 +148,7 @@ constexpr Access accessAt() {
     Access a = accessOf<typename Value::value_type>();
     a.get = [](void* object) -> void* {
       Value& value = follow<Path...>(*static_cast<S*>(object));
-      return value ? &*value : &value.emplace(typename Value::value_type{});
+      return value ? &*value : &value.emplace();
     };
     a.has = [](const void* object) { return follow<Path...>(*static_cast<const S*>(object)).has_value(); };
     return a;

@@ -23,7 +23,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       recorder::ColumnMap map;
       map.frame = std::string("world");
       map.time = std::string("t");
-      map.hand[0] = recorder::ColumnMap::HandColumns{};
+      map.hand[0] = recorder::HandColumns{};
       map.hand[0]->position = {std::string("x"), std::string("y"), std::string("z")};
       recorder::parseCsvMotion(bytes, "a.csv", map);
     } else {
