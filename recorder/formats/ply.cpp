@@ -298,7 +298,7 @@ class PlyBody {
   std::uint32_t nextCount(PlyType type, const char* what) {
     const double value = next(type);
     if (!(value >= 0.0 && value <= 4294967295.0) || value != std::floor(value)) {
-      fail(fmt::format("{} is no {}", value, what));
+      fail(fmt::format("{} is not {}", value, what));
     }
     return static_cast<std::uint32_t>(value);
   }
