@@ -304,7 +304,7 @@ class PlyBody {
   }
 
   void pass(const PlyProperty& property) {
-    const std::uint32_t count = property.list ? nextCount(property.countType, "length of a list") : 1;
+    const std::uint32_t count = property.list ? nextCount(property.countType, "a length of a list") : 1;
     for (std::uint32_t i = 0; i < count; ++i) {
       // Unused values may be anything, including NaN.
       header_.format == PlyFormat::ascii ? static_cast<void>(nextWord()) : static_cast<void>(next(property.type));
@@ -338,7 +338,7 @@ class PlyBody {
         pass(property);
         continue;
       }
-      const std::uint32_t count = nextCount(property.countType, "length of a list");
+      const std::uint32_t count = nextCount(property.countType, "a length of a list");
       if (count < 3) fail(fmt::format("a face with {} corners", count));
       const int first = nextIndex(property.type);
       int before = nextIndex(property.type);
@@ -353,7 +353,7 @@ class PlyBody {
   }
 
   int nextIndex(PlyType type) {
-    const std::uint32_t index = nextCount(type, "index");
+    const std::uint32_t index = nextCount(type, "an index");
     if (index >= limits_.vertices) fail(fmt::format("vertex {}, but a file has at most {}", index, limits_.vertices));
     return static_cast<int>(index);
   }

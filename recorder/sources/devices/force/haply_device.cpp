@@ -126,7 +126,9 @@ std::string HaplyDevice::connect() {
   for (std::size_t h = 0; h < handCount; ++h) {
     if (known && id[h] != (handle_[h] ? handle_[h]->id : "")) return refuse("another Inverse3 is there");
     if (known || id[h].empty()) continue;
-    handle_[h].emplace().id = id[h];
+    Handle handle;
+    handle.id = id[h];
+    handle_[h] = std::move(handle);
     output_[h].emplace(HandleModel{haplyHandle, {}});
   }
   introduced_ = toldMalformed_ = false;
