@@ -11,6 +11,7 @@
 #include "analytics/report/report_document.h"
 #include "analytics/statistics/expected.h"
 
+/// @cond
 /// Null where there is none.
 template <class T>
 struct nlohmann::adl_serializer<std::optional<T>> {
@@ -28,6 +29,7 @@ struct nlohmann::adl_serializer<calot::analytics::Expected<T>> {
     tree = value ? Tree(*value) : Tree{{"value", nullptr}, {"reason", value.reason()}};
   }
 };
+/// @endcond
 
 namespace calot::analytics {
 
