@@ -19,7 +19,7 @@ scene=${CALOT_SCENE:-cholecystectomy}
 megabytes() { du -scm "$@" 2>/dev/null | tail -n 1 | cut -f 1; }
 
 if [[ -z ${CALOT_PROGRAM:-} ]]; then
-  echo "On two processors: about 5 minutes to the first attempt, 10 in all; 1 GB of disk, and 1 GB of packages where none are there."
+  echo "The command line is built first (minutes), then a first attempt is shown, then whole operations; 1 GB of disk, and 1 GB of packages where none are there."
   "$root/scripts/setup.sh" demo
   # A tree that has more keeps it.
   [[ -f $root/build/release/CMakeCache.txt ]] || configure release "${first[@]}"
