@@ -61,6 +61,7 @@ std::string csvText(const ValueTree& rows, const std::string& columns) {
 
 ReportTable tableOf(const std::string& title, const ValueTree& rows, const std::vector<TreeColumn>& columns) {
   std::vector<std::string> titles;
+  titles.reserve(columns.size());
   for (const TreeColumn& column : columns) titles.push_back(column.title);
   ReportTable table = tableOf(title, titles);
   for (const ValueTree& row : rows) {
