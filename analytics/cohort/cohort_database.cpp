@@ -88,6 +88,7 @@ std::vector<Participant> CohortDatabase::participants() const {
         &Participant::experience);
     add("SELECT pseudonym, purpose, given_on FROM consent JOIN participant ON id = participant", &Participant::consent);
     std::vector<Participant> list;
+    list.reserve(people.size());
     for (auto& item : people) list.push_back(std::move(item.second));
     return list;
   });

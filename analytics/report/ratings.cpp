@@ -159,6 +159,7 @@ void addAgreement(FormReport& report, const RatingForm& form, const std::vector<
     return report.agreement.emplace_back(agreementOn(figure, tableOf(rated, raters, value, repeated))).attempts;
   };
   std::vector<std::string> keys;
+  keys.reserve(items.size());
   for (const FormItem& item : items) keys.push_back(item.key);
   const std::uint64_t whole = agreeOn("mean of all items", keys, static_cast<double>(keys.size()), report.repeated);
   report.incomplete = rated.size() - whole - report.repeated;

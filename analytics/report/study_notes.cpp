@@ -127,6 +127,7 @@ std::vector<std::string> intervalWarnings(const Study& study, bool leading) {
     addTo(entryOf(shared, {text.substr(colon), count}), text.substr(0, colon));
   }
   std::vector<std::string> warnings;
+  warnings.reserve(shared.size());
   for (const auto& [said, names] : shared)
     warnings.push_back(fmt::format("Warning ({} of {} rows): {}{}.", said.second, rows, names, said.first));
   return warnings;

@@ -158,7 +158,7 @@ void putRows(const Recording& recording, const std::vector<Table>& tables, std::
 template <class Row>
 void putTitles(CsvFile& file) {
   const auto put = [&file]<class T>(const char* name, const char* unit, const T& /*value*/) {
-    const std::size_t numbers = std::is_same_v<T, Vec3> || std::is_same_v<T, Quat> ? sizeof(T) / sizeof(double) : 1;
+    const std::size_t numbers = std::is_same_v<T, Vec3> ? 3 : std::is_same_v<T, Quat> ? 4 : 1;
     for (const char* axis : axesOf(numbers)) file.put(titled(std::string(name) + axis, unit));
   };
   const Row row{};

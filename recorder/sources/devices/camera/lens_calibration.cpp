@@ -270,6 +270,7 @@ LensFit fitLens(const std::vector<BoardView>& views, int width, int height, doub
   start.head<4>() << *focal * width, *focal * width, middle;
   step.head<4>().setConstant(1e-3);
   std::vector<Pose> boards;
+  boards.reserve(homographies.size());
   for (const Mat3& h : homographies) boards.push_back(poseOfHomography(h, *focal));
   BlockProblem problem = problemOf(start, step, boards);
   problem.residual = [&](std::size_t b, const Eigen::VectorXd& shared, const Block6& local) {
