@@ -23,7 +23,7 @@ struct AnalysisLock {
 
 /// True if the protocol's second population is "group 1"; none: never masked. @throws Error as CohortDatabase
 std::optional<bool> readGroupMask(const std::string& path, const std::string& protocolSha256);
-/// The same, drawn from the system's source of randomness and stored where there is none yet; audited.
+/// The same, drawn from the system's source of randomness and stored unless there is one already; audited.
 bool drawGroupMask(const std::string& path, const std::string& protocolSha256);
 
 std::optional<AnalysisLock> readAnalysisLock(const std::string& path, const std::string& protocolSha256);

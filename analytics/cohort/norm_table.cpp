@@ -14,7 +14,7 @@ using namespace tables;
 
 namespace {
 
-/// -1: there is none of its name and version.
+/// -1: no entry has its name and version.
 std::int64_t normId(SQLite::Database& db, const Norm& norm) {
   return firstNumber(db, "SELECT id FROM norm WHERE name = ? AND version = ?", {norm.name, norm.version});
 }

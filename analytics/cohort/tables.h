@@ -119,7 +119,7 @@ void writeDetails(SQLite::Database& db, std::int64_t participant, const std::map
 
 /// -1: there is none.
 std::int64_t attemptId(SQLite::Database& db, const std::string& uuid);
-/// @throws Error (refused) where there is none. @param path for the message
+/// @throws Error (refused) if it is missing. @param path for the message
 std::int64_t knownAttempt(SQLite::Database& db, const std::string& path, const std::string& uuid);
 std::optional<AttemptRow> findAttempt(SQLite::Database& db, const std::string& uuid);
 /// By start, then uuid.

@@ -71,7 +71,7 @@ void addHolm(ValueTree& rows, const std::string& place = "");
 
 /// "name [unit]" of a result.
 std::string figureTitle(const ValueTree& result);
-/// "12 [9, -]", "not reached", or why there is none, of {"median", "lower", "upper"} or {"reason"}.
+/// "12 [9, -]", "not reached", or the reason for its absence, of {"median", "lower", "upper"} or {"reason"}.
 std::string medianText(const ValueTree& times);
 
 // The designs: tables, notes, methods, figures and "results" in JSON.

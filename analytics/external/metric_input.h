@@ -67,7 +67,7 @@ class InputColumns {
   void whole(const std::string& name, std::int64_t value);
   void vector(const std::string& name, const char* unit, const char* frame, const Vec3& value);
   void rotation(const std::string& name, const char* frame, const Quat& value);  ///< w x y z
-  /// A number of each of several; no column where there are none. @pre as many in each row
+  /// A number of each of several; an empty list has no column. @pre as many in each row
   template <class List, class Read>
   void list(const std::string& name, const char* unit, const List& values, Read read) {
     if (values.empty()) return;

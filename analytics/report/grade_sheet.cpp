@@ -153,7 +153,7 @@ TextSpan span(const std::string& recording, const Moment& m) {
   return {momentText(m), fmt::format("{}#t={:.2f},{:.2f}", recording, m.begin, m.end)};
 }
 
-/// The weak figures with their moments, or why there are none.
+/// The weak figures with their moments, or the reason why the list is empty.
 std::vector<Paragraph> weakFigures(const Grade& g, const std::string& recording) {
   std::vector<Paragraph> items;
   for (const GradedFigure& f : g.figures) {

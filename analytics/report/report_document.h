@@ -65,12 +65,12 @@ inline constexpr double arithmeticDust = 1e-9;
 /// below arithmeticDust.
 std::string significant(double value, int digits = 4);
 
-/// The same, or "-" where there is none.
+/// The same, or "-" for a missing value.
 std::string significantOrDash(const std::optional<double>& value, int digits = 4);
 
 /// "p" with what a reader may believe: "< 0.0001", "0.0433".
 std::string pText(double p);
-/// The same, or "-" where there is none.
+/// The same, or "-" for a missing value.
 std::string pOrDash(const std::optional<double>& p);
 
 struct TextSpan {
