@@ -15,8 +15,8 @@
 #include "analytics/checkpoints/collector.h"
 #include "analytics/external/metric_input.h"
 #include "analytics/report/report_document.h"
-#include "recorder/attempt.h"
 #include "recorder/formats/scene_file.h"
+#include "recorder/loop.h"
 
 namespace calot::analytics {
 namespace {

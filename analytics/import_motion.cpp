@@ -9,8 +9,8 @@
 
 #include "analytics/checkpoints/collector.h"
 #include "analytics/external/metric_input.h"
-#include "recorder/attempt.h"
 #include "recorder/base/dates.h"
+#include "recorder/loop.h"
 
 namespace calot::analytics {
 namespace {

@@ -3,10 +3,10 @@
 
 #include "python/bindings.h"
 #include "python/places.h"
-#include "recorder/attempt.h"
 #include "recorder/compliance_cache.h"
 #include "recorder/formats/scene_file.h"
 #include "recorder/kept/engine_folders.h"
+#include "recorder/loop.h"
 #include "recorder/prepared_scene.h"
 #include "sim/instruments/instruments.h"
 #include "sim/scene/step_result.h"

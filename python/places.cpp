@@ -5,7 +5,7 @@
 
 #include <system_error>
 
-#include "recorder/base/program_files.h"
+#include "recorder/base/files.h"
 
 namespace calot::python {
 

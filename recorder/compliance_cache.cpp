@@ -12,8 +12,7 @@
 #include <span>
 
 #include "recorder/base/errors.h"
-#include "recorder/base/file_bytes.h"
-#include "recorder/base/secret_file.h"
+#include "recorder/base/files.h"
 #include "sim/math/fields.h"
 #include "sim/scene/version.h"
 

@@ -9,7 +9,7 @@
 #include <memory>
 #include <stdexcept>
 
-#include "recorder/step_watch.h"
+#include "recorder/replay.h"
 
 namespace calot::recorder {
 

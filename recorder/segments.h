@@ -16,7 +16,6 @@
 #include "recorder/recorded_results.h"
 #include "recorder/recording/reader.h"
 #include "recorder/replay.h"
-#include "recorder/step_watch.h"
 
 namespace calot::recorder {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "analytics/assessment/declared_document.h"
 
-#include "recorder/base/file_bytes.h"
+#include "recorder/base/files.h"
 
 namespace calot::analytics {
 

@@ -13,7 +13,7 @@
 
 #include "analytics/cohort/connection.h"
 #include "analytics/cohort/tables.h"
-#include "recorder/attempt.h"
+#include "recorder/loop.h"
 
 namespace calot::analytics {
 namespace {

@@ -11,7 +11,6 @@
 #include "analytics/report/study_population.h"
 #include "analytics/statistics/descriptive.h"
 #include "recorder/base/errors.h"
-#include "recorder/base/nearest_word.h"
 #include "recorder/base/text_words.h"
 
 namespace calot::analytics {

@@ -10,8 +10,8 @@
 
 #include "analytics/report/report_document.h"
 #include "analytics/statistics/rank_tests.h"
-#include "recorder/attempt.h"
 #include "recorder/base/errors.h"
+#include "recorder/loop.h"
 
 namespace calot::analytics {
 namespace {

@@ -18,10 +18,10 @@
 #include "analytics/cohort/withdraw.h"
 #include "analytics/interchange/bundle_names.h"
 #include "analytics/interchange/cohort_tables.h"
-#include "recorder/attempt.h"
-#include "recorder/base/csv_writer.h"
+#include "recorder/base/csv.h"
 #include "recorder/base/errors.h"
 #include "recorder/base/text_words.h"
+#include "recorder/loop.h"
 
 namespace calot::analytics {
 namespace {

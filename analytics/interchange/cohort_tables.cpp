@@ -11,8 +11,8 @@
 #include "analytics/cohort/tables.h"
 #include "analytics/cohort/withdraw.h"
 #include "analytics/interchange/folder_output.h"
-#include "recorder/attempt.h"
-#include "recorder/base/csv_writer.h"
+#include "recorder/base/csv.h"
+#include "recorder/loop.h"
 
 namespace calot::analytics {
 namespace {

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <utility>
 
-#include "recorder/attempt.h"
+#include "recorder/loop.h"
 #include "sim/scene/version.h"
 
 namespace calot::analytics {

@@ -11,7 +11,7 @@
 #include "analytics/report/rating_tables.h"
 #include "analytics/report/study_output.h"
 #include "analytics/report/study_rows.h"
-#include "recorder/attempt.h"
+#include "recorder/loop.h"
 
 namespace calot::analytics {
 namespace {

@@ -15,7 +15,7 @@
 #include "analytics/report/study_rows.h"
 #include "analytics/statistics/descriptive.h"
 #include "recorder/base/errors.h"
-#include "recorder/base/text_output.h"
+#include "recorder/base/files.h"
 
 namespace calot::analytics {
 namespace {

@@ -21,7 +21,7 @@
 #include "gui/dashboard/dashboard_window.h"
 #include "gui/dashboard/settings.h"
 #include "recorder/base/errors.h"
-#include "recorder/base/program_files.h"
+#include "recorder/base/files.h"
 #include "recorder/compliance_cache.h"
 #include "recorder/kept/engine_folders.h"
 #include "recorder/prepared_scene.h"

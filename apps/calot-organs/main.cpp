@@ -13,7 +13,7 @@
 #include "apps/common/help_json.h"
 #include "apps/common/program.h"
 #include "recorder/base/errors.h"
-#include "recorder/base/file_bytes.h"
+#include "recorder/base/files.h"
 #include "recorder/formats/mesh_file.h"
 #include "sim/geometry/surface_report.h"
 

@@ -13,7 +13,7 @@
 #include "gui/film/overlay.h"
 #include "gui/render/image.h"
 #include "recorder/base/errors.h"
-#include "recorder/base/text_output.h"
+#include "recorder/base/files.h"
 #include "recorder/sources/devices/calibration.h"
 #include "recorder/sources/devices/camera/camera_calibration.h"
 #include "recorder/sources/devices/camera/camera_device.h"

@@ -7,8 +7,7 @@
 #include <set>
 
 #include "apps/calot/command.h"
-#include "recorder/base/program_files.h"
-#include "recorder/base/text_output.h"
+#include "recorder/base/files.h"
 #include "recorder/kept/engine_folders.h"
 #include "recorder/kept/engine_process.h"
 #include "recorder/kept/transcript.h"

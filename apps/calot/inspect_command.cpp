@@ -9,7 +9,7 @@
 #include "recorder/recording/reader.h"
 #include "recorder/recording/recording_facts.h"
 #include "recorder/recording/recover.h"
-#include "recorder/step_watch.h"
+#include "recorder/replay.h"
 #include "sim/scene/version.h"
 
 namespace calot::apps {

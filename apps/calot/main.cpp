@@ -4,8 +4,8 @@
 #include "apps/calot/command.h"
 #include "apps/calot/help.h"
 #include "apps/common/help_json.h"
-#include "recorder/attempt.h"
 #include "recorder/compliance_cache.h"
+#include "recorder/loop.h"
 #include "recorder/prepared_scene.h"
 #include "sim/scene/version.h"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "apps/calot/command.h"
-#include "recorder/base/text_output.h"
+#include "recorder/base/files.h"
 #include "recorder/formats/mesh_file.h"
 #include "recorder/formats/mesh_report.h"
 #include "sim/geometry/isosurface_stuffing.h"

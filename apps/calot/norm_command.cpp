@@ -13,7 +13,7 @@
 #include "apps/calot/command.h"
 #include "apps/calot/environment.h"
 #include "recorder/base/errors.h"
-#include "recorder/base/file_bytes.h"
+#include "recorder/base/files.h"
 #include "recorder/base/text_words.h"
 
 namespace calot::apps {

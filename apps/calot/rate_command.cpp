@@ -22,7 +22,7 @@
 #include "apps/calot/import_command.h"
 #include "gui/film/film.h"
 #include "gui/film/film_writer.h"
-#include "recorder/base/file_bytes.h"
+#include "recorder/base/files.h"
 #include "recorder/base/json_reader.h"
 #include "recorder/base/text_words.h"
 #include "recorder/recording/probe.h"

@@ -7,7 +7,7 @@
 #include "apps/calot/command.h"
 #include "apps/calot/replay_report.h"
 #include "apps/calot/source_options.h"
-#include "recorder/base/text_output.h"
+#include "recorder/base/files.h"
 #include "recorder/recording/probe.h"
 #include "recorder/replay.h"
 

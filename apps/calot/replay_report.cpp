@@ -9,7 +9,7 @@
 #include "analytics/checkpoints/motion.h"
 #include "analytics/cohort/registers.h"
 #include "apps/calot/environment.h"
-#include "recorder/base/text_output.h"
+#include "recorder/base/files.h"
 
 namespace calot::apps {
 

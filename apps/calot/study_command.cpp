@@ -13,9 +13,9 @@
 #include "analytics/report/study_output.h"
 #include "apps/calot/command.h"
 #include "apps/calot/environment.h"
-#include "recorder/attempt.h"
 #include "recorder/base/errors.h"
-#include "recorder/base/text_output.h"
+#include "recorder/base/files.h"
+#include "recorder/loop.h"
 #ifdef CALOT_PDF
 #include "gui/report/pdf_report.h"
 #endif

@@ -14,7 +14,7 @@
 #include "analytics/report/study_rows.h"
 #include "gui/words/problem_words.h"
 #include "recorder/base/errors.h"
-#include "recorder/base/text_output.h"
+#include "recorder/base/files.h"
 
 namespace calot::gui {
 namespace {

@@ -11,7 +11,6 @@
 #include "gui/trainer/trainer_texts.h"
 #include "gui/words/problem_words.h"
 #include "recorder/base/errors.h"
-#include "recorder/branch.h"
 #include "recorder/live/worker_pool.h"
 #include "recorder/live/wrapped_sources.h"
 #include "recorder/loop.h"

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "recorder/formats/mesh_file.h"
 
 #include <fmt/format.h>
 #include <algorithm>
 #include <iterator>
 
-#include "recorder/base/file_bytes.h"
-#include "recorder/base/text_output.h"
+#include "recorder/base/files.h"
 
 namespace calot::recorder {
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
-#include "recorder/formats/ply.h"
+#include "recorder/formats/surface_bytes.h"
 
 #include <fmt/format.h>
 #include <algorithm>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "recorder/formats/scene_assets.h"
 
 #include <fmt/format.h>
@@ -9,9 +8,8 @@
 
 #include "recorder/base/errors.h"
 #include "recorder/base/json_reader.h"
-#include "recorder/base/record_reader.h"
+#include "recorder/base/record_json.h"
 #include "recorder/formats/mesh_report.h"
-#include "recorder/formats/scene_rules.h"
 #include "sim/geometry/surface_report.h"
 #include "sim/math/elementary.h"
 #include "sim/math/floating_point.h"

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A scene from the bytes of its file and of what that names; no file is touched. What is in them:
+// A scene from the bytes of its file and of the surfaces that it names; no file is touched. What is in them:
 // docs/reference/scenes.md.
-// Surfaces that a scene file names.
 #pragma once
 
 #include <functional>
@@ -63,5 +62,17 @@ LoadedScene sceneFromAssets(std::vector<Asset> assets);
 /// Direction of gravity in a scene file that another version's engine reads: its key "gravity" alone is read.
 /// @return unit; SceneView's default where the file has none
 [[nodiscard]] Vec3 downOf(const Asset& sceneFile);
+
+/// Checks a scene whose fields and surfaces were read, and completes what other fields decide: the camera's
+/// orientation, and roles. Rules over fields that have faults are skipped.
+/// @param root the scene file
+/// @throws Error (damaged), naming the place
+void applySceneRules(const JsonPlace& root, SceneDescription& scene);
+
+/// Gives roles to the tissue of a scene that states none, as recordings made before scenes had roles: liver and
+/// gallbladder by appearance; a vessel grown to a gallbladder is the cystic duct or, where it does not look like a
+/// duct, the cystic artery; other vessels are bile ducts or arteries by appearance; connective tissue on a gallbladder
+/// is the cystic plate, and all fat is that of Calot's triangle. Nowhere else is appearance more than a look.
+void deriveRoles(SceneDescription& scene);
 
 }  // namespace calot::recorder

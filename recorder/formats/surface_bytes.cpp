@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "recorder/formats/surface_bytes.h"
 
 #include <fmt/format.h>
@@ -13,8 +12,6 @@
 
 #include "recorder/base/errors.h"
 #include "recorder/base/text_words.h"
-#include "recorder/formats/ply.h"
-#include "recorder/formats/stl.h"
 
 namespace calot::recorder {
 

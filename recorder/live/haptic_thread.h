@@ -13,8 +13,7 @@
 #include <span>
 #include <thread>
 
-#include "recorder/base/newest.h"
-#include "recorder/base/ring.h"
+#include "recorder/base/queues.h"
 #include "recorder/engine/observer.h"
 #include "recorder/live/paced_clock.h"
 #include "recorder/sources/source.h"

@@ -10,11 +10,11 @@
 #include <fstream>
 #include <system_error>
 
-#include "recorder/base/file_bytes.h"
+#include "recorder/base/files.h"
 #include "recorder/recording/block.h"
+#include "recorder/recording/file_reader.h"
 #include "recorder/recording/hdf5.h"
 #include "recorder/recording/layout.h"
-#include "recorder/recording/open_file.h"
 
 namespace calot::recorder {
 

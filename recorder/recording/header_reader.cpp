@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "recorder/recording/header_reader.h"
+#include "recorder/recording/file_reader.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <regex>
 
-#include "recorder/base/file_bytes.h"
+#include "recorder/base/files.h"
 #include "recorder/recording/layout.h"
 
 namespace calot::recorder {

@@ -8,9 +8,7 @@
 #include <cmath>
 
 #include "recorder/recording/block.h"
-#include "recorder/recording/column_reader.h"
-#include "recorder/recording/header_reader.h"
-#include "recorder/recording/open_file.h"
+#include "recorder/recording/file_reader.h"
 
 namespace calot::recorder {
 

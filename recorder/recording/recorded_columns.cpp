@@ -9,7 +9,7 @@
 #include <system_error>
 #include <type_traits>
 
-#include "recorder/base/csv_writer.h"
+#include "recorder/base/csv.h"
 #include "recorder/base/errors.h"
 #include "recorder/recording/block.h"
 #include "recorder/recording/layout.h"

@@ -13,8 +13,8 @@
 #include <string_view>
 
 #include "recorder/base/errors.h"
+#include "recorder/recording/file_reader.h"
 #include "recorder/recording/hdf5.h"
-#include "recorder/recording/open_file.h"
 #include "recorder/recording/probe.h"
 #include "recorder/recording/reader.h"
 

@@ -14,7 +14,7 @@
 
 #include "recorder/engine/observer.h"
 #include "recorder/sources/performer_profile.h"
-#include "recorder/sources/unsteadiness.h"
+#include "recorder/sources/pointing.h"
 #include "sim/math/random.h"
 #include "sim/scene/description.h"
 

@@ -6,9 +6,9 @@
 #include <set>
 
 #include "recorder/base/errors.h"
-#include "recorder/base/file_bytes.h"
-#include "recorder/base/nearest_word.h"
-#include "recorder/base/record_reader.h"
+#include "recorder/base/files.h"
+#include "recorder/base/record_json.h"
+#include "recorder/base/text_words.h"
 #include "sim/math/floating_point.h"
 
 namespace calot::recorder {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Fat as a performer sees it: on the vessels, and in the triangle between them.
-
 #include "recorder/sources/operation_mind.h"
 
 #include <algorithm>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "recorder/sources/tracked_motion.h"
-#include "recorder/base/record_reader.h"
+#include "recorder/base/record_json.h"
 
 #include <fmt/format.h>
 #include <charconv>
@@ -11,8 +10,7 @@
 
 #include "recorder/base/csv.h"
 #include "recorder/base/errors.h"
-#include "recorder/base/file_bytes.h"
-#include "recorder/base/record_reader.h"
+#include "recorder/base/files.h"
 #include "recorder/sources/pointing.h"
 
 namespace calot::recorder {

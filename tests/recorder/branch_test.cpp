@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "recorder/branch.h"
+#include "recorder/loop.h"
 
 #include <gtest/gtest.h>
 

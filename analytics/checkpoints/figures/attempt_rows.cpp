@@ -6,7 +6,7 @@
 
 #include "analytics/checkpoints/figures/rows.h"
 #include "analytics/checkpoints/phases.h"
-#include "recorder/step_watch.h"
+#include "recorder/replay.h"
 
 namespace calot::analytics {
 namespace {

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "recorder/sources/devices/calibration.h"
 
 #include <fmt/format.h>
@@ -15,9 +14,8 @@
 
 #include "recorder/base/dates.h"
 #include "recorder/base/errors.h"
-#include "recorder/base/file_bytes.h"
-#include "recorder/base/record_reader.h"
-#include "recorder/base/record_writer.h"
+#include "recorder/base/files.h"
+#include "recorder/base/record_json.h"
 #include "recorder/sources/devices/mouse_device.h"
 #include "recorder/sources/pointing.h"
 

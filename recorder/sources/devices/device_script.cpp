@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "recorder/sources/devices/device_script.h"
 
 #include <fmt/format.h>
@@ -8,8 +7,8 @@
 #include <utility>
 
 #include "recorder/base/errors.h"
-#include "recorder/base/file_bytes.h"
-#include "recorder/base/record_reader.h"
+#include "recorder/base/files.h"
+#include "recorder/base/record_json.h"
 #include "recorder/sources/tracked_motion.h"
 
 namespace calot::recorder {

@@ -9,8 +9,7 @@
 #include <thread>
 #include <vector>
 
-#include "recorder/base/ring.h"
-#include "recorder/base/spsc_queue.h"
+#include "recorder/base/queues.h"
 #include "recorder/recording/device_sample.h"
 #include "recorder/sources/devices/calibration.h"
 #include "recorder/sources/devices/device.h"

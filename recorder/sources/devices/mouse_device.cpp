@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The kernel's interface itself (linux/input.h): a reader of relative axes and buttons is shorter than a library's
 // set-up, and takes events from any stream, which tests without a mouse need.
-
 #include "recorder/sources/devices/mouse_device.h"
 
 #include <fcntl.h>

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "recorder/sources/pointing.h"
 #include "recorder/sources/scope/endoscope.h"
 #include "recorder/sources/source.h"
-#include "recorder/sources/unsteadiness.h"
 #include "sim/math/record.h"
 
 namespace calot::recorder {

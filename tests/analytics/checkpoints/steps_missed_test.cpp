@@ -2,7 +2,7 @@
 // Steps that missed a tolerance reach the report.
 #include <gtest/gtest.h>
 
-#include "recorder/step_watch.h"
+#include "recorder/replay.h"
 #include "tests/analytics/checkpoints/support/operation.h"
 
 namespace calot::analytics {

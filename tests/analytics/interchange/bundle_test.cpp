@@ -21,7 +21,7 @@
 #include "analytics/cohort/withdraw.h"
 #include "analytics/interchange/bundle_names.h"
 #include "recorder/base/csv.h"
-#include "recorder/base/file_bytes.h"
+#include "recorder/base/files.h"
 #include "tests/analytics/cohort/support/cohort_support.h"
 #include "tests/analytics/support/refusal.h"
 

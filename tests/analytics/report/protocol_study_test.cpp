@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "analytics/report/study_output.h"
-#include "recorder/base/file_bytes.h"
+#include "recorder/base/files.h"
 #include "tests/analytics/assessment/support/texts.h"
 #include "tests/analytics/cohort/support/cohort_support.h"
 #include "tests/analytics/support/refusal.h"

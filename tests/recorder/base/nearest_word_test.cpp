@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "recorder/base/nearest_word.h"
+#include "recorder/base/text_words.h"
 
 #include <gtest/gtest.h>
 

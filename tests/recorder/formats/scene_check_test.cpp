@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "recorder/formats/scene_check.h"
+#include "recorder/formats/scene_file.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,6 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "recorder/formats/scene_file.h"
 #include "sim/geometry/triangle_mesh.h"
 
 namespace calot::recorder {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Roles of a scene's structures: as the file states them, and as they are derived where it states none.
-#include "recorder/formats/scene_rules.h"
+#include "recorder/formats/scene_assets.h"
 
 #include <gtest/gtest.h>
 

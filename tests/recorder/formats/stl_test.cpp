@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "recorder/formats/stl.h"
+#include "recorder/formats/surface_bytes.h"
 
 #include <gtest/gtest.h>
 

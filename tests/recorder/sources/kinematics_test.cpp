@@ -10,7 +10,7 @@
 #include <sstream>
 
 #include "recorder/base/errors.h"
-#include "recorder/base/file_bytes.h"
+#include "recorder/base/files.h"
 #include "recorder/sources/kinematics_source.h"
 #include "recorder/sources/pointing.h"
 #include "recorder/sources/scene_surfaces.h"

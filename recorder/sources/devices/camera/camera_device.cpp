@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // `--device camera`: films or live cameras by name.
-
 #include "recorder/sources/devices/camera/camera_device.h"
 
 #include <fcntl.h>
@@ -15,7 +14,7 @@
 #include <utility>
 
 #include "recorder/base/errors.h"
-#include "recorder/base/file_bytes.h"
+#include "recorder/base/files.h"
 #include "recorder/sources/devices/calibration.h"
 #include "recorder/sources/devices/camera/frame_source.h"
 #include "recorder/sources/devices/evdev.h"

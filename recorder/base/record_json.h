@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Strict reading of JSON objects into structs, by the table of their fields (sim/math/record.h).
+// JSON of structs, read strictly and written, by the table of their fields (sim/math/record.h).
 #pragma once
 
+#include <nlohmann/json.hpp>
+
 #include "recorder/base/json_reader.h"
+#include "sim/math/record.h"
 
 namespace calot::recorder {
 
@@ -15,6 +18,15 @@ void readRecord(const JsonPlace& place, const Record& record, void* object);
 template <class T>
 void readRecord(const JsonPlace& place, T& object) {
   readRecord(place, recordOf<T>(), &object);
+}
+
+/// JSON that readRecord() reads. A value that is stored nowhere is null, for the caller to fill in, unless its field
+/// admits one value alone.
+nlohmann::ordered_json writeRecord(const Record& record, const void* object);
+
+template <class T>
+nlohmann::ordered_json writeRecord(const T& object) {
+  return writeRecord(recordOf<T>(), &object);
 }
 
 }  // namespace calot::recorder
