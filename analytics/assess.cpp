@@ -13,6 +13,7 @@
 
 #include "analytics/checkpoints/checkpoint.h"
 #include "analytics/checkpoints/collector.h"
+#include "analytics/checkpoints/replay_words.h"
 #include "analytics/external/metric_input.h"
 #include "analytics/report/report_document.h"
 #include "recorder/formats/scene_file.h"
@@ -191,7 +192,7 @@ AttemptRecord recordOf(const recorder::AttemptHeader& h, const recorder::ReplayR
     std::copy(value.begin(), value.end(), s.value.begin());
   }
   const bool exact = report.verdict == recorder::ReplayVerdict::exact;
-  a.verification = {verdictOf(report.verdict), exact ? "" : report.message, recorder::softwareName()};
+  a.verification = {verdictOf(report.verdict), exact ? "" : wordsFor(report), recorder::softwareName()};
   return a;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <exception>
 
+#include "analytics/checkpoints/replay_words.h"
 #include "python/bindings.h"
 #include "recorder/base/remedy_words.h"
 
@@ -52,12 +53,13 @@ void translate(std::exception_ptr thrown) {
 }  // namespace
 
 ReplayFault::ReplayFault(const recorder::ReplayReport& report)
-    : Error(ErrorKind::refused, Where{report.path.string()}, report.message, report.remedies), report_(report) {}
+    : Error(ErrorKind::refused, Where{report.path.string()}, analytics::wordsFor(report), report.remedies),
+      report_(report) {}
 
 void throwUnlessExact(const recorder::ReplayReport& report) {
   if (report.verdict == recorder::ReplayVerdict::diverged) throw ReplayFault(report);
   if (const std::optional<ErrorKind> fault = report.fault())
-    throw Error(*fault, Where{report.path.string()}, report.message, report.remedies);
+    throw Error(*fault, Where{report.path.string()}, analytics::wordsFor(report), report.remedies);
 }
 
 void translateErrors() { py::register_exception_translator(translate); }

@@ -14,9 +14,9 @@
 #include "recorder/base/files.h"
 #include "recorder/engine/session.h"
 #include "recorder/live/haptic_thread.h"
-#include "recorder/live/wrapped_sources.h"
 #include "recorder/recording/reader.h"
 #include "recorder/replay.h"
+#include "recorder/sources/source.h"
 #include "sim/math/fields.h"
 #include "sim/scene/version.h"
 
@@ -213,7 +213,7 @@ RunReport runAttempt(Session& session, SampleSource& source, const RunSettings& 
     runInline(session, asked, settings, watch, report);
   }
   session.leave(watch);
-  report.fault = watch.fault(session.model());
+  report.runaway = watch.runaway(session.model());
   report.misses = watch.misses();
   report.steps = session.steps();
   if (watcher != nullptr) session.leave(*watcher);
@@ -337,12 +337,10 @@ AttemptHeader branchHeader(const Recording& parent, const Model& model, std::uin
   return header;
 }
 
-void takeParent(Recording& parent, Session& session, std::uint64_t forkStep,
-                const std::function<void(std::uint64_t step, std::uint64_t of)>& progress) {
+std::optional<Divergence> takeParent(Recording& parent, Session& session, std::uint64_t forkStep,
+                                     const std::function<void(std::uint64_t step, std::uint64_t of)>& progress) {
   LocalEngine engine(session);
-  if (const auto divergence = follow(parent, engine, forkStep + 1, {}, progress)) {
-    throw Error(ErrorKind::refused, Where{parent.path().string()}, describe(*divergence));
-  }
+  return follow(parent, engine, forkStep + 1, {}, progress);
 }
 
 BranchFile::BranchFile(std::filesystem::path target, bool force) : target_(std::move(target)), force_(force) {

@@ -57,8 +57,8 @@ struct RunReport : TickReport {
   std::uint64_t pauses = 0;  ///< of the source
   double paused = 0.0;       ///< s
   double wallSeconds = 0.0;
-  StepMisses misses;  ///< of this run's steps
-  std::string fault;  ///< why the attempt had to end, in one line: the simulation ran away (miss::runaway); or empty
+  StepMisses misses;               ///< of this run's steps
+  std::optional<Runaway> runaway;  ///< why the attempt had to end
   // Live:
   bool realTime = false;            ///< the haptic thread ran before all ordinary threads
   double tickMean = 0.0;            ///< thread CPU time of a tick (both hands; s)
@@ -69,7 +69,7 @@ struct RunReport : TickReport {
 };
 
 /// Runs the session from the source until it ends or fails, the scene's time limit, `seconds`, or `stop`, or until a
-/// step says that the simulation ran away (Outcome::technicalFailure, and `fault` says where); then ends the
+/// step says that the simulation ran away (Outcome::technicalFailure, and `runaway` says where); then ends the
 /// session. A step begins only when the source gave all its ticks; what is left of a last, unfinished step is dropped.
 /// Where the session has steps already (a branch), the source begins with its tick 0 all the same.
 ///
@@ -163,10 +163,11 @@ AttemptHeader branchHeader(const Recording& parent, const Model& model, std::uin
 
 /// Re-simulates the parent's steps up to and with the fork step, with the contact sets and lateness that were logged,
 /// so that forces and events are the same. Observers of the session receive each.
-/// @throws Error (refused) at the first difference from the parent's digests, forces, observables, events or keyframes.
+/// @returns the first difference from the parent's digests, forces, observables, events or keyframes, where it stops
 /// @pre the session is new, with the parent's model and seed
-void takeParent(Recording& parent, Session& session, std::uint64_t forkStep,
-                const std::function<void(std::uint64_t step, std::uint64_t of)>& progress = {});
+[[nodiscard]] std::optional<Divergence> takeParent(
+    Recording& parent, Session& session, std::uint64_t forkStep,
+    const std::function<void(std::uint64_t step, std::uint64_t of)>& progress = {});
 
 /// The name that a branch has until the parent's part is taken: TARGET.branch, in the target's folder. Removed with
 /// this object unless publish() came before.

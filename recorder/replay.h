@@ -34,8 +34,12 @@ struct StepMisses {
   bool operator==(const StepMisses&) const = default;
 };
 
-/// "17 of 2000 steps missed a tolerance (solver 3, contact 14, held back 0)"; empty where none did.
-std::string describe(const StepMisses& misses);
+/// The simulation ran away (miss::runaway): an attempt ends there.
+struct Runaway {
+  std::uint64_t step = 0;
+  std::string structure;
+  double speed = 0.0;  ///< m/s
+};
 
 /// Watches a run: counts the steps that missed a tolerance, and notices the one after which nothing that is simulated
 /// means anything.
@@ -46,8 +50,8 @@ class StepWatch final : public Observer {
 
   [[nodiscard]] const StepMisses& misses() const { return misses_; }
   [[nodiscard]] bool ranAway() const { return ranAway_; }
-  /// One line for people: which structure ran away, and when; or empty.
-  [[nodiscard]] std::string fault(const Model& model) const;
+  /// The structure that ran away first, if one did.
+  [[nodiscard]] std::optional<Runaway> runaway(const Model& model) const;
 
  private:
   StepMisses misses_;
@@ -78,6 +82,21 @@ inline constexpr const char* wordFor(ReplayVerdict verdict) {
   return words[static_cast<std::size_t>(verdict)];
 }
 
+/// How far a replay came.
+enum class ReplayFinding : std::uint8_t {
+  unread,       ///< `error` says why nothing was compared
+  otherLayout,  ///< the recorded digests have other components than this build's State
+  otherNames,   ///< `error` names the first structure, component or field that its scene calls otherwise
+  compared,     ///< divergence and chain say the rest
+};
+
+/// A part of a recording that was verified: numbers of the first and last segment, and of their steps.
+struct ReplayedPart {
+  std::array<std::size_t, 2> segments{};
+  std::array<std::uint64_t, 2> steps{};
+};
+
+/// Result of a replay, in fields; analytics/checkpoints/replay_words.h makes sentences of them.
 struct ReplayReport {
   std::filesystem::path path;
   ReplayVerdict verdict = ReplayVerdict::damaged;
@@ -91,11 +110,14 @@ struct ReplayReport {
   std::array<std::byte, 32> chainHead{};
   StepMisses misses;  ///< of the steps that were computed again
   bool chainIntact = false;
+  std::string chainFault;                      ///< one phrase, where it is broken
   std::optional<RecordedSignature> signature;  ///< as recorded; it fits where the chain is intact
   std::optional<Divergence> divergence;
   std::optional<bool> reproducible;  ///< a second run differed at the same place in the same way
-  std::string message;               ///< one line for people; does not name the recording
-  std::vector<Remedy> remedies;      ///< of what stands in the way
+  std::optional<ReplayedPart> part;  ///< where it was asked for
+  ReplayFinding finding = ReplayFinding::unread;
+  std::string error;             ///< does not name the recording
+  std::vector<Remedy> remedies;  ///< of what stands in the way
 
   /// Kind of error of a verdict other than exact.
   [[nodiscard]] std::optional<ErrorKind> fault() const;
@@ -130,9 +152,6 @@ ReplayReport replayRecording(const std::filesystem::path& path, const ReplaySett
 std::optional<Divergence> follow(Recording& recording, Engine& engine, std::uint64_t end,
                                  const std::vector<Observer*>& observers,
                                  const std::function<void(std::uint64_t step, std::uint64_t of)>& progress = {});
-
-/// "diverged at step 13: hand.right realPosition (...)".
-std::string describe(const Divergence& divergence);
 
 /// Goes anywhere in a recording: the nearest keyframe at or before, then re-simulation. The State is the one that
 /// running there gives, bit for bit.

@@ -80,7 +80,6 @@ class Verifier {
   std::vector<TickForces>* forces_;
 };
 
-/// Hands segments to threads in their order.
 class Verification {
  public:
   Verification(const std::filesystem::path& path, const EngineChoice& choice, const std::vector<Segment>& segments,

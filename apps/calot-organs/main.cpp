@@ -44,7 +44,7 @@ int run(const std::filesystem::path& folder, bool check, bool force) {
                1e6 * report.volume, size[0], size[1], size[2]);
     const std::filesystem::path path = folder / organ.file;
     if (!check) {
-      recorder::writeObj(path, organ.mesh, organ.head, force);
+      recorder::writeText(path, recorder::formatObj(organ.mesh, organ.head), force);
       continue;
     }
     const std::string wanted = recorder::formatObj(organ.mesh, organ.head);

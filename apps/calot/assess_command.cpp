@@ -85,7 +85,7 @@ void storeJudged(const std::string& file, const AssessOptions& o, analytics::Coh
     judged.report = {};
     judged.report.path = file;
     judged.report.verdict = recorder::ReplayVerdict::diverged;
-    judged.report.message = recorder::messageWithout(file, e);
+    judged.report.error = recorder::messageWithout(file, e);
     judged.report.remedies = e.remedies();
   }
 }

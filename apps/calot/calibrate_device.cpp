@@ -98,7 +98,7 @@ struct Step {
 /// Records the device through the steps that a person is guided through.
 class GuidedRecording {
  public:
-  explicit GuidedRecording(recorder::Device& device) : device_(device), pump_(device) {
+  explicit GuidedRecording(recorder::Device& device) : device_(device), pump_(device, true) {
     stream_.name = device.info().identity;
     stream_.file = device.info().name;
     stream_.rate = device.info().capabilities.rate;

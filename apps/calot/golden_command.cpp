@@ -194,7 +194,8 @@ GoldenReplay replayGolden(const std::filesystem::path& file, const GoldenEntry& 
   if (replay.changed.empty()) return replay;
   // The simulation is the same; what is computed over it is not.
   replay.report.verdict = recorder::ReplayVerdict::diverged;
-  replay.report.message =
+  replay.report.finding = recorder::ReplayFinding::unread;
+  replay.report.error =
       fmt::format("bit-exact, but {} checkpoints have other values: {}", replay.changed.size(), replay.changed.front());
   return replay;
 }

@@ -3,19 +3,20 @@
 
 #include <cmath>
 
+#include "analytics/checkpoints/replay_words.h"
 #include "apps/calot/command.h"
 #include "apps/calot/replay_report.h"
 #include "apps/calot/source_options.h"
 #include "recorder/base/files.h"
 #include "recorder/formats/scene_file.h"
 #include "recorder/live/worker_pool.h"
-#include "recorder/live/wrapped_sources.h"
 #include "recorder/loop.h"
 #include "recorder/prepared_scene.h"
 #include "recorder/recording/probe.h"
 #include "recorder/recording/writer.h"
 #include "recorder/replay.h"
 #include "recorder/sources/scope/scope_source.h"
+#include "recorder/sources/source.h"
 
 namespace calot::apps {
 namespace {
@@ -62,7 +63,7 @@ void printRun(const FinishedRun& run, double seconds) {
   const bool failed = r.outcome == recorder::Outcome::technicalFailure && !run.why.empty();
   fmt::print("{}: attempt {}, {:.2f} s, {}{}{}\n", run.file, run.attempt, seconds, wordFor(r.outcome),
              failed ? ": " : "", failed ? run.why : "");
-  if (r.misses.any > 0) fmt::print("{}: {}\n", run.file, describe(r.misses));
+  if (r.misses.any > 0) fmt::print("{}: {}\n", run.file, analytics::wordsFor(r.misses));
   if (run.paced) {
     fmt::print("{}: {} of {} ticks missed their deadline, at most {:.1f} ms late, clock stretched by {:.3f} s\n",
                run.live ? "live" : "paced", r.missedDeadlines, r.ticks, 1e3 * r.maxLateness, r.stretched);
@@ -92,8 +93,8 @@ void reportRun(const FinishedRun& run, bool json) {
                     "will not replay",
                     run.file, run.report.disagreements));
   }
-  if (!run.report.fault.empty()) {
-    throw Error(ErrorKind::failure, fmt::format("{}: {}", run.file, run.report.fault));
+  if (run.report.runaway) {
+    throw Error(ErrorKind::failure, fmt::format("{}: {}", run.file, analytics::wordsFor(*run.report.runaway)));
   }
 }
 
@@ -203,7 +204,7 @@ void branch(const BranchOptions& o) {
   session.join(pose);
   {
     Progress progress("taking the parent's steps", o.json);
-    recorder::takeParent(parent, session, forkStep, [&](std::uint64_t step, std::uint64_t of) {
+    const auto divergence = recorder::takeParent(parent, session, forkStep, [&](std::uint64_t step, std::uint64_t of) {
       if (writer.failed()) {
         session.end(recorder::Outcome::technicalFailure);
         writer.finish();  // says why
@@ -211,6 +212,7 @@ void branch(const BranchOptions& o) {
       if (stopRequested()) throw Error(ErrorKind::failure, fmt::format("{}: stopped before the fork", o.output));
       progress.show(step, of);
     });
+    if (divergence) throw Error(ErrorKind::refused, Where{parent.path().string()}, analytics::wordsFor(*divergence));
   }
   file.publish();
 

@@ -49,7 +49,7 @@ ExitCode replay(const ReplayOptions& o) {
         const std::lock_guard lock(drawing);
         failure = std::current_exception();
         reports[i].path = o.files[i];
-        reports[i].message = "failed inside";
+        reports[i].error = "failed inside";
       }
       ++done;
       const std::lock_guard lock(drawing);

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "analytics/assess.h"
+#include "analytics/checkpoints/replay_words.h"
 #include "gui/attempt/figure_text.h"
 #include "gui/attempt/long_work.h"
 #include "gui/attempt/replay_transport.h"
@@ -42,7 +43,7 @@ QString putIntoCohort(const std::filesystem::path& file, const std::filesystem::
     control.progress(of == 0 ? 0.0 : static_cast<double>(step) / static_cast<double>(of), "Verifying");
   };
   const analytics::JudgedRecording found = analytics::assessRecording(file.string(), settings);
-  if (!found.record) throw Error(ErrorKind::damaged, Where{file.string()}, found.report.message);
+  if (!found.record) throw Error(ErrorKind::damaged, Where{file.string()}, analytics::wordsFor(found.report));
   control.progress(1.0, "Storing");
   analytics::CohortDatabase database(cohort.string(), analytics::CohortDatabase::Access::create);
   database.storeAttempt(*found.record, found.values);

@@ -8,15 +8,16 @@
 #include <iterator>
 #include <utility>
 
+#include "analytics/checkpoints/replay_words.h"
 #include "gui/trainer/trainer_texts.h"
 #include "gui/words/problem_words.h"
 #include "recorder/base/errors.h"
 #include "recorder/live/worker_pool.h"
-#include "recorder/live/wrapped_sources.h"
 #include "recorder/loop.h"
 #include "recorder/sources/devices/device_source.h"
 #include "recorder/sources/devices/mouse_device.h"
 #include "recorder/sources/scope/scope_source.h"
+#include "recorder/sources/source.h"
 
 namespace calot::gui {
 namespace {
@@ -260,7 +261,7 @@ void TrainingSession::attempt(std::optional<double> back) {
 
 void TrainingSession::takeParent(recorder::Recording& parent, recorder::Session& session, std::uint64_t fork,
                                  recorder::RecordingWriter& writer) {
-  recorder::takeParent(parent, session, fork, [&](std::uint64_t step, std::uint64_t of) {
+  const auto divergence = recorder::takeParent(parent, session, fork, [&](std::uint64_t step, std::uint64_t of) {
     giveWay();
     if (writer.failed()) {
       session.end(Outcome::technicalFailure);
@@ -269,6 +270,7 @@ void TrainingSession::takeParent(recorder::Recording& parent, recorder::Session&
     const std::lock_guard lock(mutex_);
     status_.progress = static_cast<double>(step) / static_cast<double>(of);
   });
+  if (divergence) throw Error(ErrorKind::refused, Where{parent.path().string()}, analytics::wordsFor(*divergence));
 }
 
 void TrainingSession::run(recorder::Session& session, recorder::SampleSource& source,
@@ -355,8 +357,8 @@ void TrainingSession::keepResult(const recorder::RunReport& report, const record
     status_.problem = fmt::format(
         "{}: {} ticks got other forces on the haptic thread than when computed again; the recording will not replay",
         status_.file.string(), report.disagreements);
-  } else if (!report.fault.empty()) {
-    status_.problem = fmt::format("{}: {}", status_.file.string(), report.fault);
+  } else if (report.runaway) {
+    status_.problem = fmt::format("{}: {}", status_.file.string(), analytics::wordsFor(*report.runaway));
   } else if (report.outcome == Outcome::technicalFailure) {
     status_.problem = source.statusText();
   }

@@ -16,7 +16,6 @@
 
 #include "gui/trainer/attempt_monitor.h"
 #include "recorder/formats/scene_file.h"
-#include "recorder/live/wrapped_sources.h"
 #include "recorder/loop.h"
 #include "recorder/prepared_scene.h"
 #include "recorder/recording/station_key.h"

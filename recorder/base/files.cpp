@@ -16,8 +16,13 @@
 #include <utility>
 
 #include "recorder/base/errors.h"
+#include "recorder/base/text_words.h"
 
 namespace calot::recorder {
+
+void Descriptor::close() {
+  if (number_ >= 0) ::close(std::exchange(number_, -1));
+}
 
 std::vector<std::byte> readFileBytes(const std::filesystem::path& path, const std::string& name, std::size_t most) {
   std::error_code fault;
@@ -58,21 +63,6 @@ std::string base64(std::span<const std::byte> bytes) {
 }
 
 namespace {
-
-/// Closes itself.
-class Descriptor {
- public:
-  explicit Descriptor(int fd) : fd_(fd) {}
-  ~Descriptor() {
-    if (fd_ >= 0) ::close(fd_);
-  }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  [[nodiscard]] int get() const { return fd_; }
-
- private:
-  int fd_;
-};
 
 Error failed(const std::filesystem::path& path, const char* what) {
   return {ErrorKind::failure, Where{path.string()}, fmt::format("{}: {}", what, std::strerror(errno))};
@@ -192,6 +182,40 @@ void writeText(const fs::path& path, std::string_view text, bool force) {
   if (fault == 0) return;
   std::remove(temporary.c_str());
   throw Error(ErrorKind::failure, Where{path.string()}, fmt::format("cannot be written: {}", std::strerror(fault)));
+}
+
+std::map<std::string, fs::path> jsonFilesIn(const std::vector<fs::path>& roots, const char* folder) {
+  std::map<std::string, fs::path> files;
+  for (const fs::path& root : roots) {
+    std::error_code fault;
+    for (fs::directory_iterator it(root / folder, fault), end; !fault && it != end; it.increment(fault)) {
+      if (it->path().extension() == ".json") files.emplace(it->path().stem().string(), it->path());
+    }
+  }
+  return files;
+}
+
+fs::path findJsonFile(const std::string& name, const std::vector<fs::path>& roots, const char* folder, const char* what,
+                      const char* file) {
+  std::error_code ignored;
+  if (name.size() > 5 && name.ends_with(".json")) {
+    if (fs::is_regular_file(name, ignored)) return name;
+    throw Error(ErrorKind::invalid, Where{name}, fmt::format("there is no such {}", file));
+  }
+  const std::map<std::string, fs::path> files = jsonFilesIn(roots, folder);
+  if (const auto found = files.find(name); found != files.end()) return found->second;
+  std::vector<std::string> known;
+  for (const auto& [each, path] : files) known.push_back(each);
+  throw Error(ErrorKind::invalid,
+              fmt::format("there is no {} \"{}\"{}; {}", what, name, didYouMean(name, known),
+                          known.empty() ? std::string("no assets folder was found (set CALOT_ASSETS)")
+                                        : fmt::format("there are {}", fmt::join(known, ", "))));
+}
+
+fs::path userFolder(const char* variable, const char* belowHome) {
+  if (const char* named = std::getenv(variable); named != nullptr && *named == '/') return named;
+  if (const char* home = std::getenv("HOME"); home != nullptr && *home == '/') return fs::path(home) / belowHome;
+  return {};
 }
 
 ProgramFiles::ProgramFiles(std::filesystem::path programs) : programs_(std::move(programs)) {}

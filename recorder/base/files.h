@@ -4,12 +4,34 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <map>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace calot::recorder {
+
+/// A file descriptor that closes itself.
+class Descriptor {
+ public:
+  explicit Descriptor(int number = -1) : number_(number) {}
+  Descriptor(Descriptor&& o) noexcept : number_(std::exchange(o.number_, -1)) {}
+  Descriptor& operator=(Descriptor&& o) noexcept {
+    close();
+    number_ = std::exchange(o.number_, -1);
+    return *this;
+  }
+  ~Descriptor() { close(); }
+
+  [[nodiscard]] int get() const { return number_; }
+  [[nodiscard]] bool valid() const { return number_ >= 0; }
+  void close();
+
+ private:
+  int number_;
+};
 
 /// A whole file.
 /// @param name what messages call it.
@@ -45,6 +67,19 @@ void publish(const std::filesystem::path& temporary, const std::filesystem::path
 /// @throws Error (invalid) as refuseOutput; (failure) where writing fails, with the temporary file removed.
 void writeText(const std::filesystem::path& path, std::string_view text, bool force);
 
+/// Files FOLDER/NAME.json under the roots by their names, the first root winning.
+std::map<std::string, std::filesystem::path> jsonFilesIn(const std::vector<std::filesystem::path>& roots,
+                                                         const char* folder);
+
+/// One of these by its name, or a path that ends in ".json". @param what "scene" @param file "scene file", for messages
+/// @throws Error (invalid) where there is none, with the names that there are
+std::filesystem::path findJsonFile(const std::string& name, const std::vector<std::filesystem::path>& roots,
+                                   const char* folder, const char* what, const char* file);
+
+/// A folder of the user's, by the XDG base directory specification: what the variable names, else one below the home.
+/// Relative ones are ignored; empty where there is neither.
+std::filesystem::path userFolder(const char* variable, const char* belowHome);
+
 /// The files that come with a program: scenes, organs, performers, forms, protocols, kept engines. They are found from
 /// the program's own place, so that an installed tree can be moved: `<programs>/../share/calot`. A build tree has a
 /// link there to the assets of the source.
@@ -52,10 +87,8 @@ class ProgramFiles {
  public:
   /// @param programs the folder of the programs
   explicit ProgramFiles(std::filesystem::path programs);
-  /// Folder of the running program.
   static ProgramFiles ofThisProgram();
 
-  /// Folder of the programs.
   [[nodiscard]] const std::filesystem::path& programs() const { return programs_; }
   /// Folders that may contain `scenes/`, `organs/`, `performers/` and so on, in order of precedence: CALOT_ASSETS of
   /// the environment alone where it is set.

@@ -57,7 +57,6 @@ class JsonPlace {
   [[nodiscard]] bool boolean() const;
   [[nodiscard]] double number(const Range& range) const;
   [[nodiscard]] std::uint32_t integer(const Range& range) const;
-  /// Three numbers.
   [[nodiscard]] Vec3 vector(const Range& range) const;
 
  private:

@@ -31,12 +31,13 @@ void checkKeys(const JsonPlace& place, const Record& record) {
 }
 
 /// Copies a plain value, or nothing where it is stored nowhere.
-void store(const void* from, std::size_t size, void* value) {
+void copyInto(void* value, const void* from, std::size_t size) {
   if (value != nullptr) std::memcpy(value, from, size);
 }
 
 void readValue(const JsonPlace& place, const Field& field, const Access& access, void* value) {
   using Type = Access::Type;
+  const auto store = [&](const auto& plain) { copyInto(value, &plain, access.size); };
   switch (access.type) {
     case Type::numbers: {
       std::vector<double> numbers;
@@ -46,7 +47,7 @@ void readValue(const JsonPlace& place, const Field& field, const Access& access,
         for (const JsonPlace& part : place.list(access.count, access.count))
           numbers.push_back(part.number(field.range));
       }
-      return store(numbers.data(), access.size, value);
+      return copyInto(value, numbers.data(), access.size);
     }
     case Type::rotation: {
       double q[4];
@@ -54,21 +55,14 @@ void readValue(const JsonPlace& place, const Field& field, const Access& access,
       for (std::size_t i = 0; i < 4; ++i) q[i] = parts[i].number(within(-1, 1));
       const Quat given(q[0], q[1], q[2], q[3]);
       if (!(std::abs(given.norm() - 1.0) <= 1e-6)) place.fail("is not a unit quaternion w x y z");
-      const Quat rotation = given.normalized();
-      return store(&rotation, access.size, value);
+      return store(given.normalized());
     }
-    case Type::integer: {
-      const std::uint32_t number = place.integer(field.range);
-      return store(&number, access.size, value);
-    }
-    case Type::flag: {
-      const bool flag = place.boolean();
-      return store(&flag, access.size, value);
-    }
-    case Type::word: {
-      const std::uint32_t number = place.word(field.words);
-      return store(&number, access.size, value);
-    }
+    case Type::integer:
+      return store(place.integer(field.range));
+    case Type::flag:
+      return store(place.boolean());
+    case Type::word:
+      return store(place.word(field.words));
     case Type::text: {
       std::string text = place.text(field.text);
       if (value != nullptr) *static_cast<std::string*>(value) = std::move(text);

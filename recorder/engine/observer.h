@@ -49,7 +49,6 @@ enum class PartForm : std::uint64_t {
   unchanged = 4,          ///< all of it, from the keyframe before; made by the writer alone
 };
 
-/// One field of a keyframe.
 struct KeyframePart {
   std::uint32_t bytes = 0;
   PartForm form = PartForm::plain;

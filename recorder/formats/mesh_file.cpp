@@ -13,14 +13,6 @@ TriangleMesh readSurface(const std::filesystem::path& path, LengthUnit unit, con
   return parseSurface(readFileBytes(path, path.string(), limits.bytes), path.string(), unit, limits);
 }
 
-TriangleMesh readObj(const std::filesystem::path& path, LengthUnit unit, const SurfaceLimits& limits) {
-  return parseObj(readFileBytes(path, path.string(), limits.bytes), path.string(), unit, limits);
-}
-
-void writeObj(const std::filesystem::path& path, const TriangleMesh& mesh, const std::string& comment, bool force) {
-  writeText(path, formatObj(mesh, comment), force);
-}
-
 std::string formatVtk(const TetrahedralMesh& mesh, const std::string& title) {
   std::string line = title.substr(0, 255);
   std::replace_if(
@@ -36,10 +28,6 @@ std::string formatVtk(const TetrahedralMesh& mesh, const std::string& title) {
   fmt::format_to(out, "CELL_TYPES {}\n", mesh.tetrahedron.size());
   for (std::size_t t = 0; t < mesh.tetrahedron.size(); ++t) text += "10\n";
   return text;
-}
-
-void writeVtk(const std::filesystem::path& path, const TetrahedralMesh& mesh, const std::string& title, bool force) {
-  writeText(path, formatVtk(mesh, title), force);
 }
 
 }  // namespace calot::recorder

@@ -18,6 +18,7 @@ namespace calot::recorder {
 namespace {
 
 enum class PlyFormat : std::uint8_t { ascii, littleEndian, bigEndian };
+constexpr std::string_view plyFormats[] = {"ascii", "binary_little_endian", "binary_big_endian"};
 enum class PlyType : std::uint8_t { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
 
 /// Bytes and names of the types, in their order.
@@ -113,15 +114,10 @@ class HeaderReader {
     const std::string_view version = words.next();
     if (hasFormat_) fail("a second \"format\"");
     hasFormat_ = true;
-    if (format == "ascii") {
-      header_.format = PlyFormat::ascii;
-    } else if (format == "binary_little_endian") {
-      header_.format = PlyFormat::littleEndian;
-    } else if (format == "binary_big_endian") {
-      header_.format = PlyFormat::bigEndian;
-    } else {
-      fail(fmt::format("format \"{}\"; known are ascii, binary_little_endian, binary_big_endian", shown(format)));
-    }
+    const auto* const known = std::find(std::begin(plyFormats), std::end(plyFormats), format);
+    if (known == std::end(plyFormats))
+      fail(fmt::format("format \"{}\"; known are {}", shown(format), fmt::join(plyFormats, ", ")));
+    header_.format = static_cast<PlyFormat>(known - std::begin(plyFormats));
     if (version != "1.0") fail(fmt::format("version \"{}\" of PLY; 1.0 is known", shown(version)));
   }
 

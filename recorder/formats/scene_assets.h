@@ -10,6 +10,7 @@
 #include "recorder/base/identity.h"
 #include "recorder/base/json_reader.h"
 #include "recorder/formats/surface_bytes.h"
+#include "sim/geometry/surface_report.h"
 #include "sim/math/linear.h"
 #include "sim/scene/description.h"
 #include "sim/tissue/structure.h"
@@ -34,6 +35,9 @@ struct MeshFile {
 /// @throws Error (damaged), naming the place or the file
 SurfaceDescription readOrganSurface(const JsonPlace& mesh, const FetchAsset& fetch);
 
+/// Repairs of a surface, or empty: "12 vertices welded, 3 triangles turned".
+std::string repairSummary(const SurfaceRepair& repair);
+
 /// Fat's surface. Repairs that invent no surface (repairSurface) are made and reported in a warning. Self-intersection
 /// is a warning as well: the inside is then what the surface winds around (the potential field's rule). A surface with
 /// holes or with edges of more than two triangles is refused, and so is a self-intersecting one whose triangles had to
@@ -42,7 +46,6 @@ SurfaceDescription readOrganSurface(const JsonPlace& mesh, const FetchAsset& fet
 /// @throws Error (damaged), naming the place or the file
 SurfaceDescription readFatSurface(const JsonPlace& mesh, const FetchAsset& fetch, std::vector<std::string>& warnings);
 
-/// A scene with all its assets.
 struct LoadedScene {
   SceneDescription description;       ///< what a Model is built from
   std::string summary;                ///< one sentence for people

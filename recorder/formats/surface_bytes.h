@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Triangle surfaces by the name of their file: .obj, .stl, .ply (small or capital letters).
 //
-// OBJ (Wavefront): `v` (3 coordinates; more numbers are ignored) and `f` (v, v/vt, v//vn, v/vt/vn; negative indices count
-// back; polygons are cut into fans) are read. Everything that only draws (`vt`, `vn`, groups, materials, lines, points)
-// is passed over; anything else is refused.
+// OBJ (Wavefront): `v` (3 coordinates; more numbers are ignored) and `f` (v, v/vt, v//vn, v/vt/vn; negative indices
+// count back; polygons are cut into fans) are read. Everything that only draws (`vt`, `vn`, groups, materials, lines,
+// points) is passed over; anything else is refused.
 //
 // STL, ASCII and binary, has no vertices, only corners: those at exactly one position become one vertex, in order of
 // first mention; otherwise no edge would have two triangles. Normals, the header and attribute bytes are passed over;
-// several solids in a text file are one surface. A file is binary if its length matches its number of triangles (84 + 50
-// n bytes), even if it starts with "solid" as some exporters write.
+// several solids in a text file are one surface. A file is binary if its length matches its number of triangles (84 +
+// 50 n bytes), even if it starts with "solid" as some exporters write.
 //
-// PLY 1.0 (ascii, binary_little_endian, binary_big_endian): wanted are an element `vertex` with x, y and z and an element
-// `face` with the list `vertex_indices` (or `vertex_index`), in either order; polygons are cut into fans. Every other
-// property and element is passed over (triangle strips among them: a file with those alone has no face, and is refused).
+// PLY 1.0 (ascii, binary_little_endian, binary_big_endian): wanted are an element `vertex` with x, y and z and an
+// element `face` with the list `vertex_indices` (or `vertex_index`), in either order; polygons are cut into fans. Every
+// other property and element is passed over (triangle strips among them: a file with those alone has no face, and is
+// refused).
 #pragma once
 
 #include <cstddef>

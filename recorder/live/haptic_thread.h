@@ -69,7 +69,6 @@ class ContactExchange {
   std::uint64_t generation_ = 0, grown_ = 0;
 };
 
-/// Statistics of the haptic thread.
 struct HapticReport : TickReport {
   Outcome outcome = Outcome::completed;
   bool realTime = false;  ///< runs with real-time priority (SCHED_FIFO)

@@ -120,7 +120,6 @@ void visitRow(SameAs<RawCounts> auto& c, Visitor& visit) {
   visit("right_dropped", "", c.dropped[1]);
 }
 
-/// Appends the bytes of a row.
 template <class Row>
 void appendRow(const Row& row, std::vector<std::byte>& out) {
   const auto put = [&out](const char* /*name*/, const char* /*unit*/, const auto& value) { appendValue(out, value); };

@@ -30,6 +30,9 @@ struct Superblock {
 /// @throws Error damaged: there is no file, it is empty, or it is no HDF5 file.
 Superblock readSuperblock(const std::filesystem::path& path);
 
+/// 0 where it cannot be asked for.
+std::uint64_t sizeOfFile(const std::filesystem::path& path);
+
 /// Opens a file for reading: the SWMR way if its writer did not close it, plainly otherwise. Refuses one that has not
 /// the shape of a recording (checkShape) before any of its data is read.
 hdf5::Id openForReading(const std::filesystem::path& path, Access access);
@@ -109,7 +112,6 @@ class KeyframeReader {
   [[nodiscard]] std::vector<std::byte> plain(std::size_t index) const;
   [[nodiscard]] std::vector<std::uint64_t> words(std::size_t index) const;
   const std::vector<std::byte>& decoded(std::size_t index);
-  /// Keeps what the way to a keyframe needs.
   void forgetAllBut(std::size_t index);
   [[nodiscard]] Error refused(std::size_t index, const std::string& why) const;
 

@@ -37,7 +37,6 @@ class ProbeProcesses {
   bool first_ = false;
 };
 
-/// Limits of a child process.
 struct GuardLimits {
   std::chrono::seconds time{600};
   std::size_t memory = std::size_t{1} << 30U;  ///< beyond what its parent holds (bytes)

@@ -271,8 +271,6 @@ PerformerHand::PerformerHand(const PerformerProfile& profile, const HandDescript
 
 void PerformerHand::add(const HandMove& move) { queue_.push_back(move); }
 
-void PerformerHand::clear() { queue_.clear(); }
-
 Vec3 PerformerHand::shaft(const Vec3& p) const { return shaftDirection(hand_.port, p); }
 
 double PerformerHand::rollFor(const HandMove& move) const {

@@ -73,7 +73,7 @@ void expectExact(const std::filesystem::path& file) {
     ReplaySettings settings;
     settings.threads = threads;
     const ReplayReport report = replayRecording(file, settings);
-    EXPECT_EQ(report.verdict, ReplayVerdict::exact) << report.message;
+    EXPECT_EQ(report.verdict, ReplayVerdict::exact) << report.error;
     EXPECT_TRUE(report.complete);
   }
 }

@@ -13,7 +13,7 @@ namespace calot::recorder {
 
 ScopeSource::ScopeSource(std::unique_ptr<SampleSource> source, const Endoscope& endoscope,
                          std::unique_ptr<ScopeDriver> driver)
-    : source_(std::move(source)), endoscope_(endoscope), driver_(std::move(driver)) {
+    : WrappedSource(*source), owned_(std::move(source)), endoscope_(endoscope), driver_(std::move(driver)) {
   motion_.setOut(endoscope_.start());
   driver_->setOut(endoscope_.start());
 }
@@ -27,7 +27,7 @@ void ScopeSource::setOutFrom(const CameraSample& camera) {
 
 bool ScopeSource::next(std::uint64_t tick, TickSamples& out) {
   TickSamples samples;
-  if (!source_->next(tick, samples)) return false;
+  if (!source_.next(tick, samples)) return false;
   const FloatingPointScope environment;
   motion_.advance(driver_->wish(static_cast<double>(tick) * tickLength, motion_.joints(), samples));
   samples.camera = endoscope_.pose(motion_.joints());
@@ -36,7 +36,7 @@ bool ScopeSource::next(std::uint64_t tick, TickSamples& out) {
 }
 
 void ScopeSource::rest() {
-  source_->rest();
+  source_.rest();
   driver_->rest();
 }
 

@@ -122,7 +122,7 @@ TEST(CarveFat, isAssessedFromTheHandToTheCohort) {
   for (const unsigned threads : {1U, 2U}) {  // 2: from recorded results, once proven
     settings.threads = threads;
     report = recorder::replayRecording(file, settings);
-    ASSERT_EQ(report.verdict, recorder::ReplayVerdict::exact) << report.message;
+    ASSERT_EQ(report.verdict, recorder::ReplayVerdict::exact) << report.error;
     EXPECT_EQ(replayed->values(), values) << threads << " threads";
   }
   recorder::Recording recording(file);

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "recorder/base/errors.h"
+#include "recorder/base/files.h"
 #include "sim/math/random.h"
 
 namespace calot::recorder {
@@ -147,8 +148,8 @@ TEST_F(ObjFile, RoundTripIsExact) {
     mesh.vertex.emplace_back(random.uniform(-1.0, 1.0), random.uniform(-1e-9, 1e-9), 1.0 / 3.0 * i);
   }
   for (int i = 0; i + 2 < 300; ++i) mesh.triangle.emplace_back(i, i + 1, i + 2);
-  writeObj(folder_ / "a.obj", mesh, "first\nsecond", false);
-  const TriangleMesh back = readObj(folder_ / "a.obj", LengthUnit::metre);
+  writeText(folder_ / "a.obj", formatObj(mesh, "first\nsecond"), false);
+  const TriangleMesh back = readSurface(folder_ / "a.obj", LengthUnit::metre);
   ASSERT_EQ(back.vertex.size(), mesh.vertex.size());
   for (std::size_t i = 0; i < mesh.vertex.size(); ++i) EXPECT_EQ(back.vertex[i], mesh.vertex[i]);
   for (std::size_t i = 0; i < mesh.triangle.size(); ++i) EXPECT_EQ(back.triangle[i], mesh.triangle[i]);
@@ -159,23 +160,23 @@ TEST_F(ObjFile, OverwritesOnlyWhenTold) {
   const fs::path file = folder_ / "a.obj";
   std::ofstream(file) << "mine";
   try {
-    writeObj(file, mesh, "", false);
+    writeText(file, formatObj(mesh, ""), false);
     FAIL() << "must refuse";
   } catch (const Error& error) {
     EXPECT_EQ(error.kind(), ErrorKind::invalid);
   }
   EXPECT_EQ(fs::file_size(file), 4U);
-  writeObj(file, mesh, "", true);
-  EXPECT_EQ(readObj(file, LengthUnit::metre).triangles(), 1);
+  writeText(file, formatObj(mesh, ""), true);
+  EXPECT_EQ(readSurface(file, LengthUnit::metre).triangles(), 1);
   EXPECT_FALSE(fs::exists(folder_ / "a.obj.part"));
-  EXPECT_THROW(writeObj(folder_ / "no" / "a.obj", mesh, "", true), Error);
-  EXPECT_THROW(writeObj(folder_, mesh, "", true), Error);
+  EXPECT_THROW(writeText(folder_ / "no" / "a.obj", formatObj(mesh, ""), true), Error);
+  EXPECT_THROW(writeText(folder_, formatObj(mesh, ""), true), Error);
 }
 
 TEST_F(ObjFile, MissingAndFolderAreRefused) {
   for (const fs::path& path : {folder_ / "none.obj", folder_}) {
     try {
-      readObj(path, LengthUnit::metre);
+      readSurface(path, LengthUnit::metre);
       FAIL() << path;
     } catch (const Error& error) {
       EXPECT_EQ(error.kind(), ErrorKind::damaged);

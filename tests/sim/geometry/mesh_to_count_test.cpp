@@ -38,7 +38,7 @@ void expectPromises(const TriangleMesh& surface, int requested, const StuffedMes
 }
 
 TriangleMesh organ(const std::string& name) {
-  return recorder::readObj(fmt::format("{}/assets/organs/{}", CALOT_SOURCE_DIR, name), recorder::LengthUnit::metre);
+  return recorder::readSurface(fmt::format("{}/assets/organs/{}", CALOT_SOURCE_DIR, name), recorder::LengthUnit::metre);
 }
 
 TEST(StuffToCount, LiverAtManyCounts) {
@@ -84,7 +84,7 @@ TEST(StuffToCount, LiverFromElsewhere) {
       set != nullptr ? std::filesystem::path(set) : std::filesystem::path(CALOT_SOURCE_DIR) / "../shared/data";
   const std::filesystem::path file = folder / "meshes" / "liver-smooth.obj";
   if (!std::filesystem::exists(file)) GTEST_SKIP() << "needs meshes/liver-smooth.obj; set CALOT_SHARED_DATA";
-  const TriangleMesh liver = recorder::readObj(file, recorder::LengthUnit::centimetre);
+  const TriangleMesh liver = recorder::readSurface(file, recorder::LengthUnit::centimetre);
   for (const int requested : {500, 1500, 3300, 7300}) {
     const StuffedMesh stuffed = stuffToCount(liver, requested);
     expectPromises(liver, requested, stuffed);

@@ -86,7 +86,7 @@ TEST_P(LiveGamepad, PulledOutInMidRunLosesNothing) {
     EXPECT_LT(report.steps, 150U);
   }
   const ReplayReport replayed = replayRecording(file_, ReplaySettings{});
-  EXPECT_EQ(replayed.verdict, ReplayVerdict::exact) << replayed.message;
+  EXPECT_EQ(replayed.verdict, ReplayVerdict::exact) << replayed.error;
   EXPECT_TRUE(replayed.complete);
   EXPECT_EQ(replayed.outcome, report.outcome);
 

@@ -274,7 +274,7 @@ TEST_P(DeviceRecording, UnpluggedInMidRunLosesNothing) {
     EXPECT_NEAR(static_cast<double>(report.steps), 60.0, 1.0);
   }
   const ReplayReport replayed = replayRecording(file, ReplaySettings{});
-  EXPECT_EQ(replayed.verdict, ReplayVerdict::exact) << replayed.message;
+  EXPECT_EQ(replayed.verdict, ReplayVerdict::exact) << replayed.error;
   EXPECT_TRUE(replayed.complete);
   EXPECT_EQ(replayed.outcome, report.outcome);
   EXPECT_EQ(replayed.steps, report.steps);

@@ -106,7 +106,7 @@ TEST_P(CameraRecording, UnpluggedInMidRunLosesNothing) {
     EXPECT_GT(report.steps, 40U);  // it goes on afterwards
   }
   const ReplayReport replayed = replayRecording(file, ReplaySettings{});
-  EXPECT_EQ(replayed.verdict, ReplayVerdict::exact) << replayed.message;
+  EXPECT_EQ(replayed.verdict, ReplayVerdict::exact) << replayed.error;
   EXPECT_TRUE(replayed.complete);
   EXPECT_EQ(replayed.outcome, report.outcome);
   EXPECT_EQ(replayed.steps, report.steps);

@@ -171,7 +171,7 @@ TEST(ForceDevice, KilledInMidRunTheRecordingReplays) {
   EXPECT_EQ(losses, 1U);
   std::error_code ignored;
   const ReplayReport replayed = replayRecording(file, ReplaySettings{});
-  EXPECT_EQ(replayed.verdict, ReplayVerdict::exact) << replayed.message;
+  EXPECT_EQ(replayed.verdict, ReplayVerdict::exact) << replayed.error;
   EXPECT_TRUE(replayed.complete);
   std::filesystem::remove(file, ignored);
 }

@@ -5,11 +5,12 @@
 #include <string>
 #include <vector>
 
+#include "apps/calot/command.h"
 #include "sim/geometry/hole_filling.h"
 #include "sim/geometry/mesh_to_count.h"
 #include "sim/geometry/surface_report.h"
 
-namespace calot::recorder {
+namespace calot::apps {
 
 struct MeshReport {
   std::string input;                ///< the file's name
@@ -26,20 +27,17 @@ struct MeshReport {
   std::vector<std::string> faults;  ///< why there is no mesh or surface
 };
 
-/// One JSON object (docs/reference/meshing.md lists its members), with a line break at the end.
-std::string meshReportJson(const MeshReport& report);
+/// Its members: docs/reference/meshing.md.
+Json meshReportJson(const MeshReport& report);
 
 /// The same as text of several lines.
 std::string meshReportText(const MeshReport& report);
-
-/// Repairs of the surface, or empty: "12 vertices welded, 3 triangles turned".
-std::string repairSummary(const SurfaceRepair& repair);
 
 /// Differences between output and input, one line each: parts that were dropped or are too thin,
 /// holes that were filled, a surface that crosses itself.
 std::vector<std::string> meshWarnings(const MeshReport& report);
 
 /// "70 edges around (12.1, -3.4, 50.0) mm".
-std::string describe(const SurfaceHole& hole);
+std::string wordsFor(const SurfaceHole& hole);
 
-}  // namespace calot::recorder
+}  // namespace calot::apps

@@ -1,22 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "recorder/formats/mesh_report.h"
+#include "apps/calot/mesh_report.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <iterator>
-#include <nlohmann/json.hpp>
 
-namespace calot::recorder {
+#include "recorder/formats/scene_assets.h"
+
+namespace calot::apps {
 namespace {
 
-constexpr double degree = 3.14159265358979323846 / 180.0;
+constexpr double perDegree = 3.14159265358979323846 / 180.0;
 
-nlohmann::ordered_json list(const Vec3& v) { return {v[0], v[1], v[2]}; }
+Json coordinates(const Vec3& v) { return {v[0], v[1], v[2]}; }
 
-nlohmann::ordered_json inputJson(const MeshReport& report) {
+Json inputJson(const MeshReport& report) {
   const SurfaceReport& found = report.found;
-  nlohmann::ordered_json json;
+  Json json;
   json["file"] = report.input;
   json["unit"] = report.unit;
   json["vertices"] = found.vertices;
@@ -35,8 +36,8 @@ nlohmann::ordered_json inputJson(const MeshReport& report) {
   json["unused_vertices"] = found.unusedVertices;
   json["area_m2"] = found.area;
   json["volume_m3"] = found.volume;
-  json["lower_m"] = list(found.box.lower);
-  json["upper_m"] = list(found.box.upper);
+  json["lower_m"] = coordinates(found.box.lower);
+  json["upper_m"] = coordinates(found.box.upper);
   json["repaired"] = {{"welded_vertices", report.repair.weldedVertices},
                       {"dropped_degenerate", report.repair.droppedDegenerate},
                       {"dropped_duplicates", report.repair.droppedDuplicates},
@@ -45,11 +46,11 @@ nlohmann::ordered_json inputJson(const MeshReport& report) {
   return json;
 }
 
-nlohmann::ordered_json holesJson(const MeshReport& report) {
-  nlohmann::ordered_json holes = nlohmann::ordered_json::array();
+Json holesJson(const MeshReport& report) {
+  Json holes = Json::array();
   for (const SurfaceHole& hole : report.holes) {
     holes.push_back({{"edges", hole.vertex.size()},
-                     {"centre_m", list(hole.centre)},
+                     {"centre_m", coordinates(hole.centre)},
                      {"perimeter_m", hole.perimeter},
                      {"filled", hole.area > 0.0},
                      {"area_m2", hole.area}});
@@ -59,7 +60,7 @@ nlohmann::ordered_json holesJson(const MeshReport& report) {
 }
 
 /// Result of stuffToCount(); empty for a mesh that was not requested.
-void addStuffed(nlohmann::ordered_json& json, const StuffedMesh& stuffed) {
+void addStuffed(Json& json, const StuffedMesh& stuffed) {
   const StuffingReport& r = stuffed.report;
   if (r.requested == 0) return;
   json["requested"] = r.requested;
@@ -74,12 +75,12 @@ void addStuffed(nlohmann::ordered_json& json, const StuffedMesh& stuffed) {
   json["surface_distance_m"] = std::max(r.surfaceToMesh, r.meshToSurface);
   json["surface_to_mesh_m"] = r.surfaceToMesh;
   json["mesh_to_surface_m"] = r.meshToSurface;
-  json["dihedral_min_deg"] = r.dihedralMin / degree;
-  json["dihedral_max_deg"] = r.dihedralMax / degree;
+  json["dihedral_min_deg"] = r.dihedralMin / perDegree;
+  json["dihedral_max_deg"] = r.dihedralMax / perDegree;
   json["lost_area"] = r.lostArea;
   json["lost_distance_m"] = r.lostDistance;
   json["lost_parts"] = r.lostParts;
-  json["lost_where_m"] = list(r.lostWhere);
+  json["lost_where_m"] = coordinates(r.lostWhere);
   json["lost_components"] = r.lostComponents;
   json["dropped_pieces"] = r.droppedPieces;
   json["dropped_volume_m3"] = r.droppedVolume;
@@ -87,8 +88,8 @@ void addStuffed(nlohmann::ordered_json& json, const StuffedMesh& stuffed) {
 
 }  // namespace
 
-std::string meshReportJson(const MeshReport& report) {
-  nlohmann::ordered_json json;
+Json meshReportJson(const MeshReport& report) {
+  Json json;
   json["ok"] = report.faults.empty();
   if (!report.faults.empty()) json["error"] = report.faults.front();
   addStuffed(json, report.stuffed);
@@ -102,10 +103,10 @@ std::string meshReportJson(const MeshReport& report) {
   json["self_crossing_pairs"] = report.crossing.pairs;
   json["warnings"] = meshWarnings(report);
   json["input"] = inputJson(report);
-  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  return json;
 }
 
-std::string describe(const SurfaceHole& hole) {
+std::string wordsFor(const SurfaceHole& hole) {
   const Vec3 at = 1000.0 * hole.centre;
   return fmt::format("{} edges around ({:.1f}, {:.1f}, {:.1f}) mm", hole.vertex.size(), at[0], at[1], at[2]);
 }
@@ -124,7 +125,7 @@ std::vector<std::string> meshWarnings(const MeshReport& report) {
   }
   const SurfaceRepair& repair = report.repair;
   if (const int dropped = repair.droppedDegenerate + repair.droppedDuplicates; dropped > 0)
-    warnings.push_back(fmt::format("{} triangles were dropped: {}", dropped, repairSummary(repair)));
+    warnings.push_back(fmt::format("{} triangles were dropped: {}", dropped, recorder::repairSummary(repair)));
   if (report.crossing.pairs > 0) {
     const Vec3 at = 1000.0 * report.crossing.where;
     warnings.push_back(
@@ -149,19 +150,6 @@ std::vector<std::string> meshWarnings(const MeshReport& report) {
   return warnings;
 }
 
-std::string repairSummary(const SurfaceRepair& repair) {
-  std::string text;
-  const auto add = [&text](int count, const char* what) {
-    if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, what);
-  };
-  add(repair.weldedVertices, "vertices welded");
-  add(repair.droppedDegenerate, "triangles without area dropped");
-  add(repair.droppedDuplicates, "duplicate triangles dropped");
-  add(repair.droppedVertices, "unused vertices dropped");
-  add(repair.flippedTriangles, "triangles turned");
-  return text;
-}
-
 std::string meshReportText(const MeshReport& report) {
   const SurfaceReport& in = report.found;
   const StuffedMesh& stuffed = report.stuffed;
@@ -184,9 +172,9 @@ std::string meshReportText(const MeshReport& report) {
                    "                   {} triangles without area, {} duplicate, {} coincident and {} unused vertices\n",
                    in.degenerateTriangles, in.duplicateTriangles, in.coincidentVertices, in.unusedVertices);
   }
-  if (report.repair.changed()) fmt::format_to(out, "put right          {}\n", repairSummary(report.repair));
+  if (report.repair.changed()) fmt::format_to(out, "put right          {}\n", recorder::repairSummary(report.repair));
   for (const SurfaceHole& hole : report.holes) {
-    fmt::format_to(out, "hole               {}, {:.1f} mm round: {}\n", describe(hole), 1000.0 * hole.perimeter,
+    fmt::format_to(out, "hole               {}, {:.1f} mm round: {}\n", wordsFor(hole), 1000.0 * hole.perimeter,
                    hole.area > 0.0      ? fmt::format("filled with {:.1f} mm^2", 1e6 * hole.area)
                    : hole.fault.empty() ? std::string("open")
                                         : "not filled: " + hole.fault);
@@ -204,7 +192,7 @@ std::string meshReportText(const MeshReport& report) {
   fmt::format_to(out, "level-set offset   {:+.3f} mm\n", 1000.0 * stuffed.levelOffset);
   fmt::format_to(out, "largest distance   {:.2f} mm from surface to mesh, {:.2f} mm from mesh to surface\n",
                  1000.0 * r.surfaceToMesh, 1000.0 * r.meshToSurface);
-  fmt::format_to(out, "dihedral angles    {:.2f} to {:.2f} degrees\n", r.dihedralMin / degree, r.dihedralMax / degree);
+  fmt::format_to(out, "dihedral angles    {:.2f} to {:.2f} degrees\n", r.dihedralMin / perDegree, r.dihedralMax / perDegree);
   if (r.lostParts + r.lostComponents + r.droppedPieces == 0) {
     fmt::format_to(out, "thin parts         none lost (none farther than {:.2f} mm)\n", 1000.0 * r.lostDistance);
   } else {
@@ -219,4 +207,4 @@ std::string meshReportText(const MeshReport& report) {
   return text;
 }
 
-}  // namespace calot::recorder
+}  // namespace calot::apps

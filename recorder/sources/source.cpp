@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "recorder/live/wrapped_sources.h"
+#include "recorder/sources/source.h"
 
 #include "recorder/sources/pointing.h"
 #include "sim/math/floating_point.h"
