@@ -104,11 +104,10 @@ void runInline(Session& session, SampleSource& source, const RunSettings& settin
   std::vector<TickSamples> samples(ticksPerStep);
   std::vector<TickOutcome> ticks(ticksPerStep);
   PacedClock clock(monotonicNow());
-  SourcePauses pauses;
   std::uint64_t tick = 0;
   while (true) {
     const SourceStatus status = waitWhilePaused(
-        source, [&] { return isStopped(settings); }, clock, pauses);
+        source, [&] { return isStopped(settings); }, clock, report.pauses);
     report.outcome = status == SourceStatus::failed ? Outcome::technicalFailure
                                                     : outcomeBefore(session.steps(), session.model(), settings);
     if (report.outcome != Outcome::running) break;
@@ -138,8 +137,6 @@ void runInline(Session& session, SampleSource& source, const RunSettings& settin
       break;
     }
   }
-  report.pauses = pauses.count;
-  report.paused = pauses.seconds;
 }
 
 /// Bit for bit.
@@ -184,14 +181,8 @@ void runLive(Session& session, SampleSource& source, const RunSettings& settings
     ranAway.store(watch.ranAway());
   }
   const HapticReport& seen = haptics.finish();
-  report.outcome = ranAway.load() ? Outcome::technicalFailure : seen.outcome;
-  static_cast<TickReport&>(report) = seen;
-  report.pauses = seen.pauses.count;
-  report.paused = seen.pauses.seconds;
-  report.realTime = seen.realTime;
-  report.tickMean = seen.cost.mean();
-  report.tickP999 = seen.cost.quantile(0.999);
-  report.tickLargest = seen.cost.largest();
+  static_cast<HapticReport&>(report) = seen;
+  if (ranAway.load()) report.outcome = Outcome::technicalFailure;
   report.arenasGrown = haptics.arenasGrown();
 }
 

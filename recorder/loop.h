@@ -51,21 +51,14 @@ struct RunSettings {
 };
 
 /// Counts of ticks are those of this run's steps, as in the recording.
-struct RunReport : TickReport {
-  Outcome outcome = Outcome::completed;
-  std::uint64_t steps = 0;   ///< of the session
-  std::uint64_t pauses = 0;  ///< of the source
-  double paused = 0.0;       ///< s
+struct RunReport : HapticReport {
+  std::uint64_t steps = 0;  ///< of the session
   double wallSeconds = 0.0;
   StepMisses misses;               ///< of this run's steps
   std::optional<Runaway> runaway;  ///< why the attempt had to end
-  // Live:
-  bool realTime = false;            ///< the haptic thread ran before all ordinary threads
-  double tickMean = 0.0;            ///< thread CPU time of a tick (both hands; s)
-  double tickP999 = 0.0;            ///< what 99.9 % of the ticks did not exceed (s)
-  double tickLargest = 0.0;         ///< s
-  std::uint64_t arenasGrown = 0;    ///< contact sets that were larger than any before them
-  std::uint64_t disagreements = 0;  ///< ticks whose forces were not those that the simulation's side computed again: 0
+  std::uint64_t arenasGrown = 0;   ///< live: contact sets that were larger than any before them
+  std::uint64_t disagreements =
+      0;  ///< live: ticks whose forces were not those that the simulation's side computed again: 0
 };
 
 /// Runs the session from the source until it ends or fails, the scene's time limit, `seconds`, or `stop`, or until a

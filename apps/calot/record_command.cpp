@@ -44,14 +44,14 @@ void printRunJson(const FinishedRun& run, double seconds) {
            {"missed_deadlines", r.missedDeadlines},
            {"largest_lateness_s", r.maxLateness},
            {"clock_stretched_s", r.stretched},
-           {"pauses", r.pauses},
-           {"paused_s", r.paused}};
+           {"pauses", r.pauses.count},
+           {"paused_s", r.pauses.seconds}};
   if (!run.why.empty()) out["source_status"] = run.why;
   if (run.live) {
     out["real_time_thread"] = r.realTime;
-    out["tick_cpu_mean_s"] = r.tickMean;
-    out["tick_cpu_p999_s"] = r.tickP999;
-    out["tick_cpu_largest_s"] = r.tickLargest;
+    out["tick_cpu_mean_s"] = r.cost.mean();
+    out["tick_cpu_p999_s"] = r.cost.quantile(0.999);
+    out["tick_cpu_largest_s"] = r.cost.largest();
     out["arenas_grown"] = r.arenasGrown;
     out["force_disagreements"] = r.disagreements;
   }
@@ -71,10 +71,10 @@ void printRun(const FinishedRun& run, double seconds) {
   if (run.live) {
     fmt::print(
         "haptic tick: {:.1f} us of CPU on average, {:.1f} us at 99.9 %, {:.1f} us at most; {}; {} arenas grown\n",
-        1e6 * r.tickMean, 1e6 * r.tickP999, 1e6 * r.tickLargest,
+        1e6 * r.cost.mean(), 1e6 * r.cost.quantile(0.999), 1e6 * r.cost.largest(),
         r.realTime ? "real-time thread" : "ordinary thread (no permission for real time)", r.arenasGrown);
   }
-  if (r.pauses > 0) fmt::print("{} pauses of the source, {:.1f} s in all\n", r.pauses, r.paused);
+  if (r.pauses.count > 0) fmt::print("{} pauses of the source, {:.1f} s in all\n", r.pauses.count, r.pauses.seconds);
 }
 
 /// Prints it on stdout. @throws Error (failure) for what must not be missed

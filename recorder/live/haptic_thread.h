@@ -69,13 +69,6 @@ class ContactExchange {
   std::uint64_t generation_ = 0, grown_ = 0;
 };
 
-struct HapticReport : TickReport {
-  Outcome outcome = Outcome::completed;
-  bool realTime = false;  ///< runs with real-time priority (SCHED_FIFO)
-  SourcePauses pauses;
-  CostHistogram cost;  ///< thread CPU time of a tick: both hands' samples taken and forces made
-};
-
 /// Runs ticks at the rate of the tick clock, each with the newest published contact sets, until the source ends or
 /// `gate` ends it. The simulation takes the ticks of one step after the other and publishes.
 class HapticThread {

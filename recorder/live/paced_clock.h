@@ -115,4 +115,12 @@ class CostHistogram {
   std::uint64_t count_ = 0, sum_ = 0, largest_ = 0;
 };
 
+/// A run, as who makes its ticks sees it.
+struct HapticReport : TickReport {
+  Outcome outcome = Outcome::completed;
+  SourcePauses pauses;
+  bool realTime = false;  ///< live: the haptic thread ran before all ordinary threads (SCHED_FIFO)
+  CostHistogram cost;     ///< live: thread CPU time of a tick, in which both hands' samples are taken and forces made
+};
+
 }  // namespace calot::recorder

@@ -124,8 +124,8 @@ TEST(TrainingSession, APauseLeavesNoTick) {
   ASSERT_TRUE(rig.session->resume());
   ASSERT_TRUE(rig.ended());
   const TrainingStatus status = rig.session->status();
-  EXPECT_EQ(status.report.pauses, 1U);
-  EXPECT_GE(status.report.paused, 0.4);
+  EXPECT_EQ(status.report.pauses.count, 1U);
+  EXPECT_GE(status.report.pauses.seconds, 0.4);
   EXPECT_EQ(status.report.steps, 79U) << "the script stood still meanwhile";
   expectExact(status.file);
 }

@@ -270,7 +270,7 @@ TEST_P(DeviceRecording, UnpluggedInMidRunLosesNothing) {
     EXPECT_EQ(report.steps, 31U);  // the step in which it went is whole
   } else {
     EXPECT_EQ(report.outcome, Outcome::completed);
-    EXPECT_EQ(report.pauses, 1U);
+    EXPECT_EQ(report.pauses.count, 1U);
     EXPECT_NEAR(static_cast<double>(report.steps), 60.0, 1.0);
   }
   const ReplayReport replayed = replayRecording(file, ReplaySettings{});

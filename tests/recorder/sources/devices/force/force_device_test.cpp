@@ -167,7 +167,7 @@ TEST(ForceDevice, KilledInMidRunTheRecordingReplays) {
   if (person.joinable()) person.join();
   EXPECT_EQ(report.outcome, Outcome::stopped);
   EXPECT_EQ(report.disagreements, 0U);
-  EXPECT_EQ(report.pauses, 1U);
+  EXPECT_EQ(report.pauses.count, 1U);
   EXPECT_EQ(losses, 1U);
   std::error_code ignored;
   const ReplayReport replayed = replayRecording(file, ReplaySettings{});
