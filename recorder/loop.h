@@ -15,7 +15,7 @@
 
 #include "recorder/base/identity.h"
 #include "recorder/engine/session.h"
-#include "recorder/live/paced_clock.h"
+#include "recorder/live/haptic_thread.h"
 #include "recorder/prepared_scene.h"
 #include "recorder/recording/reader.h"
 #include "recorder/recording/writer.h"
@@ -158,9 +158,8 @@ AttemptHeader branchHeader(const Recording& parent, const Model& model, std::uin
 /// so that forces and events are the same. Observers of the session receive each.
 /// @returns the first difference from the parent's digests, forces, observables, events or keyframes, where it stops
 /// @pre the session is new, with the parent's model and seed
-[[nodiscard]] std::optional<Divergence> takeParent(
-    Recording& parent, Session& session, std::uint64_t forkStep,
-    const std::function<void(std::uint64_t step, std::uint64_t of)>& progress = {});
+[[nodiscard]] std::optional<Divergence> takeParent(Recording& parent, Session& session, std::uint64_t forkStep,
+                                                   const StepProgress& progress = {});
 
 /// The name that a branch has until the parent's part is taken: TARGET.branch, in the target's folder. Removed with
 /// this object unless publish() came before.

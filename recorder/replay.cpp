@@ -7,13 +7,12 @@
 #include <stdexcept>
 #include <thread>
 
-#include "recorder/compare.h"
 #include "recorder/kept/engine_folders.h"
 #include "recorder/live/worker_pool.h"
 #include "recorder/recorded_results.h"
 #include "recorder/recording/layout.h"
 #include "recorder/recording/probe.h"
-#include "recorder/segments.h"
+#include "recorder/verification.h"
 #include "sim/scene/version.h"
 
 namespace calot::recorder {
@@ -84,8 +83,7 @@ std::uint64_t nextKeyframe(const Recording& recording, std::uint64_t step) {
 }  // namespace
 
 std::optional<Divergence> follow(Recording& recording, Engine& engine, std::uint64_t end,
-                                 const std::vector<Observer*>& observers,
-                                 const std::function<void(std::uint64_t step, std::uint64_t of)>& progress) {
+                                 const std::vector<Observer*>& observers, const StepProgress& progress) {
   StepComparison comparison(recording, engine);
   std::vector<TickSamples> samples;
   std::vector<TickOutcome> logged;

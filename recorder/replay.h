@@ -136,7 +136,7 @@ struct ReplaySettings {
   /// proven equal to the computed ones, and none where they were not, with the forces as they were computed; there is
   /// no `keyframe`, no `view` and no digest of components then.
   std::function<std::vector<Observer*>(const AttemptHeader&, const SceneDescription&)> observers;
-  std::function<void(std::uint64_t step, std::uint64_t of)> progress;
+  StepProgress progress;
 };
 
 /// An error as the message of this recording's report, which names the recording itself. Another file that the error
@@ -150,8 +150,7 @@ ReplayReport replayRecording(const std::filesystem::path& path, const ReplaySett
 /// the recording. @param observers of each step, before it is compared @returns the first difference
 /// @pre the engine is at one of the recording's own States
 std::optional<Divergence> follow(Recording& recording, Engine& engine, std::uint64_t end,
-                                 const std::vector<Observer*>& observers,
-                                 const std::function<void(std::uint64_t step, std::uint64_t of)>& progress = {});
+                                 const std::vector<Observer*>& observers, const StepProgress& progress = {});
 
 /// Goes anywhere in a recording: the nearest keyframe at or before, then re-simulation. The State is the one that
 /// running there gives, bit for bit.

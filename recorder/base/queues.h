@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Passing values from one thread to another without a lock.
+// What two threads pass values through without a lock.
 #pragma once
 
 #include <array>

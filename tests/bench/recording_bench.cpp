@@ -18,7 +18,7 @@
 #include "recorder/recording/reader.h"
 #include "recorder/recording/writer.h"
 #include "recorder/replay.h"
-#include "recorder/segments.h"
+#include "recorder/verification.h"
 #include "sim/math/random.h"
 #include "tests/bench/benchmarks.h"
 #include "tests/bench/figures.h"

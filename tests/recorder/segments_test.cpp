@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Verification in segments says what a run from the start says.
-#include "recorder/segments.h"
+#include "recorder/verification.h"
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,6 @@
 #include <vector>
 
 #include "recorder/base/errors.h"
-#include "recorder/compare.h"
 #include "recorder/replay.h"
 #include "tests/recorder/support/lying_recording.h"
 
