@@ -35,8 +35,7 @@ struct SpelledNumbers {
       numbers.emplace_back(name, fmt::format("{}", static_cast<std::uint64_t>(value)));
     }
   }
-  template <class T>
-  void operator()(const char* /*folder*/, const char* name, const char* /*unit*/, const T& value) {
+  void operator()(const char* /*folder*/, const char* name, const char* /*unit*/, const auto& value) {
     (*this)(name, value);
   }
 };

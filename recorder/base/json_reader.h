@@ -83,8 +83,7 @@ class JsonFaults {
   /// Notes the fault where faults are noted. @throws the fault where they are not
   static void report(const Error& fault);
   /// Runs a part of the reading whose fault does not keep other parts from being read.
-  template <class Work>
-  static void part(Work&& work) {
+  static void part(auto&& work) {
     try {
       work();
     } catch (const Error& fault) {

@@ -95,10 +95,7 @@ template <class Use>
 struct Vectors {
   Use use;
   std::size_t count = 0;
-  template <class T>
-  void operator()(const char* /*name*/, T& value) {
-    visit(value);
-  }
+  void operator()(const char* /*name*/, auto& value) { visit(value); }
   template <class T>
   void visit(std::vector<T>& values) {
     if (count++ < maxVectors) use(values);

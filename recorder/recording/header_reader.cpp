@@ -160,10 +160,7 @@ class HeaderReader {
 struct ReadAttributes {
   const HeaderReader& reader;
   void operator()(const char* name, std::string& v) { v = reader.text(reader.root(), "/", name); }
-  template <class T>
-  void operator()(const char* name, T& v) {
-    reader.number(reader.root(), "/", name, v);
-  }
+  void operator()(const char* name, auto& v) { reader.number(reader.root(), "/", name, v); }
   void constant(const char* name, const std::string& expected) {
     if (reader.text(reader.root(), "/", name) != expected)
       throw damaged(reader.path(), std::string("/@") + name, "the file is not a recording");

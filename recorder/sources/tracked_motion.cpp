@@ -24,14 +24,12 @@ constexpr std::size_t maxBytes = std::size_t{1} << 30U;
 constexpr std::size_t maxRows = 1000000;
 
 /// @param fail throws with this fault @param hint on what may be wrong
-template <class Fail>
-void checkPosition(const Vec3& position, const char* hint, const Fail& fail) {
+void checkPosition(const Vec3& position, const char* hint, const auto& fail) {
   if (!(position.cwiseAbs().maxCoeff() <= maxPosition))
     fail(fmt::format("a position farther than {} m{}", maxPosition, hint));
 }
 
-template <class Fail>
-Quat checkedRotation(const Mat3& matrix, const Fail& fail) {
+Quat checkedRotation(const Mat3& matrix, const auto& fail) {
   const double off = rotationDefect(matrix);  // rounding in the format of kinematics is below 1e-4
   if (!(off <= rotationTolerance))
     fail(fmt::format("no rotation matrix (off by {:.2g}; {:.2g} is allowed)", off, rotationTolerance));

@@ -30,8 +30,7 @@ class TcpStream {
   std::size_t receive(std::span<std::byte> buffer);
   /// Reads what has arrived, piece by piece, until take(bytes) is false. Bounded, so that a sender that never stops
   /// cannot hold the thread. @returns false where take() was
-  template <class Take>
-  bool receiveAll(const Take& take) {
+  bool receiveAll(const auto& take) {
     std::array<std::byte, 65536> buffer;
     for (int i = 0; i < 16; ++i) {
       const std::size_t n = receive(buffer);
