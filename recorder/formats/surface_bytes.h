@@ -50,35 +50,16 @@ inline constexpr double farthestCoordinate = 1000.0;
 /// Does the name end as one of the known formats does?
 bool isSurfaceName(const std::string& name);
 
-/// A surface from a file's bytes, in metres. Indices are in range and coordinates finite; nothing else is promised.
+/// A surface from a file's bytes, in metres. Indices are in range and coordinates finite; nothing else is promised
+/// (surface_report.h checks the surface; triangles with coincident corners are kept).
 /// @param name what messages call it; its end says the format
-/// @throws Error (damaged), naming the place, or if the name is not that of a surface file
+/// @throws Error (damaged): "name: line 3: what is wrong", in binary files "name: triangle 0: ..." (STL) or "name:
+/// vertex 0: ..." (PLY); or if the name is not that of a surface file
 TriangleMesh parseSurface(std::span<const std::byte> bytes, const std::string& name, LengthUnit unit,
                           const SurfaceLimits& limits = {});
-
-/// A surface from an OBJ file's bytes, in metres. Indices are in range and coordinates finite; nothing else is
-/// guaranteed (surface_report.h checks the surface).
-/// @param name name for messages
-/// @throws Error (damaged): "name:line: what is wrong"
-TriangleMesh parseObj(std::span<const std::byte> bytes, const std::string& name, LengthUnit unit,
-                      const SurfaceLimits& limits = {});
 
 /// The text of an OBJ file in metres. Coordinates are written so that they are read back bit for bit.
 /// @param comment lines for the head, each without "#"
 std::string formatObj(const TriangleMesh& mesh, const std::string& comment);
-
-/// A surface from an STL file's bytes, in metres. Coordinates are finite; nothing else is guaranteed (surface_report.h
-/// checks the surface; triangles with coincident corners are kept).
-/// @param name what messages call it
-/// @throws Error (damaged): "name:line: what is wrong", or "name: triangle n: what is wrong" (from 0) in binary files
-TriangleMesh parseStl(std::span<const std::byte> bytes, const std::string& name, LengthUnit unit,
-                      const SurfaceLimits& limits = {});
-
-/// A surface from a PLY file's bytes, in metres. Indices are in range and coordinates finite; nothing else is promised.
-/// @param name what messages call it
-/// @throws Error (damaged): "name:line: what is wrong"; after the header of a binary file "name: vertex n: what is
-/// wrong" (elements are counted from 0)
-TriangleMesh parsePly(std::span<const std::byte> bytes, const std::string& name, LengthUnit unit,
-                      const SurfaceLimits& limits = {});
 
 }  // namespace calot::recorder

@@ -170,7 +170,6 @@ StrokePlan::StrokePlan(const PerformerProfile& profile, const SceneDescription& 
                        std::size_t hand, std::uint64_t seed)
     : profile_(profile),
       scene_(scene),
-      provenance_{OperatorKind::performer, profile.name, profile.version},
       surfaces_(surfaces),
       hand_(hand),
       random_(seed, 1 + hand),

@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 
 TriangleMesh parse(const std::string& text, LengthUnit unit = LengthUnit::metre, const SurfaceLimits& limits = {}) {
-  return parseObj(std::as_bytes(std::span(text.data(), text.size())), "t.obj", unit, limits);
+  return parseSurface(std::as_bytes(std::span(text.data(), text.size())), "t.obj", unit, limits);
 }
 
 /// The message of the refusal, or empty.

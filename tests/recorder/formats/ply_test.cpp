@@ -17,7 +17,7 @@ namespace calot::recorder {
 namespace {
 
 TriangleMesh parse(const std::string& bytes, LengthUnit unit = LengthUnit::metre, const SurfaceLimits& limits = {}) {
-  return parsePly(std::as_bytes(std::span(bytes.data(), bytes.size())), "t.ply", unit, limits);
+  return parseSurface(std::as_bytes(std::span(bytes.data(), bytes.size())), "t.ply", unit, limits);
 }
 
 /// The message of the refusal, or empty.

@@ -16,7 +16,7 @@ namespace calot::recorder {
 namespace {
 
 TriangleMesh parse(const std::string& bytes, LengthUnit unit = LengthUnit::metre, const SurfaceLimits& limits = {}) {
-  return parseStl(std::as_bytes(std::span(bytes.data(), bytes.size())), "t.stl", unit, limits);
+  return parseSurface(std::as_bytes(std::span(bytes.data(), bytes.size())), "t.stl", unit, limits);
 }
 
 /// The message of the refusal, or empty.
