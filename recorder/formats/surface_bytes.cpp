@@ -37,7 +37,7 @@ namespace {
 
 using Reader = TriangleMesh (*)(const SurfaceReader& start);
 
-/// Of the format that the name's end says, or none.
+/// Reader for the format that the name's end states, or null.
 Reader readerOf(const std::string& name) {
   constexpr std::pair<std::string_view, Reader> readers[] = {{".obj", readObj}, {".stl", readStl}, {".ply", readPly}};
   const std::string end = lowerCase(std::string_view(name).substr(name.size() < 4 ? 0 : name.size() - 4));
