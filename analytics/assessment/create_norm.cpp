@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "analytics/assessment/create_norm.h"
+#include "analytics/assessment/norm.h"
 
 #include <fmt/format.h>
 
@@ -8,8 +8,7 @@
 #include <utility>
 
 #include "analytics/assessment/grade.h"
-#include "analytics/assessment/norm_rule.h"
-#include "analytics/cohort/check.h"
+#include "analytics/cohort/cohort_database.h"
 
 namespace calot::analytics {
 

@@ -8,7 +8,6 @@
 #include <set>
 #include <utility>
 
-#include "analytics/cohort/connection.h"
 #include "analytics/cohort/tables.h"
 #include "recorder/attempt.h"
 

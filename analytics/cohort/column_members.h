@@ -13,7 +13,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "analytics/cohort/declared_tables.h"
+#include "analytics/cohort/tables.h"
 
 namespace calot::analytics {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "analytics/cohort/declared_tables.h"
+#include "analytics/cohort/tables.h"
 
 #include "analytics/cohort/column_members.h"
 

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 
-#include "analytics/cohort/connection.h"
 #include "analytics/cohort/tables.h"
 
 namespace calot::analytics {

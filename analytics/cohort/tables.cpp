@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <set>
 
-#include "analytics/cohort/connection.h"
 #include "recorder/base/dates.h"
 
 namespace calot::analytics {

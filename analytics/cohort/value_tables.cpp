@@ -8,7 +8,6 @@
 #include <map>
 #include <utility>
 
-#include "analytics/cohort/connection.h"
 #include "analytics/cohort/tables.h"
 
 namespace calot::analytics::tables {

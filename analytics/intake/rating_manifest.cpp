@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "analytics/intake/rating_manifest.h"
+#include "analytics/intake/manifests.h"
 
 #include <fmt/format.h>
 
@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "analytics/assessment/rating_form.h"
-#include "analytics/intake/manifest_table.h"
 #include "recorder/base/text_words.h"
 
 namespace calot::analytics {

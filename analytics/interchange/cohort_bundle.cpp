@@ -13,11 +13,11 @@
 
 #include "analytics/checkpoints/checkpoint.h"
 #include "analytics/cohort/assessment_database.h"
-#include "analytics/cohort/declared_tables.h"
 #include "analytics/cohort/registers.h"
+#include "analytics/cohort/tables.h"
 #include "analytics/cohort/withdraw.h"
 #include "analytics/interchange/bundle_names.h"
-#include "analytics/interchange/cohort_tables.h"
+#include "analytics/interchange/export_tables.h"
 #include "recorder/attempt.h"
 #include "recorder/base/csv_writer.h"
 #include "recorder/base/errors.h"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Results of completed forms: ratings by group, internal consistency and agreement between raters.
+// Results of completed forms: ratings by group, internal consistency and agreement between raters; and these as one tree
+// of values, tables and sentences (rating_tables.cpp).
 #pragma once
 
 #include <array>
@@ -11,6 +12,8 @@
 
 #include "analytics/assessment/rating_form.h"
 #include "analytics/cohort/assessment_database.h"
+#include "analytics/report/report_document.h"
+#include "analytics/report/value_tree.h"
 #include "analytics/statistics/expected.h"
 #include "analytics/statistics/reliability.h"
 
@@ -86,5 +89,15 @@ std::vector<FormReport> reportForms(const AssessmentDatabase& database,
                                     const std::map<std::string, std::string>& groupOf,
                                     const std::vector<std::string>& groups,
                                     const std::map<std::string, AttemptOf>& attemptOf);
+
+/// Remarks: population of the figures, warnings about intervals with low coverage, and the items' source; none without
+/// a form.
+std::vector<std::string> ratingNotes(const FormReport& report);
+
+/// Ratings, consistency and agreement of one form, without empty tables.
+std::vector<ReportTable> ratingTables(const FormReport& report);
+
+/// Every report with all of its numbers; missing numbers are null, with a reason if there is one.
+ValueTree ratingsTree(const std::vector<FormReport>& reports);
 
 }  // namespace calot::analytics

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "analytics/report/rating_tables.h"
+#include "analytics/report/ratings.h"
 #include "analytics/report/study_output.h"
 #include "analytics/report/study_rows.h"
 #include "recorder/attempt.h"

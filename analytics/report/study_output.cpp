@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "analytics/report/plots.h"
-#include "analytics/report/rating_tables.h"
+#include "analytics/report/ratings.h"
 #include "analytics/report/study_rows.h"
 #include "analytics/statistics/descriptive.h"
 #include "recorder/base/errors.h"

@@ -5,7 +5,7 @@
 
 #include "analytics/assessment/grade.h"
 #include "analytics/cohort/assessment_database.h"
-#include "analytics/cohort/check.h"
+#include "analytics/cohort/cohort_database.h"
 #include "analytics/report/grade_sheet.h"
 #include "apps/calot/command.h"
 #include "apps/calot/study_command.h"

@@ -9,8 +9,7 @@
 
 #include "analytics/assess.h"
 #include "analytics/checkpoints/collector.h"
-#include "analytics/import_motion.h"
-#include "analytics/intake/motion_manifest.h"
+#include "analytics/intake/manifests.h"
 #include "apps/calot/command.h"
 #include "apps/calot/environment.h"
 #include "apps/calot/replay_report.h"

@@ -2,10 +2,8 @@
 // calot norm: named, versioned cohorts that others are held against.
 #include <algorithm>
 
-#include "analytics/assessment/create_norm.h"
 #include "analytics/assessment/grade.h"
 #include "analytics/assessment/norm.h"
-#include "analytics/assessment/norm_rule.h"
 #include "analytics/checkpoints/checkpoint.h"
 #include "analytics/cohort/assessment_database.h"
 #include "analytics/report/report_document.h"

@@ -6,7 +6,7 @@
 #include "analytics/assessment/protocol.h"
 #include "analytics/cohort/assessment_database.h"
 #include "analytics/cohort/blinding.h"
-#include "analytics/report/masked_study.h"
+#include "analytics/report/study_protocol.h"
 #include "analytics/statistics/two_groups.h"
 #include "apps/calot/command.h"
 #include "apps/calot/study_command.h"

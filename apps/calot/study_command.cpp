@@ -7,7 +7,7 @@
 #include <cmath>
 #include <set>
 
-#include "analytics/cohort/check.h"
+#include "analytics/cohort/cohort_database.h"
 #include "analytics/cohort/withdraw.h"
 #include "analytics/design/design_report.h"
 #include "analytics/report/study_output.h"

@@ -5,9 +5,9 @@
 #include <CLI/CLI.hpp>
 #include <string>
 
-#include "analytics/report/masked_study.h"
 #include "analytics/report/report_document.h"
 #include "analytics/report/study.h"
+#include "analytics/report/study_protocol.h"
 #include "analytics/report/table_study.h"
 
 namespace calot::apps {

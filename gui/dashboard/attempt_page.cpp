@@ -10,7 +10,7 @@
 #include <QSaveFile>
 
 #include "analytics/checkpoints/checkpoint.h"
-#include "analytics/cohort/check.h"
+#include "analytics/cohort/cohort_database.h"
 #include "analytics/report/grade_sheet.h"
 #include "gui/attempt/figure_text.h"
 #include "gui/attempt/replay_player.h"

@@ -5,12 +5,12 @@
 #include <exception>
 #include <set>
 
-#include "analytics/cohort/check.h"
+#include "analytics/cohort/cohort_database.h"
 #include "analytics/cohort/withdraw.h"
 #include "analytics/design/design_report.h"
-#include "analytics/report/masked_study.h"
 #include "analytics/report/report_document.h"
 #include "analytics/report/study_output.h"
+#include "analytics/report/study_protocol.h"
 #include "analytics/report/study_rows.h"
 #include "gui/words/problem_words.h"
 #include "recorder/base/errors.h"

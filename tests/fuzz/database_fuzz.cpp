@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A cohort database, byte for byte: checked, then read.
 #include "analytics/cohort/assessment_database.h"
-#include "analytics/cohort/check.h"
 #include "analytics/cohort/cohort_database.h"
 #include "tests/fuzz/support/input_file.h"
 

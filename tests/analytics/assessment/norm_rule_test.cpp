@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Fixed pass marks, the short rule that counts where none is named, and a norm that its own members fail.
-#include "analytics/assessment/norm_rule.h"
+#include "analytics/assessment/norm.h"
 
 #include <gtest/gtest.h>
 
 #include <sstream>
 
 #include "analytics/assessment/grade.h"
-#include "analytics/assessment/norm.h"
 #include "analytics/report/grade_sheet.h"
 #include "tests/analytics/cohort/support/cohort_support.h"
 #include "tests/analytics/support/refusal.h"

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "analytics/cohort/cohort_database.h"
-#include "analytics/cohort/declared_tables.h"
+#include "analytics/cohort/tables.h"
 #include "recorder/base/errors.h"
 #include "tests/analytics/cohort/support/cohort_support.h"
 #include "tests/analytics/support/refusal.h"

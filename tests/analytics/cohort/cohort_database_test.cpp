@@ -17,8 +17,8 @@
 #include <thread>
 
 #include "analytics/assess.h"
-#include "analytics/cohort/connection.h"
 #include "analytics/cohort/embedded.h"
+#include "analytics/cohort/tables.h"
 #include "recorder/base/errors.h"
 #include "tests/analytics/cohort/support/cohort_support.h"
 #include "tests/analytics/support/refusal.h"

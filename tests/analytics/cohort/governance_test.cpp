@@ -11,7 +11,7 @@
 #include <random>
 #include <set>
 
-#include "analytics/cohort/check.h"
+#include "analytics/cohort/cohort_database.h"
 #include "analytics/cohort/embedded.h"
 #include "analytics/cohort/merge.h"
 #include "analytics/cohort/registers.h"
