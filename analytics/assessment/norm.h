@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Makes a norm: who is in it, who of them is competent, and the pass mark of every figure, by contrasting groups or by
-// borderline regression on raters' scores (norm.cpp), or set by people: fixed marks and judges' (Angoff; norm_rule.cpp).
-// Stores it, and puts it into words (create_norm.cpp).
+// borderline regression on raters' scores (norm.cpp), or set by people: fixed marks and judges' (Angoff;
+// norm_rule.cpp). Stores it, and puts it into words (create_norm.cpp).
 #pragma once
 
 #include <cstddef>
@@ -16,7 +16,6 @@
 
 #include "analytics/assessment/declared_document.h"
 #include "analytics/assessment/rating_form.h"
-#include "analytics/cohort/assessment_database.h"
 #include "analytics/cohort/cohort_database.h"
 #include "analytics/report/study.h"
 #include "analytics/statistics/expected.h"
@@ -159,7 +158,7 @@ using NormProgress = std::function<void(double share, const char* doing)>;
 /// Makes a norm of a cohort's attempts, after the whole cohort was checked, and stores it as the next version of its
 /// name. A protocol gets the participants' recorded experience.
 /// @param only uuids of the attempts that it may be made of; empty: all that the request allows
-/// @return as it is stored @throws Error as refuseUnsound(), makeNorm(), AssessmentDatabase::storeNorm() and
+/// @return as it is stored @throws Error as refuseUnsound(), makeNorm(), CohortDatabase::storeNorm() and
 /// CohortDatabase
 Norm createNorm(const std::string& database, NormRequest request, const std::vector<std::string>& only = {},
                 const NormProgress& progress = {});

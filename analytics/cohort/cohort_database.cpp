@@ -95,21 +95,9 @@ std::vector<Participant> CohortDatabase::participants() const {
   });
 }
 
-std::optional<Participant> CohortDatabase::participant(const std::string& pseudonym) const {
-  for (Participant& p : participants()) {
-    if (p.pseudonym == pseudonym) return std::move(p);
-  }
-  return std::nullopt;
-}
-
 Imported CohortDatabase::storeAttempt(const AttemptRecord& attempt, const std::vector<CheckpointValue>& values) {
   checkAttempt(attempt, path());
   return connection_->change([&](SQLite::Database& db) { return importAttempt(db, path(), attempt, &values); });
-}
-
-Imported CohortDatabase::upsertAttempt(const AttemptRecord& attempt) {
-  checkAttempt(attempt, path());
-  return connection_->change([&](SQLite::Database& db) { return importAttempt(db, path(), attempt, nullptr); });
 }
 
 void CohortDatabase::storeValues(const std::string& attempt, const std::vector<CheckpointValue>& values) {

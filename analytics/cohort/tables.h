@@ -2,9 +2,10 @@
 // What CohortDatabase builds on. Opening a database: which file it is, its schema, migrations (connection.cpp).
 // Single tables: tables and rows as SQLite describes them, for work that must reach every table, those of later
 // migrations too; and the statements that follow from a table's declaration. No function here begins a transaction.
-// The tables' declaration (declared_tables.cpp), each column declared once: name, SQLite's type, meaning, unit, values, and the
-// member of the struct that holds it. schemas/cohort/*.sql makes them; statements (tables.h), `cohort check`, lists,
-// codebook and exports follow from the declaration. A new column takes its line here, its member and a migration.
+// The tables' declaration (declared_tables.cpp), each column declared once: name, SQLite's type, meaning, unit, values,
+// and the member of the struct that holds it. schemas/cohort/*.sql makes them; statements (tables.h), `cohort check`,
+// lists, codebook and exports follow from the declaration. A new column takes its line here, its member and a
+// migration.
 #pragma once
 
 #include <SQLiteCpp/SQLiteCpp.h>
@@ -25,7 +26,6 @@
 #include <variant>
 #include <vector>
 
-#include "analytics/cohort/assessment_database.h"
 #include "analytics/cohort/blinding.h"
 #include "analytics/cohort/cohort_database.h"
 #include "analytics/cohort/registers.h"
@@ -274,7 +274,7 @@ std::size_t writeExternalValues(SQLite::Database& db, const std::string& path, s
 bool replaceValues(SQLite::Database& db, std::int64_t attempt, const std::vector<CheckpointValue>& values);
 
 /// A filled form, and the form itself where it is not there yet; begins no transaction. @throws Error as
-/// AssessmentDatabase::storeRating().
+/// CohortDatabase::storeRating().
 void putRating(SQLite::Database& db, const std::string& path, const StoredDocument& form, const Rating& rating,
                bool replace);
 

@@ -241,8 +241,8 @@ DesignData cohortDesignData(const std::vector<AttemptRow>& attempts, const std::
   return data;
 }
 
-DesignData cohortDesignData(const CohortDatabase& database, const AssessmentDatabase& assessment,
-                            const StudyOptions& asked, const DesignChoices& choices) {
+DesignData cohortDesignData(const CohortDatabase& database, const StudyOptions& asked,
+                            const DesignChoices& choices) {
   StudyOptions options = asked;
   options.family = choices.family;
   if (options.cohort) options.cohort->participants = participantsOf(database.path(), options.cohort->name);
@@ -250,8 +250,8 @@ DesignData cohortDesignData(const CohortDatabase& database, const AssessmentData
   DesignData data = populated(database.listAttempts(), database.allValues(unaskedPhases(options)), options, choices,
                               database.path(), placed);
   if (choices.design != Design::timeToCriterion) {
-    const std::vector<Rating> ratings = assessment.ratings();
-    for (const StoredDocument& stored : assessment.forms()) {
+    const std::vector<Rating> ratings = database.ratings();
+    for (const StoredDocument& stored : database.forms()) {
       const auto* bytes = reinterpret_cast<const std::byte*>(stored.text.data());
       const RatingForm form = parseRatingForm({bytes, stored.text.size()}, stored.name);
       if (form.ofAttempts) addForm(data, form, ratings, placed);

@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "analytics/cohort/assessment_database.h"
+#include "analytics/cohort/cohort_database.h"
 #include "analytics/report/study.h"
 #include "analytics/report/table_study.h"
 #include "recorder/base/csv.h"
@@ -112,7 +112,7 @@ struct DesignData {
 /// site or arm, the occasion the attempt's number, of an agreement without `against` the device class. A form's rating
 /// is the mean of its items and of its raters, without incomplete forms. @throws Error as makeStudy(), and (refused)
 /// where the groups are not those that the design needs.
-DesignData cohortDesignData(const CohortDatabase& database, const AssessmentDatabase& assessment,
+DesignData cohortDesignData(const CohortDatabase& database,
                             const StudyOptions& options, const DesignChoices& choices);
 
 /// The same of attempts at hand, without ratings, site and arm.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Manifests: tables that say, a row each, what is taken into a cohort. Of motion files with who made them (`calot import
+// Manifests: tables that say, a row each, what is taken into a cohort. Of motion files with who made them (`calot
+// import
 // --manifest`), whose participants are registered without replacing what a cohort knows; of completed forms (`calot
 // rate --manifest`).
 #pragma once
@@ -12,7 +13,6 @@
 #include <vector>
 
 #include "analytics/assess.h"
-#include "analytics/cohort/assessment_database.h"
 #include "analytics/cohort/cohort_database.h"
 #include "recorder/base/csv.h"
 #include "recorder/base/errors.h"
@@ -123,8 +123,8 @@ struct StoredRatings {
 
 /// Stores what is new, all of it or nothing. The same answers again change nothing.
 /// @param replace other answers of the same rater or participant; else they are refused before anything is stored, one
-/// fault each. @throws Error as AssessmentDatabase::storeRating().
-StoredRatings storeRatings(AssessmentDatabase& database, const RatingManifest& manifest, bool replace,
+/// fault each. @throws Error as CohortDatabase::storeRating().
+StoredRatings storeRatings(CohortDatabase& database, const RatingManifest& manifest, bool replace,
                            std::vector<Error>& faults);
 
 }  // namespace calot::analytics

@@ -189,7 +189,7 @@ RatingManifest readRatingManifest(const std::string& path, const std::string& fo
   return manifest;
 }
 
-StoredRatings storeRatings(AssessmentDatabase& database, const RatingManifest& manifest, bool replace,
+StoredRatings storeRatings(CohortDatabase& database, const RatingManifest& manifest, bool replace,
                            std::vector<Error>& faults) {
   std::map<RatingKey, Rating> before;
   for (Rating& r : database.ratings()) {

@@ -233,8 +233,7 @@ FormReport reportForm(const RatingForm& form, const std::vector<Rating>& ratings
   return report;
 }
 
-std::vector<FormReport> reportForms(const AssessmentDatabase& database,
-                                    const std::map<std::string, std::string>& groupOf,
+std::vector<FormReport> reportForms(const CohortDatabase& database, const std::map<std::string, std::string>& groupOf,
                                     const std::vector<std::string>& groups, const Attempts& attemptOf) {
   const std::vector<Rating> ratings = database.ratings();
   std::vector<FormReport> reports;

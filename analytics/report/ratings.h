@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Results of completed forms: ratings by group, internal consistency and agreement between raters; and these as one tree
-// of values, tables and sentences (rating_tables.cpp).
+// Results of completed forms: ratings by group, internal consistency and agreement between raters; and these as one
+// tree of values, tables and sentences (rating_tables.cpp).
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "analytics/assessment/rating_form.h"
-#include "analytics/cohort/assessment_database.h"
+#include "analytics/cohort/cohort_database.h"
 #include "analytics/report/report_document.h"
 #include "analytics/report/value_tree.h"
 #include "analytics/statistics/expected.h"
@@ -85,8 +85,7 @@ FormReport reportForm(const RatingForm& form, const std::vector<Rating>& ratings
                       const std::map<std::string, AttemptOf>& attemptOf = {});
 
 /// Reports of every form that a cohort holds, by name and version.
-std::vector<FormReport> reportForms(const AssessmentDatabase& database,
-                                    const std::map<std::string, std::string>& groupOf,
+std::vector<FormReport> reportForms(const CohortDatabase& database, const std::map<std::string, std::string>& groupOf,
                                     const std::vector<std::string>& groups,
                                     const std::map<std::string, AttemptOf>& attemptOf);
 

@@ -286,7 +286,7 @@ Study makeStudy(const std::vector<AttemptRow>& recruited, const std::vector<Atte
   return studyOf(recruited, each, asked, name, progress);
 }
 
-void addRatings(Study& study, const AssessmentDatabase& database) {
+void addRatings(Study& study, const CohortDatabase& database) {
   study.ratings = reportForms(database, study.groupOf, {study.groups[0], study.groups[1]}, study.attemptOf);
 }
 

@@ -15,7 +15,6 @@
 
 #include "analytics/assessment/protocol.h"
 #include "analytics/checkpoints/checkpoint.h"
-#include "analytics/cohort/assessment_database.h"
 #include "analytics/cohort/cohort_database.h"
 #include "analytics/report/ratings.h"
 #include "analytics/statistics/descriptive.h"
@@ -268,6 +267,6 @@ Study makeStudy(const std::vector<AttemptRow>& attempts, const std::vector<Attem
                 const StudyOptions& options, const std::string& name, const StudyProgress& progress = {});
 
 /// Adds results of forms completed by or about the analysed participants.
-void addRatings(Study& study, const AssessmentDatabase& database);
+void addRatings(Study& study, const CohortDatabase& database);
 
 }  // namespace calot::analytics

@@ -257,7 +257,7 @@ void describeLock(Study& study, const AnalysisLock& lock, const AnalysisLock& no
 
 }  // namespace
 
-Study makeMaskedStudy(const CohortDatabase& database, const AssessmentDatabase& assessment, const StudyOptions& options,
+Study makeMaskedStudy(const CohortDatabase& database, const StudyOptions& options,
                       bool swapped, const StudyProgress& progress) {
   const Protocol& protocol = options.protocol->protocol;
   StudyOptions masked = withCohortData(database, maskedOptions(options, swapped));
@@ -267,7 +267,7 @@ Study makeMaskedStudy(const CohortDatabase& database, const AssessmentDatabase& 
     group = maskedName(group, protocol, swapped);
   }
   Study study = makeStudy(attempts, database.allValues(), masked, database.path(), progress);
-  addRatings(study, assessment);
+  addRatings(study, database);
   for (StudyRow& row : study.rows) {
     row.publishedExpert = row.publishedNovice = std::nullopt;
     for (auto& people : row.participants) {
@@ -290,31 +290,31 @@ std::string analysisOptions(const StudyOptions& options) {
                      options.includePhases ? "all" : "durations");
 }
 
-AnalysisLock presentAnalysis(const CohortDatabase& database, const AssessmentDatabase& assessment,
+AnalysisLock presentAnalysis(const CohortDatabase& database,
                              const StudyOptions& options) {
   const Protocol& protocol = options.protocol->protocol;
   return {protocol.sha256,
           fmt::format("{} version {}", protocol.name, protocol.version),
           analysisOptions(options),
-          analysisDigest(database, assessment),
+          analysisDigest(database),
           fmt::format("{}, simulation version {}", recorder::softwareName(), simulationVersion),
           "",
           ""};
 }
 
-Study makeProtocolStudy(const CohortDatabase& database, const AssessmentDatabase& assessment,
-                        const StudyOptions& options, bool masked, const StudyProgress& progress) {
+Study makeProtocolStudy(const CohortDatabase& database, const StudyOptions& options,
+                        bool masked, const StudyProgress& progress) {
   const std::string& path = database.path();
   const std::string& sha256 = options.protocol->protocol.sha256;
   const std::optional<AnalysisLock> lock = readAnalysisLock(path, sha256);
   if (!lock) {
     const std::optional<bool> drawn = readGroupMask(path, sha256);
     if (drawn || masked)
-      return makeMaskedStudy(database, assessment, options, drawn ? *drawn : drawGroupMask(path, sha256), progress);
+      return makeMaskedStudy(database, options, drawn ? *drawn : drawGroupMask(path, sha256), progress);
   }
   Study study = makeStudy(database, options, progress);
-  addRatings(study, assessment);
-  if (lock) describeLock(study, *lock, presentAnalysis(database, assessment, options));
+  addRatings(study, database);
+  if (lock) describeLock(study, *lock, presentAnalysis(database, options));
   return study;
 }
 
@@ -352,7 +352,7 @@ class CellHash {
 
 }  // namespace
 
-std::string analysisDigest(const CohortDatabase& database, const AssessmentDatabase& assessment) {
+std::string analysisDigest(const CohortDatabase& database) {
   [[maybe_unused]] static const int ready = sodium_init();
   CellHash hash;
   for (const AttemptRow& a : database.listAttempts()) {
@@ -370,7 +370,7 @@ std::string analysisDigest(const CohortDatabase& database, const AssessmentDatab
     hash.add(item.attempt, v.name, v.subject, v.version, static_cast<int>(v.availability),
              v.value ? fmt::format("{}", *v.value) : std::string());
   });
-  for (const Rating& r : assessment.ratings()) {
+  for (const Rating& r : database.ratings()) {
     hash.add(r.form, r.formVersion, r.attempt, r.rater, r.participant, r.answers.size());
     for (const auto& [item, score] : r.answers) hash.add(item, score);
   }

@@ -177,8 +177,7 @@ QString writeGradeSheet(const SheetRequest& request, LongWork::Control& control)
   analytics::refuseUnsound(request.database);
   control.progress(0.05, "Reading the cohort");
   const analytics::CohortDatabase cohort(request.database, analytics::CohortDatabase::Access::read);
-  const analytics::Norm norm = analytics::AssessmentDatabase(request.database, analytics::CohortDatabase::Access::read)
-                                   .norm(request.norm, request.normVersion);
+  const analytics::Norm norm = cohort.norm(request.norm, request.normVersion);
   analytics::Grade grade = analytics::gradeAttempt(request.attempt, cohort.listAttempts(), cohort.allValues(), norm,
                                                    false, request.database);
   const auto weak = analytics::weakFigures(grade);

@@ -79,17 +79,16 @@ StudyAnswer studyOf(const std::string& database, const StudyRequest& request,
     analytics::StudyOptions options = request.options;
     const bool chosen = std::count(options.groups.begin(), options.groups.end(), "") == 0;
     if (!request.protocol.empty() || !chosen) options.groups.clear();
-    const analytics::AssessmentDatabase assessment(database, Access::read);
-    for (const analytics::RegisteredProtocol& p : assessment.protocols()) {
+    const analytics::CohortDatabase cohort(database, Access::read);
+    for (const analytics::RegisteredProtocol& p : cohort.protocols()) {
       if (p.sha256 != request.protocol) continue;
       const auto* bytes = reinterpret_cast<const std::byte*>(p.text.data());
       options.protocol = analytics::ProtocolInUse{
-          analytics::parseProtocol({bytes, p.text.size()}, p.name), assessment.protocols(p.name), {}};
+          analytics::parseProtocol({bytes, p.text.size()}, p.name), cohort.protocols(p.name), {}};
     }
-    const analytics::CohortDatabase cohort(database, Access::read);
-    if (options.protocol) return {analytics::makeProtocolStudy(cohort, assessment, options, false, progress), {}};
+    if (options.protocol) return {analytics::makeProtocolStudy(cohort, options, false, progress), {}};
     analytics::Study study = analytics::makeStudy(cohort, options, progress);
-    analytics::addRatings(study, assessment);
+    analytics::addRatings(study, cohort);
     return {std::move(study), {}};
   } catch (const std::exception& error) {
     return {std::nullopt, problemText(error)};

@@ -28,7 +28,7 @@ TEST(AttemptDecisions, exclusionsAreKeptWithReasonAndAuthorAndAudited) {
   const Folder folder;
   const std::string path = folder.file("c.db");
   CohortDatabase database(path, Access::create);
-  database.upsertAttempt(attemptOf(1, "skilled"));
+  database.storeAttempt(attemptOf(1, "skilled"), {});
   database.excludeAttempts({uuidOf(1)}, "fire alarm", "instructor 2");
   EXPECT_TRUE(database.attempt(uuidOf(1))->excluded);
   EXPECT_EQ(database.attempt(uuidOf(1))->exclusionReason, "fire alarm (instructor 2)");
