@@ -23,7 +23,7 @@ std::int64_t formId(SQLite::Database& db, const std::string& path, const StoredD
   const std::int64_t id =
       firstNumber(db, "SELECT id FROM form WHERE name = ? AND version = ?", {form.name, form.version});
   if (id < 0) {
-    InsertOf(db, formTable())(form);
+    InsertOf(db, formTable)(form);
     return db.getLastInsertRowid();
   }
   if (firstTexts(db, "SELECT sha256 FROM form WHERE id = ?", {id}).front() != form.sha256) {
@@ -53,7 +53,7 @@ RegisteredProtocol CohortDatabase::registerProtocol(const StoredDocument& protoc
       }
     }
     RegisteredProtocol fresh{protocol, nowUtc(), by};
-    InsertOf(db, protocolTable())(fresh);
+    InsertOf(db, protocolTable)(fresh);
     audit(db, "protocol-register", fmt::format("{} {}", fresh.name, fresh.version),
           fmt::format("{} (by {})", fresh.sha256, by));
     added = true;
@@ -63,7 +63,7 @@ RegisteredProtocol CohortDatabase::registerProtocol(const StoredDocument& protoc
 
 std::vector<RegisteredProtocol> CohortDatabase::protocols(const std::string& name) const {
   return connection_->read([&](SQLite::Database& db) {
-    return selectRows(db, protocolTable(), "WHERE name = ?1 OR ?1 = '' ORDER BY name, version", {name});
+    return selectRows(db, protocolTable, "WHERE name = ?1 OR ?1 = '' ORDER BY name, version", {name});
   });
 }
 
@@ -140,7 +140,7 @@ std::vector<Rating> CohortDatabase::ratings() const {
 }
 
 std::vector<StoredDocument> CohortDatabase::forms() const {
-  return connection_->read([](SQLite::Database& db) { return selectRows(db, formTable(), "ORDER BY name, version"); });
+  return connection_->read([](SQLite::Database& db) { return selectRows(db, formTable, "ORDER BY name, version"); });
 }
 
 namespace {
@@ -151,7 +151,7 @@ std::int64_t normId(SQLite::Database& db, const Norm& norm) {
 }
 
 void writeCheckpoints(SQLite::Database& db, std::int64_t id, const Norm& norm) {
-  InsertOf put(db, normCheckpointTable(), {"norm", "position"});
+  InsertOf put(db, normCheckpointTable, {"norm", "position"});
   for (std::size_t i = 0; i < norm.checkpoints.size(); ++i)
     put(norm.checkpoints[i], {id, static_cast<std::int64_t>(i)});
 }
@@ -169,7 +169,7 @@ void writeMembers(SQLite::Database& db, const std::string& path, std::int64_t id
 }
 
 void readCheckpoints(SQLite::Database& db, std::int64_t id, Norm& norm) {
-  norm.checkpoints = selectRows(db, normCheckpointTable(), "WHERE norm = ? ORDER BY position", {id});
+  norm.checkpoints = selectRows(db, normCheckpointTable, "WHERE norm = ? ORDER BY position", {id});
   const std::vector<ExternalMetric> metrics = readExternalMetrics(db);
   for (NormCheckpoint& c : norm.checkpoints) {
     const auto metric = std::find_if(metrics.begin(), metrics.end(), [&](const ExternalMetric& m) {
@@ -209,7 +209,7 @@ std::uint32_t CohortDatabase::storeNorm(const Norm& norm) {
         firstNumber(db, "SELECT coalesce(max(version), 0) + 1 FROM norm WHERE name = ?", {norm.name}));
     made.membersMade = norm.members.size();
     made.createdUtc = nowUtc();
-    InsertOf(db, normTable())(made);
+    InsertOf(db, normTable)(made);
     const std::int64_t id = db.getLastInsertRowid();
     writeCheckpoints(db, id, norm);
     writeMembers(db, path(), id, norm);
@@ -221,12 +221,12 @@ std::uint32_t CohortDatabase::storeNorm(const Norm& norm) {
 
 std::vector<Norm> CohortDatabase::norms() const {
   return connection_->read([](SQLite::Database& db) {
-    std::vector<Norm> norms = selectRows(db, normTable(), "ORDER BY name, version");
+    std::vector<Norm> norms = selectRows(db, normTable, "ORDER BY name, version");
     for (Norm& norm : norms) {
       const std::int64_t id = normId(db, norm);
       readCheckpoints(db, id, norm);
       readMembers(db, id, norm);
-      norm.evidence = selectRows(db, normEvidenceTable(), "WHERE norm = ? ORDER BY id", {id});
+      norm.evidence = selectRows(db, normEvidenceTable, "WHERE norm = ? ORDER BY id", {id});
     }
     return norms;
   });
@@ -251,12 +251,11 @@ void CohortDatabase::attachEvidence(const Norm& norm, const NormEvidence& eviden
   connection_->change([&](SQLite::Database& db) {
     const std::int64_t id = normId(db, norm);
     if (id < 0) {
-      throw Error(ErrorKind::refused, Where{path()},
-                  fmt::format("no norm \"{}\" version {}", norm.name, norm.version));
+      throw Error(ErrorKind::refused, Where{path()}, fmt::format("no norm \"{}\" version {}", norm.name, norm.version));
     }
     NormEvidence attached = evidence;
     attached.attachedUtc = nowUtc();
-    InsertOf(db, normEvidenceTable(), {"norm"})(attached, {id});
+    InsertOf(db, normEvidenceTable, {"norm"})(attached, {id});
     audit(db, "norm-evidence", fmt::format("{} {}", norm.name, norm.version),
           fmt::format("{} {} (by {})", evidence.fileName, evidence.sha256, evidence.by));
   });

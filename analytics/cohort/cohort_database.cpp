@@ -79,7 +79,7 @@ void CohortDatabase::setParticipant(const std::string& pseudonym, const Particip
 std::vector<Participant> CohortDatabase::participants() const {
   return connection_->read([](SQLite::Database& db) {
     std::map<std::string, Participant> people;  // by pseudonym, in the order of their bytes
-    for (Participant& p : selectRows(db, participantTable(), "")) people.emplace(p.pseudonym, p);
+    for (Participant& p : selectRows(db, participantTable, "")) people.emplace(p.pseudonym, p);
     const auto add = [&](const char* query, std::map<std::string, std::string> Participant::*details) {
       eachRow(db, query, {}, [&](SQLite::Statement& row) {
         (people.at(text(row.getColumn(0))).*details)[text(row.getColumn(1))] = text(row.getColumn(2));
@@ -237,9 +237,9 @@ void addFields(Fields& fields, const DeclaredTable& table, const void* row) {
 
 Fields fieldsOf(const AttemptRow& a) {
   Fields fields;
-  addFields(fields, attemptTable(), static_cast<const AttemptRecord*>(&a));
-  addFields(fields, recordingTable(), static_cast<const AttemptRecord*>(&a));
-  addFields(fields, verificationTable(), &a.verification);
+  addFields(fields, attemptTable, static_cast<const AttemptRecord*>(&a));
+  addFields(fields, recordingTable, static_cast<const AttemptRecord*>(&a));
+  addFields(fields, verificationTable, &a.verification);
   const Fields others{{"participant", a.participant},
                       {"group", a.group},
                       {"arm", a.arm},
@@ -255,7 +255,7 @@ Fields fieldsOf(const AttemptRow& a) {
 
 Fields fieldsOf(const Participant& p) {
   Fields fields;
-  addFields(fields, participantTable(), &p);
+  addFields(fields, participantTable, &p);
   fields.emplace_back("experience", p.experience);
   fields.emplace_back("consent", p.consent);
   return fields;
@@ -263,7 +263,7 @@ Fields fieldsOf(const Participant& p) {
 
 Fields fieldsOf(const CheckpointValue& value) {
   Fields fields;
-  addFields(fields, checkpointValueTable(), &value);
+  addFields(fields, checkpointValueTable, &value);
   return fields;
 }
 

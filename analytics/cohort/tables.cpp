@@ -223,7 +223,7 @@ std::int64_t participantId(SQLite::Database& db, const std::string& pseudonym) {
 }
 
 std::int64_t insertParticipant(SQLite::Database& db, const Participant& p) {
-  InsertOf(db, participantTable(), {"created_utc"})(p, {nowUtc()});
+  InsertOf(db, participantTable, {"created_utc"})(p, {nowUtc()});
   return db.getLastInsertRowid();
 }
 

@@ -121,22 +121,22 @@ struct DeclaredTable {
 template <class Row>
 struct TableOf : DeclaredTable {};
 
-const TableOf<Participant>& participantTable();
-const TableOf<AttemptRecord>& attemptTable();
-const TableOf<AttemptRecord>& recordingTable();
-const TableOf<RecordingSignature>& signatureTable();
-const TableOf<Verification>& verificationTable();
-const TableOf<CheckpointValue>& checkpointValueTable();
-const TableOf<ExternalMetric>& externalMetricTable();
-const TableOf<CheckpointValue>& externalValueTable();
-const TableOf<ValueInterval>& valueIntervalTable();
-const TableOf<Station>& stationTable();
-const TableOf<RegisteredProtocol>& protocolTable();
-const TableOf<StoredDocument>& formTable();
-const TableOf<AnalysisLock>& analysisLockTable();
-const TableOf<Norm>& normTable();
-const TableOf<NormCheckpoint>& normCheckpointTable();
-const TableOf<NormEvidence>& normEvidenceTable();
+extern const TableOf<Participant> participantTable;
+extern const TableOf<AttemptRecord> attemptTable;
+extern const TableOf<AttemptRecord> recordingTable;
+extern const TableOf<RecordingSignature> signatureTable;
+extern const TableOf<Verification> verificationTable;
+extern const TableOf<CheckpointValue> checkpointValueTable;
+extern const TableOf<ExternalMetric> externalMetricTable;
+extern const TableOf<CheckpointValue> externalValueTable;
+extern const TableOf<ValueInterval> valueIntervalTable;
+extern const TableOf<Station> stationTable;
+extern const TableOf<RegisteredProtocol> protocolTable;
+extern const TableOf<StoredDocument> formTable;
+extern const TableOf<AnalysisLock> analysisLockTable;
+extern const TableOf<Norm> normTable;
+extern const TableOf<NormCheckpoint> normCheckpointTable;
+extern const TableOf<NormEvidence> normEvidenceTable;
 
 /// All of them, with those that no struct holds.
 const std::vector<const DeclaredTable*>& cohortTables();

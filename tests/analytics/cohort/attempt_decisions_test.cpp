@@ -79,7 +79,7 @@ TEST(AttemptFields, areTheDeclaredColumns) {
   std::map<std::string, FieldValue> fields;
   for (const auto& [name, value] : fieldsOf(database.listAttempts().front()))
     EXPECT_TRUE(fields.emplace(name, value).second) << name;
-  const std::vector<const DeclaredTable*> tables{&attemptTable(), &recordingTable(), &verificationTable()};
+  const std::vector<const DeclaredTable*> tables{&attemptTable, &recordingTable, &verificationTable};
   for (const DeclaredTable* table : tables) {
     for (const DeclaredColumn& column : table->columns) {
       if (column.member.value != nullptr) {
