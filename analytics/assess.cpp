@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <initializer_list>
 #include <map>
@@ -16,7 +17,6 @@
 #include "analytics/checkpoints/checkpoint.h"
 #include "analytics/checkpoints/collector.h"
 #include "analytics/external/metric_input.h"
-#include "analytics/report/report_document.h"
 #include "recorder/attempt.h"
 #include "recorder/base/dates.h"
 #include "recorder/formats/scene_file.h"
@@ -24,93 +24,25 @@
 namespace calot::analytics {
 namespace {
 
-using ValuesOfAttempts = std::map<std::string, std::vector<CheckpointValue>>;
-
-/// One column of the closing table.
-struct SummaryColumn {
-  const CheckpointDefinition* definition = nullptr;
-  std::string subject;
-  std::string title;  ///< "elapsed s", "path L mm", "liver burned %"
-};
-
-std::string columnTitle(const CheckpointEntry& entry, const std::string& subject) {
-  const CheckpointDefinition& d = entry.definition;
-  const std::string_view word = entry.place.summaryTitle;
-  if (subject.empty()) return fmt::format("{} {}", word, d.displayUnit);
-  if (d.aggregation != Aggregation::hand) return fmt::format("{} {} {}", subject, word, d.displayUnit);
-  return fmt::format("{} {} {}", word, subject == handNames[0] ? "L" : "R", d.displayUnit);
-}
-
-/// The checkpoints that ask for columns, for every subject that some attempt has a value of.
-std::vector<SummaryColumn> summaryColumns(const ValuesOfAttempts& values) {
-  std::vector<SummaryColumn> columns;
-  for (const CheckpointEntry& entry : checkpointRegistry()) {
-    if (entry.place.summaryTitle.empty()) continue;
-    std::vector<std::pair<std::string, bool>> subjects;  // in the order of values, and whether one has a value
-    for (const auto& attempt : values) {
-      for (const CheckpointValue& v : attempt.second) {
-        if (v.name != entry.definition.name) continue;
-        const auto same = [&](const auto& subject) { return subject.first == v.subject; };
-        auto known = std::find_if(subjects.begin(), subjects.end(), same);
-        if (known == subjects.end()) known = subjects.insert(known, {v.subject, false});
-        known->second = known->second || v.value.has_value();
-      }
-    }
-    for (const auto& [subject, any] : subjects) {
-      if (any) columns.push_back({&entry.definition, subject, columnTitle(entry, subject)});
-    }
-  }
-  return columns;
-}
-
-std::string figureText(const std::vector<CheckpointValue>& values, const SummaryColumn& column) {
-  for (const CheckpointValue& v : values) {
-    if (v.name != column.definition->name || v.subject != column.subject) continue;
-    if (!v.value)
-      return v.availability == Availability::notApplicable || v.availability == Availability::absentHand ? "n/a" : "-";
-    return significant(*v.value * column.definition->displayFactor);
-  }
-  return "-";
-}
-
-/// A value's interval, and its parts: what step and mesh change, and the spread by constants. Empty where there is
-/// none.
-struct IntervalTexts {
-  std::string interval;
-  std::string parts;   ///< what step, mesh and constants add
-  std::string remark;  ///< why there is no interval
-};
-
-IntervalTexts intervalTexts(const std::vector<ValueInterval>& intervals, const CheckpointValue& of, double factor) {
-  const ValueInterval* found = findInterval(intervals, of);
-  if (found == nullptr) return {};
-  if (!found->lower) return {"none", "", "no interval: " + found->reason};
-  if (*found->lower == *found->upper) return {"exact", "", ""};
-  const auto shown = [&](double si) { return significant(si * factor); };
-  const auto change = [&](double si) { return fmt::format("{}{}", si > 0.0 ? "+" : "", significant(si * factor, 2)); };
-  return {fmt::format("[{}, {}]", shown(*found->lower), shown(*found->upper)),
-          fmt::format("{}, {}, {}", change(found->stepEffect), change(found->meshEffect),
-                      significant(found->constantsSpread * factor, 2)),
-          ""};
-}
-
-Verdict verdictOf(recorder::ReplayVerdict verdict) {
-  switch (verdict) {
-    case recorder::ReplayVerdict::exact:
-      return Verdict::verified;
-    case recorder::ReplayVerdict::diverged:
-      return Verdict::diverged;
-    case recorder::ReplayVerdict::damaged:
-      return Verdict::damaged;
-    case recorder::ReplayVerdict::undecided:
-      return Verdict::notCheckableHere;
-    case recorder::ReplayVerdict::consistent:  // of a part: no assessment asks for one
-      break;
-  }
-  return Verdict::notChecked;
-}
+/// Databases keep verdicts, replays report them. That of a part has no counterpart: no assessment asks for one.
+constexpr std::array<std::pair<recorder::ReplayVerdict, Verdict>, 4> verdicts{{
+    {recorder::ReplayVerdict::exact, Verdict::verified},
+    {recorder::ReplayVerdict::diverged, Verdict::diverged},
+    {recorder::ReplayVerdict::damaged, Verdict::damaged},
+    {recorder::ReplayVerdict::undecided, Verdict::notCheckableHere},
+}};
 
 }  // namespace
+
+Verdict verdictOf(recorder::ReplayVerdict verdict) {
+  const auto at = std::find_if(verdicts.begin(), verdicts.end(), [&](const auto& v) { return v.first == verdict; });
+  return at == verdicts.end() ? Verdict::notChecked : at->second;
+}
+
+recorder::ReplayVerdict verdictOf(Verdict verdict) {
+  const auto at = std::find_if(verdicts.begin(), verdicts.end(), [&](const auto& v) { return v.second == verdict; });
+  return at == verdicts.end() ? recorder::ReplayVerdict::undecided : at->first;
+}
 
 JudgedRecording assessRecording(const std::string& file, const AssessSettings& wanted) {
   recorder::AttemptHeader header;
@@ -222,57 +154,6 @@ bool storeExternal(CohortDatabase& database, const std::string& attempt, MetricO
   }
   external.values = std::move(stored);
   return added;
-}
-
-void printValues(const std::vector<CheckpointValue>& values, const std::vector<ValueInterval>& intervals,
-                 std::ostream& out) {
-  ReportTable table =
-      tableOf("", {"=checkpoint", "value", "interval", "=unit", "step, mesh, constants", "=origin", "="});
-  for (const CheckpointValue& v : values) {
-    const CheckpointDefinition* definition = definitionOf(v);
-    const std::string name = v.subject.empty() ? v.name : fmt::format("{} {}", v.name, v.subject);
-    if (!v.value) {
-      table.rows.push_back({name, "-", "", "", "", "", fmt::format("{}: {}", nameOf(v.availability), v.reason)});
-      continue;
-    }
-    const double factor = definition != nullptr ? definition->displayFactor : 1.0;
-    const auto [interval, parts, remark] = intervalTexts(intervals, v, factor);
-    table.rows.push_back({name, significant(*v.value * factor), interval,
-                          definition != nullptr ? definition->displayUnit : v.unit, parts, nameOf(v.origin),
-                          v.note + (v.note.empty() || remark.empty() ? "" : "; ") + remark});
-  }
-  if (!table.rows.empty()) table.print(out, 120);  // reasons go on below
-}
-
-void printAttempts(const CohortDatabase& database, std::ostream& out) {
-  ValuesOfAttempts values;
-  for (AttemptValue& v : database.allValues()) values[v.attempt].push_back(std::move(v.value));
-  ReportTable table = tableOf("", {"=attempt", "=who", "=scene", "=mode", "=outcome", "=verification", "=recording"});
-  const std::vector<SummaryColumn> figures = summaryColumns(values);
-  for (const SummaryColumn& figure : figures) table.columns.emplace_back(figure.title, Align::right);
-  table.columns.emplace_back("", Align::left);
-  std::size_t synthetic = 0;
-  for (const AttemptRow& a : database.listAttempts()) {
-    std::string who = a.participant;
-    if (who.empty()) who = a.profile.empty() ? wordFor(a.operatorKind) : a.profile;
-    std::vector<std::string> cells{a.uuid.substr(0, 8),
-                                   who,
-                                   fmt::format("{}/{}", a.scene, a.sceneMajor),
-                                   wordFor(a.mode),
-                                   a.complete ? wordFor(a.outcome) : "incomplete",
-                                   nameOf(a.verification.verdict),
-                                   a.fileName};
-    for (const SummaryColumn& figure : figures) cells.push_back(figureText(values[a.uuid], figure));
-    cells.push_back(fmt::format("{}{}", a.synthetic ? "SYNTHETIC" : "", a.excluded ? " excluded" : ""));
-    synthetic += a.synthetic ? 1 : 0;
-    table.rows.push_back(std::move(cells));
-  }
-  if (table.rows.empty()) {
-    out << "no attempts\n";
-    return;
-  }
-  table.print(out);
-  out << fmt::format("{} attempts, {} of them synthetic\n", table.rows.size(), synthetic);
 }
 
 namespace {

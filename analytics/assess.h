@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
-#include <ostream>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -46,6 +45,10 @@ struct AssessSettings {
 /// its observables, where its content chain is intact. CohortDatabase::storeAttempt() stores record and values.
 JudgedRecording assessRecording(const std::string& file, const AssessSettings& settings = {});
 
+/// A replay's verdict as a database keeps it, and back.
+Verdict verdictOf(recorder::ReplayVerdict verdict);
+recorder::ReplayVerdict verdictOf(Verdict verdict);
+
 /// Does the cohort hold this recording's content, verified? Then there is nothing to assess.
 bool isVerified(const CohortDatabase& database, const recorder::RecordingIdentity& recording);
 
@@ -58,15 +61,6 @@ AttemptRecord recordOf(const recorder::AttemptHeader& header, const recorder::Re
 /// @return whether any is new
 bool storeExternal(CohortDatabase& database, const std::string& attempt, MetricOutcomes& external,
                    const std::vector<MetricScript>& metrics);
-
-/// Every value of one attempt, in display units, or the reason why there is none; with intervals, two columns more: the
-/// interval, and what it is made of.
-void printValues(const std::vector<CheckpointValue>& values, const std::vector<ValueInterval>& intervals,
-                 std::ostream& out);
-
-/// Closing table of `calot assess`: every attempt of the database with outcome, verification and the checkpoints that
-/// ask for columns there (CheckpointPlace::summaryTitle), without those that no attempt has; synthetic ones are marked.
-void printAttempts(const CohortDatabase& database, std::ostream& out);
 
 /// Facts about motion files supplied by the caller.
 struct MotionDeclaration {
