@@ -14,6 +14,7 @@
 #include "analytics/cohort/cohort_database.h"
 #include "analytics/report/report_document.h"
 #include "analytics/report/value_tree.h"
+#include "analytics/statistics/descriptive.h"
 #include "analytics/statistics/expected.h"
 #include "analytics/statistics/reliability.h"
 
@@ -26,10 +27,9 @@ struct AttemptOf {
 
 /// One group's ratings of an item, one value per participant: the mean of an attempt's raters, of a participant's
 /// several attempts the mean of these.
-struct ItemSummary {
-  std::uint64_t n = 0, blank = 0;
+struct ItemSummary : Summary {
+  std::uint64_t blank = 0;
   std::map<int, std::uint64_t> counts;  ///< how often each score was given
-  std::optional<double> median, lowerQuartile, upperQuartile, mean;
 };
 
 struct ItemReport {

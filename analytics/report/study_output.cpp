@@ -97,7 +97,7 @@ ValueTree protocolTree(const std::optional<StudyProtocol>& protocol) {
           {"why_exploratory", p.whyExploratory},
           {"level", p.level},
           {"missing", p.missing == MissingRule::worstRank ? "worst-rank" : "complete-cases"},
-          {"populations", p.populations},
+          {"populations", {p.populations[0].definition, p.populations[1].definition}},
           {"versions", versions},
           {"deviations", p.deviations},
           {"masked", p.masked},

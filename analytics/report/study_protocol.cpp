@@ -42,19 +42,6 @@ void listVersions(StudyProtocol& report, const std::vector<RegisteredProtocol>& 
   }
 }
 
-StudyProtocol headOf(const Protocol& protocol) {
-  StudyProtocol report;
-  report.name = protocol.name;
-  report.title = protocol.title;
-  report.question = protocol.question;
-  report.version = protocol.version;
-  report.sha256 = protocol.sha256;
-  report.level = protocol.level;
-  report.missing = protocol.missing;
-  report.populations = {protocol.populations[0].definition, protocol.populations[1].definition};
-  return report;
-}
-
 /// Exclusions by hand for reasons that the protocol does not name; keys chosen or mixed.
 void listDeviations(StudyProtocol& report, const std::vector<const AttemptRow*>& data, const StudyOptions& options) {
   const std::vector<std::string>& allowed = options.protocol->protocol.exclusionReasons;
@@ -133,7 +120,7 @@ std::string whyOutByProtocol(const AttemptRow& attempt, const std::string& group
 
 void describeProtocol(Study& study, const std::vector<const AttemptRow*>& data, const StudyOptions& options) {
   const Protocol& protocol = options.protocol->protocol;
-  StudyProtocol report = headOf(protocol);
+  StudyProtocol report{protocol};
   for (const RegisteredProtocol& r : options.protocol->registered) {
     if (r.sha256 == protocol.sha256) report.registeredUtc = r.registeredUtc;
   }
@@ -152,7 +139,7 @@ void describeProtocol(Study& study, const std::vector<const AttemptRow*>& data, 
 }
 
 void describeProtocolOfTable(Study& study, const Protocol& protocol) {
-  StudyProtocol report = headOf(protocol);
+  StudyProtocol report{protocol};
   report.whyExploratory =
       "a table does not say when its figures came about, so nothing shows that the protocol came first";
   const auto notApplied = [&](bool declared, const char* what) {
@@ -257,8 +244,8 @@ void describeLock(Study& study, const AnalysisLock& lock, const AnalysisLock& no
 
 }  // namespace
 
-Study makeMaskedStudy(const CohortDatabase& database, const StudyOptions& options,
-                      bool swapped, const StudyProgress& progress) {
+Study makeMaskedStudy(const CohortDatabase& database, const StudyOptions& options, bool swapped,
+                      const StudyProgress& progress) {
   const Protocol& protocol = options.protocol->protocol;
   StudyOptions masked = withCohortData(database, maskedOptions(options, swapped));
   std::vector<AttemptRow> attempts = database.listAttempts();
@@ -290,8 +277,7 @@ std::string analysisOptions(const StudyOptions& options) {
                      options.includePhases ? "all" : "durations");
 }
 
-AnalysisLock presentAnalysis(const CohortDatabase& database,
-                             const StudyOptions& options) {
+AnalysisLock presentAnalysis(const CohortDatabase& database, const StudyOptions& options) {
   const Protocol& protocol = options.protocol->protocol;
   return {protocol.sha256,
           fmt::format("{} version {}", protocol.name, protocol.version),
@@ -302,8 +288,8 @@ AnalysisLock presentAnalysis(const CohortDatabase& database,
           ""};
 }
 
-Study makeProtocolStudy(const CohortDatabase& database, const StudyOptions& options,
-                        bool masked, const StudyProgress& progress) {
+Study makeProtocolStudy(const CohortDatabase& database, const StudyOptions& options, bool masked,
+                        const StudyProgress& progress) {
   const std::string& path = database.path();
   const std::string& sha256 = options.protocol->protocol.sha256;
   const std::optional<AnalysisLock> lock = readAnalysisLock(path, sha256);

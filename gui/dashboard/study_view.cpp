@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <exception>
 #include <set>
+#include <span>
 
 #include "analytics/cohort/cohort_database.h"
 #include "analytics/cohort/withdraw.h"
@@ -82,9 +83,8 @@ StudyAnswer studyOf(const std::string& database, const StudyRequest& request,
     const analytics::CohortDatabase cohort(database, Access::read);
     for (const analytics::RegisteredProtocol& p : cohort.protocols()) {
       if (p.sha256 != request.protocol) continue;
-      const auto* bytes = reinterpret_cast<const std::byte*>(p.text.data());
       options.protocol = analytics::ProtocolInUse{
-          analytics::parseProtocol({bytes, p.text.size()}, p.name), cohort.protocols(p.name), {}};
+          analytics::parseProtocol(std::as_bytes(std::span(p.text)), p.name), cohort.protocols(p.name), {}};
     }
     if (options.protocol) return {analytics::makeProtocolStudy(cohort, options, false, progress), {}};
     analytics::Study study = analytics::makeStudy(cohort, options, progress);
