@@ -87,22 +87,6 @@ RegradedAttempt storeRegraded(CohortDatabase& database, const AttemptRow& row, c
   return r;
 }
 
-/// Databases keep verdicts, replays report them.
-recorder::ReplayVerdict verdictOf(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::verified:
-      return recorder::ReplayVerdict::exact;
-    case Verdict::diverged:
-      return recorder::ReplayVerdict::diverged;
-    case Verdict::damaged:
-      return recorder::ReplayVerdict::damaged;
-    case Verdict::notCheckableHere:
-    case Verdict::notChecked:
-      break;
-  }
-  return recorder::ReplayVerdict::undecided;
-}
-
 }  // namespace
 
 void judgeAll(const std::vector<std::string>& files, recorder::WorkerPool& pool, const AssessSettings& settings,

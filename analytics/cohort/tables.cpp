@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <set>
 
-#include "analytics/cohort/connection.h"
 #include "recorder/base/dates.h"
 
 namespace calot::analytics {
@@ -224,7 +223,7 @@ std::int64_t participantId(SQLite::Database& db, const std::string& pseudonym) {
 }
 
 std::int64_t insertParticipant(SQLite::Database& db, const Participant& p) {
-  InsertOf(db, participantTable(), {"created_utc"})(p, {nowUtc()});
+  InsertOf(db, participantTable, {"created_utc"})(p, {nowUtc()});
   return db.getLastInsertRowid();
 }
 

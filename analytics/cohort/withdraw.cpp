@@ -11,7 +11,6 @@
 #include <system_error>
 #include <tuple>
 
-#include "analytics/cohort/connection.h"
 #include "analytics/cohort/tables.h"
 #include "recorder/loop.h"
 

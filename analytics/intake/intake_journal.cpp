@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-#include "analytics/intake/intake_journal.h"
+#include "analytics/intake/intake.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>

@@ -10,6 +10,7 @@
 #include "apps/calot/command.h"
 #include "apps/calot/import_command.h"
 #include "apps/calot/replay_report.h"
+#include "gui/words/attempt_tables.h"
 #include "recorder/recording/probe.h"
 #include "recorder/replay.h"
 
@@ -111,7 +112,7 @@ class AssessOutput {
     if (!stored.keyFault.empty()) fmt::print(stderr, "calot: warning: {}: {}\n", report.path.string(), stored.keyFault);
     if (!everyValue_) return;
     std::fflush(stdout);
-    analytics::printValues(stored.values, stored.intervals, std::cout);
+    gui::printValues(stored.values, stored.intervals, std::cout);
     std::cout << '\n' << std::flush;
   }
 
@@ -122,7 +123,7 @@ class AssessOutput {
     } else {
       std::cout << std::flush;
       std::fflush(stdout);
-      if (database != nullptr) analytics::printAttempts(*database, std::cout);
+      if (database != nullptr) gui::printAttempts(*database, std::cout);
     }
     return worstOf({worstOf(reports_), worstOf(metrics_)});
   }

@@ -9,11 +9,11 @@
 
 #include "analytics/assess.h"
 #include "analytics/checkpoints/collector.h"
-#include "analytics/import_motion.h"
-#include "analytics/intake/motion_manifest.h"
+#include "analytics/intake/manifests.h"
 #include "apps/calot/command.h"
 #include "apps/calot/environment.h"
 #include "apps/calot/replay_report.h"
+#include "gui/words/attempt_tables.h"
 #include "recorder/base/errors.h"
 #include "recorder/sources/tracked_motion.h"
 
@@ -206,7 +206,7 @@ ExitCode importFiles(const ImportOptions& o) {
       std::cout << fmt::format("{}: {}, {:.2f} s, {} rows\n", file, o.cohort.empty() ? "shown" : result.how,
                                result.motion->time.back(), result.motion->time.size());
       if (o.files.size() == 1 || o.cohort.empty()) {
-        analytics::printValues(result.values, {}, std::cout);
+        gui::printValues(result.values, {}, std::cout);
         std::cout << '\n';
       }
     }
@@ -214,7 +214,7 @@ ExitCode importFiles(const ImportOptions& o) {
   if (o.json) {
     printResult("import", {{"files", list}});
   } else if (database) {
-    analytics::printAttempts(*database, std::cout);
+    gui::printAttempts(*database, std::cout);
   }
   return worstOf(codes);
 }

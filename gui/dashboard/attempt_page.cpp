@@ -10,7 +10,7 @@
 #include <QSaveFile>
 
 #include "analytics/checkpoints/checkpoint.h"
-#include "analytics/cohort/check.h"
+#include "analytics/cohort/cohort_database.h"
 #include "analytics/report/grade_sheet.h"
 #include "gui/attempt/figure_text.h"
 #include "gui/attempt/replay_player.h"
@@ -177,8 +177,7 @@ QString writeGradeSheet(const SheetRequest& request, LongWork::Control& control)
   analytics::refuseUnsound(request.database);
   control.progress(0.05, "Reading the cohort");
   const analytics::CohortDatabase cohort(request.database, analytics::CohortDatabase::Access::read);
-  const analytics::Norm norm = analytics::AssessmentDatabase(request.database, analytics::CohortDatabase::Access::read)
-                                   .norm(request.norm, request.normVersion);
+  const analytics::Norm norm = cohort.norm(request.norm, request.normVersion);
   analytics::Grade grade = analytics::gradeAttempt(request.attempt, cohort.listAttempts(), cohort.allValues(), norm,
                                                    false, request.database);
   const auto weak = analytics::weakFigures(grade);

@@ -13,7 +13,6 @@
 #include <string>
 #include <vector>
 
-#include "analytics/cohort/assessment_database.h"
 #include "analytics/cohort/cohort_database.h"
 #include "gui/attempt/long_work.h"
 #include "gui/dashboard/comparison.h"
@@ -106,7 +105,7 @@ class CohortDocument {
   /// Read when they are first asked for. @throws calot::Error
   [[nodiscard]] const std::vector<analytics::Norm>& norms() const;
   /// Protocols, participants and ratings as they are now. @throws calot::Error
-  [[nodiscard]] analytics::AssessmentDatabase assessment() const {
+  [[nodiscard]] analytics::CohortDatabase assessment() const {
     return {path(), analytics::CohortDatabase::Access::read};
   }
   [[nodiscard]] std::vector<analytics::Participant> participants() const { return database_.participants(); }

@@ -8,7 +8,7 @@
 #include <QMenuBar>
 #include <QSpinBox>
 
-#include "analytics/assessment/create_norm.h"
+#include "analytics/assessment/norm.h"
 #include "gui/dashboard/settings.h"
 
 namespace calot::gui {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <QTabWidget>
 
-#include "analytics/assessment/norm_rule.h"
+#include "analytics/assessment/norm.h"
 #include "gui/attempt/figure_standing.h"
 #include "gui/attempt/figure_text.h"
 #include "gui/dashboard/page_parts.h"

@@ -66,7 +66,7 @@ Answers keptDraft(const QString& group) {
 }
 
 /// Stores a rating as `calot rate` does. @throws Error (invalid) for an item without answer, all blank, or a missing
-/// name; (refused) as AssessmentDatabase::storeRating
+/// name; (refused) as CohortDatabase::storeRating
 void storeRating(const analytics::RatingForm& form, const auto& subject, const Answers& answers, bool replace) {
   if (form.ofAttempts && subject.attempt.empty()) throw Error(ErrorKind::invalid, "Choose the attempt that is rated.");
   if (form.ofAttempts && subject.rater.empty()) throw Error(ErrorKind::invalid, "Say who rates, by a pseudonym.");
@@ -79,7 +79,7 @@ void storeRating(const analytics::RatingForm& form, const auto& subject, const A
   rating.rater = subject.rater;
   rating.participant = subject.participant;
   rating.answers = analytics::answersOf(form, given);
-  analytics::AssessmentDatabase(subject.database, analytics::CohortDatabase::Access::write)
+  analytics::CohortDatabase(subject.database, analytics::CohortDatabase::Access::write)
       .storeRating({form.name, form.version, form.sha256, form.text}, rating, replace);
 }
 

@@ -4,13 +4,14 @@
 #include <algorithm>
 #include <exception>
 #include <set>
+#include <span>
 
-#include "analytics/cohort/check.h"
+#include "analytics/cohort/cohort_database.h"
 #include "analytics/cohort/withdraw.h"
 #include "analytics/design/design_report.h"
-#include "analytics/report/masked_study.h"
 #include "analytics/report/report_document.h"
 #include "analytics/report/study_output.h"
+#include "analytics/report/study_protocol.h"
 #include "analytics/report/study_rows.h"
 #include "gui/words/problem_words.h"
 #include "recorder/base/errors.h"
@@ -79,17 +80,15 @@ StudyAnswer studyOf(const std::string& database, const StudyRequest& request,
     analytics::StudyOptions options = request.options;
     const bool chosen = std::count(options.groups.begin(), options.groups.end(), "") == 0;
     if (!request.protocol.empty() || !chosen) options.groups.clear();
-    const analytics::AssessmentDatabase assessment(database, Access::read);
-    for (const analytics::RegisteredProtocol& p : assessment.protocols()) {
-      if (p.sha256 != request.protocol) continue;
-      const auto* bytes = reinterpret_cast<const std::byte*>(p.text.data());
-      options.protocol = analytics::ProtocolInUse{
-          analytics::parseProtocol({bytes, p.text.size()}, p.name), assessment.protocols(p.name), {}};
-    }
     const analytics::CohortDatabase cohort(database, Access::read);
-    if (options.protocol) return {analytics::makeProtocolStudy(cohort, assessment, options, false, progress), {}};
+    for (const analytics::RegisteredProtocol& p : cohort.protocols()) {
+      if (p.sha256 != request.protocol) continue;
+      options.protocol = analytics::ProtocolInUse{
+          analytics::parseProtocol(std::as_bytes(std::span(p.text)), p.name), cohort.protocols(p.name), {}};
+    }
+    if (options.protocol) return {analytics::makeProtocolStudy(cohort, options, false, progress), {}};
     analytics::Study study = analytics::makeStudy(cohort, options, progress);
-    analytics::addRatings(study, assessment);
+    analytics::addRatings(study, cohort);
     return {std::move(study), {}};
   } catch (const std::exception& error) {
     return {std::nullopt, problemText(error)};

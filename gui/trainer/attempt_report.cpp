@@ -116,7 +116,7 @@ std::optional<AttemptFacts> previousInCohort(const AttemptFacts& now, const std:
 
 std::vector<analytics::Norm> normsOf(const std::filesystem::path& cohort) {
   if (!isThere(cohort)) return {};
-  return analytics::AssessmentDatabase(cohort.string(), Access::read).norms();
+  return analytics::CohortDatabase(cohort.string(), Access::read).norms();
 }
 
 AttemptReport reportOf(AttemptFacts now, const std::optional<AttemptFacts>& previous,

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "analytics/assessment/grade.h"
-#include "analytics/cohort/assessment_database.h"
 #include "analytics/cohort/cohort_database.h"
 
 namespace calot::gui {

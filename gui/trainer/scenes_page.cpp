@@ -26,7 +26,7 @@ std::vector<PastAttempt> historyIn(const std::filesystem::path& cohort, const st
   std::error_code ignored;
   if (participant.empty() || cohort.empty() || !std::filesystem::exists(cohort, ignored)) return {};
   const analytics::CohortDatabase database(cohort.string(), Access::read);
-  const std::vector<analytics::Norm> norms = analytics::AssessmentDatabase(cohort.string(), Access::read).norms();
+  const std::vector<analytics::Norm> norms = database.norms();
   std::vector<PastAttempt> history;
   for (const analytics::AttemptRow& row : database.listAttempts()) {
     if (row.participant != participant || row.synthetic) continue;

@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "analytics/cohort/assessment_database.h"
 #include "analytics/cohort/cohort_database.h"
 #include "gui/trainer/course.h"
 

@@ -53,7 +53,7 @@ class Grades : public testing::Test {
   }
 
   void add(unsigned n, const std::string& who, const std::string& group, const std::vector<CheckpointValue>& values) {
-    if (!cohort_.participant(who)) cohort_.addParticipant({who, group, "", "", {}, {}});
+    if (!findParticipant(cohort_, who)) cohort_.addParticipant({who, group, "", "", {}, {}});
     cohort_.storeAttempt(humanAttempt(n, who), values);
   }
 
@@ -321,7 +321,7 @@ TEST_F(Grades, historyIsTheParticipantsOwnOfTheSameKey) {
 }
 
 TEST_F(Grades, normsAreKeptInVersionsWithTheirMembers) {
-  AssessmentDatabase database(path_, Access::write);
+  CohortDatabase database(path_, Access::write);
   EXPECT_EQ(database.storeNorm(made()), 1U);
   EXPECT_EQ(database.storeNorm(made()), 2U);
   const Norm stored = database.norm("clinic", 1);
@@ -339,7 +339,7 @@ TEST_F(Grades, normsAreKeptInVersionsWithTheirMembers) {
 }
 
 TEST_F(Grades, aSheetIsFormativeUntilThereIsEvidence) {
-  AssessmentDatabase database(path_, Access::write);
+  CohortDatabase database(path_, Access::write);
   database.storeNorm(made());
   add(20, "T<1>", "", figures(100.0, 2.0));
   Grade grade = graded(20, database.norm("clinic"));

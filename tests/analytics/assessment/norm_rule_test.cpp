@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Fixed pass marks, the short rule that counts where none is named, and a norm that its own members fail.
-#include "analytics/assessment/norm_rule.h"
+#include "analytics/assessment/norm.h"
 
 #include <gtest/gtest.h>
 
 #include <sstream>
 
 #include "analytics/assessment/grade.h"
-#include "analytics/assessment/norm.h"
 #include "analytics/report/grade_sheet.h"
 #include "tests/analytics/cohort/support/cohort_support.h"
 #include "tests/analytics/support/refusal.h"
@@ -35,7 +34,7 @@ class NormRule : public testing::Test {
 
   void add(unsigned n, const std::string& who, const std::string& group, double time, double straight, double view,
            double errors) {
-    if (!cohort_.participant(who)) cohort_.addParticipant({who, group, "", "", {}, {}});
+    if (!findParticipant(cohort_, who)) cohort_.addParticipant({who, group, "", "", {}, {}});
     cohort_.storeAttempt(humanAttempt(n, who),
                          {makeValue(*findCheckpoint("elapsed-time"), "", Origin::resimulated, time),
                           makeValue(*findCheckpoint("movement-straightness"), "left", Origin::samples, straight),
@@ -91,7 +90,7 @@ TEST_F(NormRule, anInstructorFixesWhatIsCritical) {
   EXPECT_EQ(competent.passed, 6U);
   EXPECT_EQ(others.passed, 0U);
   // Stored and read as any other mark.
-  AssessmentDatabase database(path_, CohortDatabase::Access::write);
+  CohortDatabase database(path_, CohortDatabase::Access::write);
   database.storeNorm(norm);
   const Norm stored = database.norm("clinic");
   EXPECT_EQ(markOf(stored, "clip-errors").cut, 0.0);

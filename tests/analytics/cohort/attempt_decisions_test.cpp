@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "analytics/cohort/cohort_database.h"
-#include "analytics/cohort/declared_tables.h"
+#include "analytics/cohort/tables.h"
 #include "recorder/base/errors.h"
 #include "tests/analytics/cohort/support/cohort_support.h"
 #include "tests/analytics/support/refusal.h"
@@ -28,7 +28,7 @@ TEST(AttemptDecisions, exclusionsAreKeptWithReasonAndAuthorAndAudited) {
   const Folder folder;
   const std::string path = folder.file("c.db");
   CohortDatabase database(path, Access::create);
-  database.upsertAttempt(attemptOf(1, "skilled"));
+  database.storeAttempt(attemptOf(1, "skilled"), {});
   database.excludeAttempts({uuidOf(1)}, "fire alarm", "instructor 2");
   EXPECT_TRUE(database.attempt(uuidOf(1))->excluded);
   EXPECT_EQ(database.attempt(uuidOf(1))->exclusionReason, "fire alarm (instructor 2)");
@@ -79,7 +79,7 @@ TEST(AttemptFields, areTheDeclaredColumns) {
   std::map<std::string, FieldValue> fields;
   for (const auto& [name, value] : fieldsOf(database.listAttempts().front()))
     EXPECT_TRUE(fields.emplace(name, value).second) << name;
-  const std::vector<const DeclaredTable*> tables{&attemptTable(), &recordingTable(), &verificationTable()};
+  const std::vector<const DeclaredTable*> tables{&attemptTable, &recordingTable, &verificationTable};
   for (const DeclaredTable* table : tables) {
     for (const DeclaredColumn& column : table->columns) {
       if (column.member.value != nullptr) {

@@ -11,7 +11,7 @@
 #include <random>
 #include <set>
 
-#include "analytics/cohort/check.h"
+#include "analytics/cohort/cohort_database.h"
 #include "analytics/cohort/embedded.h"
 #include "analytics/cohort/merge.h"
 #include "analytics/cohort/registers.h"
@@ -78,7 +78,7 @@ TEST(Merge, isTheUnionWhicheverWayRoundAndDoneTwiceIsDoneOnce) {
         if (n % 5 == 0) database.excludeAttempts({attempt.uuid}, "alarm", "me");
         if (random() % 3 == 0) database.tagAttempts({attempt.uuid}, random() % 2 == 0 ? "teaching" : "odd", "me");
       }
-      if (database.participant("P1")) {
+      if (findParticipant(database, "P1")) {
         ParticipantChange change;
         if (random() % 2 == 0) change.group = "expert";
         if (random() % 2 == 0) change.experience["level"] = "attending";
@@ -149,10 +149,10 @@ TEST(Withdrawal, reachesTablesThatItDoesNotKnow) {
   EXPECT_EQ(bytesOf(path).find(uuidOf(1)), std::string::npos);
   EXPECT_TRUE(wasWithdrawn(path, uuidOf(1)));
   CohortDatabase database(path, Access::write);
-  expectRefusal(ErrorKind::refused, "withdrawn", [&] { database.upsertAttempt(humanAttempt(1, "Gone-1")); });
+  expectRefusal(ErrorKind::refused, "withdrawn", [&] { database.storeAttempt(humanAttempt(1, "Gone-1"), {}); });
   AttemptRecord branch = attemptOf(3, "skilled");
   branch.parent = uuidOf(1);
-  expectRefusal(ErrorKind::refused, "branches from was withdrawn", [&] { database.upsertAttempt(branch); });
+  expectRefusal(ErrorKind::refused, "branches from was withdrawn", [&] { database.storeAttempt(branch, {}); });
 }
 
 TEST(Withdrawal, aPseudonymWithinALongerOneIsAnother) {
@@ -207,11 +207,11 @@ TEST(Signatures, areKeptAsSeenAtImport) {
   AttemptRecord bare = attemptOf(1, "skilled"), one = bare, two = bare;
   one.signature.emplace().publicKey[0] = std::byte{1};
   two.signature.emplace().publicKey[0] = std::byte{2};
-  EXPECT_EQ(database.upsertAttempt(bare), Imported::added);
-  EXPECT_EQ(database.upsertAttempt(one), Imported::extended) << "signed after it came in";
-  EXPECT_EQ(database.upsertAttempt(bare), Imported::unchanged) << "a copy without it takes nothing away";
+  EXPECT_EQ(database.storeAttempt(bare, {}), Imported::added);
+  EXPECT_EQ(database.storeAttempt(one, {}), Imported::extended) << "signed after it came in";
+  EXPECT_EQ(database.storeAttempt(bare, {}), Imported::unchanged) << "a copy without it takes nothing away";
   EXPECT_EQ(database.attempt(uuidOf(1))->signature, one.signature);
-  expectRefusal(ErrorKind::refused, "another signer", [&] { database.upsertAttempt(two); });
+  expectRefusal(ErrorKind::refused, "another signer", [&] { database.storeAttempt(two, {}); });
   EXPECT_TRUE(checkCohort(folder.file("c.db")).faults.empty());
 }
 

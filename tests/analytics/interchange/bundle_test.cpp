@@ -16,7 +16,7 @@
 #include <set>
 #include <span>
 
-#include "analytics/cohort/assessment_database.h"
+#include "analytics/cohort/cohort_database.h"
 #include "analytics/cohort/registers.h"
 #include "analytics/cohort/withdraw.h"
 #include "analytics/interchange/bundle_names.h"
@@ -72,7 +72,7 @@ class Bundles : public testing::Test {
     database_.storeAttempt(broken, {});
     database_.storeAttempt(attemptOf(85, "skilled"), valuesOf(1, 1));
     withdraw(path_, planWithdrawal(path_, "Leaver-2", WithdrawalScope::all));
-    AssessmentDatabase assessment(path_, Access::write);
+    CohortDatabase assessment(path_, Access::write);
     const std::string form = "{}";
     const StoredDocument document{"goals", 1, recorder::sha256Hex(std::as_bytes(std::span(form))), form};
     assessment.storeRating(document, {"goals", 1, uuidOf(1), "Rater-Kay", "", {{"autonomy", 4}}, ""}, false);

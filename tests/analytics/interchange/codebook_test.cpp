@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The codebook against what it explains: the registry, the database's schema, the files that are written.
-#include "analytics/interchange/cohort_tables.h"
+#include "analytics/interchange/export_tables.h"
 
 #include <gtest/gtest.h>
 #include <SQLiteCpp/SQLiteCpp.h>
@@ -12,7 +12,6 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "analytics/cohort/declared_tables.h"
 #include "analytics/cohort/tables.h"
 #include "recorder/base/csv.h"
 #include "tests/analytics/cohort/support/cohort_support.h"

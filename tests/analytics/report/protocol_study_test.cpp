@@ -75,13 +75,13 @@ class ProtocolStudy : public testing::Test {
   Study study(const json& text) {
     StudyOptions options;
     options.protocol = ProtocolInUse{protocolOf(text), {}, {}};
-    options.protocol->registered = AssessmentDatabase(path_, Access::read).protocols("times");
+    options.protocol->registered = CohortDatabase(path_, Access::read).protocols("times");
     return makeStudy(database_, options);
   }
 
   RegisteredProtocol put(const json& text) {
     bool added = false;
-    return AssessmentDatabase(path_, Access::write).registerProtocol(stored(protocolOf(text)), "me", added);
+    return CohortDatabase(path_, Access::write).registerProtocol(stored(protocolOf(text)), "me", added);
   }
 
   static const StudyRow& row(const Study& study, const std::string& name, const std::string& subject) {
@@ -151,7 +151,7 @@ TEST_F(ProtocolStudy, versionsAreKeptAndChangesListed) {
   EXPECT_NE(text.str().find("changed from the version before: /level"), std::string::npos);
   expectRefusal(ErrorKind::invalid, "name who registers it", [&] {
     bool added = false;
-    AssessmentDatabase(path_, Access::write).registerProtocol(stored(protocolOf(document())), "", added);
+    CohortDatabase(path_, Access::write).registerProtocol(stored(protocolOf(document())), "", added);
   });
   SQLite::Database raw(path_, SQLite::OPEN_READWRITE);
   EXPECT_THROW(raw.exec("UPDATE protocol SET registered_utc = '2000-01-01T00:00:00Z'"), SQLite::Exception);

@@ -87,7 +87,7 @@ TEST(Ratings, areStoredOnceAndReplacedWhenAsked) {
   const std::string path = folder.file("c.db");
   CohortDatabase cohort(path, Access::create);
   cohort.storeAttempt(humanAttempt(1, "P1"), {});
-  AssessmentDatabase database(path, Access::write);
+  CohortDatabase database(path, Access::write);
   RatingForm form = shipped("competence");
   Rating rating{"", 1, uuidOf(1), "R1", "", {{"competent", 0}}, ""};
   database.storeRating(stored(form), rating, false);

@@ -255,7 +255,7 @@ TEST_F(Dashboard, ReloadShowsWhatCameInSince) {
   DashboardWindow window(apps::assessProgram());
   window.show();
   ASSERT_TRUE(window.openDatabase(cohort()));
-  CohortDatabase(file("cohort.db").toStdString(), CohortDatabase::Access::write).upsertAttempt(attemptNumber(50));
+  CohortDatabase(file("cohort.db").toStdString(), CohortDatabase::Access::write).storeAttempt(attemptNumber(50), {});
   window.reload();
   EXPECT_TRUE(QTest::qWaitFor([&] { return child<QTableView>(window, "attempts")->model()->rowCount() == 10; }, 60000));
 }

@@ -25,7 +25,7 @@
 #include <sstream>
 
 #include "analytics/checkpoints/checkpoint.h"
-#include "analytics/cohort/assessment_database.h"
+#include "analytics/cohort/cohort_database.h"
 #include "apps/calot-dashboard/assess_program.h"
 #include "gui/attempt/long_work.h"
 #include "gui/attempt/theme.h"
@@ -330,7 +330,7 @@ TEST_F(Instructor, RatesBlindedBesideTheReplayKeepsADraftAndGoesOnByKey) {
   ASSERT_TRUE(child<QPushButton>(page, "store-next")->isEnabled());
   child<QRadioButton>(page, "efficiency=4")->setFocus();
   QTest::keyClick(child<QRadioButton>(page, "efficiency=4"), Qt::Key_Return, Qt::ControlModifier);
-  const auto ratings = analytics::AssessmentDatabase(file("c.db").toStdString(), Access::read).ratings();
+  const auto ratings = analytics::CohortDatabase(file("c.db").toStdString(), Access::read).ratings();
   ASSERT_EQ(ratings.size(), 1U);
   EXPECT_EQ(ratings[0].attempt, first);
   EXPECT_NE(window->findChild<AttemptsPage*>()->selected()->uuid, first) << "the next one";

@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "analytics/cohort/assessment_database.h"
+#include "analytics/cohort/cohort_database.h"
 #include "tests/gui/dashboard/support/cohort.h"
 #include "tests/gui/dashboard/support/recorded.h"
 
@@ -60,7 +60,7 @@ class NormDialogs : public ::testing::Test {
     return part<QLabel>("norm-result")->text();
   }
   [[nodiscard]] std::vector<analytics::Norm> norms() const {
-    return analytics::AssessmentDatabase(path_, Access::read).norms();
+    return analytics::CohortDatabase(path_, Access::read).norms();
   }
 
   QTemporaryDir folder_;

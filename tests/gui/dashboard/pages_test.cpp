@@ -27,7 +27,7 @@
 #include <QUndoStack>
 #include <QUrl>
 
-#include "analytics/cohort/assessment_database.h"
+#include "analytics/cohort/cohort_database.h"
 #include "apps/calot-dashboard/assess_program.h"
 #include "gui/dashboard/attempt_page.h"
 #include "gui/dashboard/attempts_page.h"
@@ -252,9 +252,7 @@ TEST_F(Pages, ARaterFillsInAFormAndChangesIt) {
   child<QRadioButton>(window, "autonomy=-")->click();
   ASSERT_TRUE(store.isEnabled());
   store.click();
-  const auto ratings = [&] {
-    return analytics::AssessmentDatabase(file("c.db").toStdString(), Access::read).ratings();
-  };
+  const auto ratings = [&] { return analytics::CohortDatabase(file("c.db").toStdString(), Access::read).ratings(); };
   ASSERT_EQ(ratings().size(), 1U) << child<QLabel>(window, "problem")->text().toStdString();
   EXPECT_EQ(ratings()[0].form, "goals");
   EXPECT_EQ(ratings()[0].rater, "R1");

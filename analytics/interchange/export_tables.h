@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Export of a cohort's tables, with the meaning of each variable for readers without this program.
+// Tables for other programs: those of a cohort, with the meaning of each variable for readers without this program; and
+// the motion that checkpoints are computed of.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "analytics/checkpoints/definition.h"
-#include "analytics/cohort/declared_tables.h"
+#include "analytics/checkpoints/motion.h"
 #include "analytics/cohort/tables.h"
+#include "sim/scene/samples.h"
 
 namespace calot::analytics {
 
@@ -52,5 +56,20 @@ std::vector<CodebookEntry> columnEntries(const TableFacts& table);
 
 std::string codebookCsv(const std::vector<CodebookEntry>& entries);
 std::string codebookJson(const std::vector<CodebookEntry>& entries);
+
+/// Writes a new folder of
+///
+/// - `motion_left.csv`, `motion_right.csv`: a row each point on the grid of motionRate: time (s), number of the segment
+///   (from 1), filtered position of the tip in the world frame (m), orientation (w, x, y, z; no columns where it is not
+///   known), speed (m/s), the position before the filter (m), number of the movement (from 1; empty: in none);
+/// - `spans.csv`: by hand what is `mounted`, `lost` (mounted without measurement), a `segment`, a `movement`, from
+/// begin up
+///   to end (s), and of segments whether they follow a gap that was too long to be bridged;
+/// - `motion.json`: filter, and by hand coverage, rate, interval and threshold of movements.
+///
+/// Numbers are the shortest that give the same bits. @return the files. @throws Error (invalid) where the folder is
+/// there; (failure) where it cannot be written
+std::vector<std::filesystem::path> writeMotionTables(const std::array<Motion, handCount>& motion,
+                                                     const std::filesystem::path& folder, bool force = false);
 
 }  // namespace calot::analytics
