@@ -19,7 +19,6 @@
 #include "analytics/checkpoints/replay_words.h"
 #include "analytics/external/metric_input.h"
 #include "analytics/report/report_document.h"
-#include "recorder/attempt.h"
 #include "recorder/base/dates.h"
 #include "recorder/formats/scene_file.h"
 #include "recorder/loop.h"

@@ -7,7 +7,7 @@
 #include <span>
 #include <string>
 
-#include "recorder/base/file_bytes.h"
+#include "recorder/base/files.h"
 #include "sim/math/record.h"
 
 namespace calot::analytics {

@@ -12,7 +12,7 @@
 
 #include "analytics/report/study_output.h"
 #include "analytics/statistics/rank_tests.h"
-#include "recorder/attempt.h"
+#include "recorder/loop.h"
 #include "sim/scene/version.h"
 
 namespace calot::analytics {
