@@ -3,7 +3,6 @@
 
 #include "apps/calot/command.h"
 #include "apps/calot/help.h"
-#include "apps/common/help_json.h"
 #include "recorder/attempt.h"
 #include "recorder/compliance_cache.h"
 #include "recorder/prepared_scene.h"
@@ -22,14 +21,12 @@ int main(int argc, char** argv) {
   CALOT_COMMAND_LIST(CALOT_ADD_COMMAND)
 #undef CALOT_ADD_COMMAND
   apps::formatHelp(app);
-  apps::addHelpJson(app);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& e) {
-    if (e.get_exit_code() == 0) return app.exit(e);  // --help, --version
-    return apps::endWith(apps::ExitCode::usage, "calot", apps::wrongWord(app, words, e));
-  }
-  recorder::useComplianceCache(recorder::userCacheFolder());
-  recorder::useEngines(apps::enginePlaces());
-  return apps::runProgram("calot", run);
+  return apps::runProgram(
+      app, argc, argv,
+      [&run] {
+        recorder::useComplianceCache(recorder::userCacheFolder());
+        recorder::useEngines(apps::enginePlaces());
+        return run();
+      },
+      [&](const CLI::ParseError& e) { return apps::wrongWord(app, words, e); });
 }
