@@ -111,11 +111,12 @@ void tag(const AttemptOptions& o) {
 
 void addAttempt(CLI::App& app, Run& run) {
   CLI::App& attempt =
-      *app.add_subcommand("attempt", "List and tag attempts, keep them out of studies, or take them in again");
-  attempt.require_subcommand(1);
+      addGroup(app, {"attempt", "List and tag attempts, keep them out of studies, or take them in again",
+                     "calot attempt exclude 3f2a --cohort c.db --reason \"camera failed\" --by \"A. Instructor\""});
 
-  const auto [list, l] =
-      addCommand(attempt, run, "list", "List the attempts of a cohort, by their start", listAttempts);
+  const auto [list, l] = addCommand(
+      attempt, run, {"list", "List the attempts of a cohort, by their start", "calot attempt list --cohort c.db"},
+      listAttempts);
   addCohortOption(*list, l->cohort)->required();
   list->add_option("--participant", l->participant, "Only this participant's");
   list->add_option("--group", l->group, "Only this group's");
@@ -126,10 +127,22 @@ void addAttempt(CLI::App& app, Run& run) {
 
   const auto o = std::make_shared<AttemptOptions>();
   CLI::App* exclude =
-      addCommand(attempt, run, "exclude", "Keep an attempt out of studies and norms", decide<true>, o).first;
-  CLI::App* include = addCommand(attempt, run, "include", "Take an exclusion back", decide<false>, o).first;
-  CLI::App* tagged =
-      addCommand(attempt, run, "tag", "Put a word on an attempt to find it by, or take it off", tag, o).first;
+      addCommand(attempt, run,
+                 {"exclude", "Keep an attempt out of studies and norms",
+                  "calot attempt exclude 3f2a --cohort c.db --reason \"camera failed\" --by \"A. Instructor\""},
+                 decide<true>, o)
+          .first;
+  CLI::App* include =
+      addCommand(attempt, run,
+                 {"include", "Take an exclusion back",
+                  "calot attempt include 3f2a --cohort c.db --reason \"film found\" --by \"A. Instructor\""},
+                 decide<false>, o)
+          .first;
+  CLI::App* tagged = addCommand(attempt, run,
+                                {"tag", "Put a word on an attempt to find it by, or take it off",
+                                 "calot attempt tag 3f2a add teaching --cohort c.db --by \"A. Instructor\""},
+                                tag, o)
+                         .first;
   for (CLI::App* command : {exclude, include, tagged}) {
     command->add_option("attempt", o->attempt, "Its uuid, or the beginning of it")->required();
     if (command == tagged) {

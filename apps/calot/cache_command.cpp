@@ -62,7 +62,9 @@ void cache(const CacheOptions& o) {
 
 void addCache(CLI::App& app, Run& run) {
   const auto [command, o] = addCommand(
-      app, run, "cache", "Show or clean what is kept in the cache folder so that scenes start sooner", cache);
+      app, run,
+      {"cache", "Show or clean what is kept in the cache folder so that scenes start sooner", "calot cache --clean"},
+      cache);
   CLI::Option* const clean =
       command->add_flag("--clean", o->clean, "Remove what this build cannot use: damaged, foreign, of other versions");
   command->add_flag("--all", o->all, "With --clean: everything")->needs(clean);

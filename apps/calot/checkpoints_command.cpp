@@ -72,7 +72,8 @@ void listCheckpoints(const JsonOption& o) {
 
 void addCheckpoints(CLI::App& app, Run& run) {
   const auto [command, o] =
-      addCommand(app, run, "checkpoints", "List the checkpoints and their definitions", listCheckpoints);
+      addCommand(app, run, {"checkpoints", "List the checkpoints and their definitions", "calot checkpoints --json"},
+                 listCheckpoints);
   command->add_flag("--json", o->json, "Print JSON");
 }
 

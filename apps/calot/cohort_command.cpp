@@ -201,11 +201,12 @@ void nameCohort(const NameOptions& o) {
 }  // namespace
 
 void addCohort(CLI::App& app, Run& run) {
-  CLI::App& cohort = *app.add_subcommand("cohort", "Merge, check, name and hand out what is in a cohort database");
-  cohort.require_subcommand(1);
+  CLI::App& cohort = addGroup(
+      app, {"cohort", "Merge, check, name and hand out what is in a cohort database", "calot cohort list c.db"});
 
-  const auto [merged, m] =
-      addCommand(cohort, run, "merge", "Take everything of other cohort databases into one", merge);
+  const auto [merged, m] = addCommand(
+      cohort, run,
+      {"merge", "Take everything of other cohort databases into one", "calot cohort merge all.db site2.db"}, merge);
   merged->add_option("into", m->into, "Database to add to")->required();
   merged->add_option("from", m->from, "Databases to take from; they stay as they are")->required();
   merged->add_flag("--newer", m->newer,
@@ -213,45 +214,55 @@ void addCohort(CLI::App& app, Run& run) {
                    "newer ones");
   merged->add_flag("--json", m->json, "Print JSON");
 
-  const auto addOne = [&](const char* name, const char* help, void (*work)(const CohortOptions&), bool asJson) {
-    const auto [command, o] = addCommand(cohort, run, name, help, work);
+  const auto addOne = [&](const CommandText& text, void (*work)(const CohortOptions&), bool asJson) {
+    const auto [command, o] = addCommand(cohort, run, text, work);
     addCohortOption(*command, o->cohort)->required();
     if (asJson) command->add_flag("--json", o->json, "Print JSON");
   };
-  addOne("check", "Look at a whole cohort database for damage", checkDatabase, true);
-  addOne("upgrade", "Bring a database of an older Calot to the schema of this one; a copy is kept beside it", upgrade,
-         false);
-  addOne("scrub", "Overwrite what was deleted, empty the log, remove backups of migrations", scrub, false);
-  addOne("list", "Sites, arms, stations and cohorts of a database", listRegisters, true);
+  addOne({"check", "Look at a whole cohort database for damage", "calot cohort check c.db"}, checkDatabase, true);
+  addOne({"upgrade", "Bring a database of an older Calot to the schema of this one; a copy is kept beside it",
+          "calot cohort upgrade c.db"},
+         upgrade, false);
+  addOne(
+      {"scrub", "Overwrite what was deleted, empty the log, remove backups of migrations", "calot cohort scrub c.db"},
+      scrub, false);
+  addOne({"list", "Sites, arms, stations and cohorts of a database", "calot cohort list c.db"}, listRegisters, true);
 
-  const auto addName = [&](const char* kind, const char* help, void (*work)(const NameOptions&)) {
-    const auto [command, o] = addCommand(cohort, run, kind, help, work);
+  const auto addName = [&](const CommandText& text, void (*work)(const NameOptions&)) {
+    const auto [command, o] = addCommand(cohort, run, text, work);
     o->command = command;
     command->add_option("name", o->name, "Its name")->required();
     command->add_option("--cohort", o->cohort, "Cohort database; made where there is none")->required();
     command->add_option("--note", o->note, "A word on it; never about a person");
     return std::pair{command, o};
   };
-  addName("site", "Name a site", nameSite);
-  addName("arm", "Name a study arm", nameArm);
-  const auto [station, s] = addName("station", "Name a station, and the key that it signs with", nameStation);
+  addName({"site", "Name a site", "calot cohort site north --cohort c.db"}, nameSite);
+  addName({"arm", "Name a study arm", "calot cohort arm simulator-first --cohort c.db"}, nameArm);
+  const auto [station, s] = addName({"station", "Name a station, and the key that it signs with",
+                                     "calot cohort station trainer-1 --cohort c.db --site north"},
+                                    nameStation);
   station->add_option("--site", s->site, "Site at which it stands");
   station->add_option("--public-key", s->key, "64 hexadecimal digits, as `calot station show` prints them");
-  const auto [name, n] = addName("name", "Name a cohort of participants", nameCohort);
+  const auto [name, n] = addName(
+      {"name", "Name a cohort of participants", "calot cohort name second-years --cohort c.db --add P1 --add P2"},
+      nameCohort);
   name->add_option("--add", n->add, "Participant who belongs to it; may be repeated")->allow_extra_args(false);
   name->add_option("--remove", n->remove, "Participant who does not any more")->allow_extra_args(false);
 
-  const auto addExport = [&](const char* kind, const char* help, void (*work)(const CohortExport&)) {
-    const auto [command, o] = addCommand(cohort, run, kind, help, work);
+  const auto addExport = [&](const CommandText& text, void (*work)(const CohortExport&)) {
+    const auto [command, o] = addCommand(cohort, run, text, work);
     addCohortOption(*command, o->cohort)->required();
     command->add_option("-o,--output", o->folder, "Folder to make")->required();
     command->add_flag("--force", o->force, "Replace a folder of this name that holds no other files");
     command->add_flag("--json", o->json, "Print JSON");
     return std::pair{command, o};
   };
-  addExport("export", "Write every table as CSV and JSON, with a codebook; names and dates as they are", exportTables);
-  const auto [bundle, b] =
-      addExport("bundle", "Write what was measured for others, de-identified, with a manifest", handOut);
+  addExport({"export", "Write every table as CSV and JSON, with a codebook; names and dates as they are",
+             "calot cohort export c.db -o tables"},
+            exportTables);
+  const auto [bundle, b] = addExport({"bundle", "Write what was measured for others, de-identified, with a manifest",
+                                      "calot cohort bundle c.db -o bundle"},
+                                     handOut);
   bundle->add_option("--scope", b->bundle.scope, "Purpose to which participants have consented; others stay out")
       ->capture_default_str();
   bundle->add_flag("--include-synthetic", b->bundle.includeSynthetic, "Take in what performers made");

@@ -26,6 +26,16 @@ void lookForCohort(const std::vector<std::string>& words) {
   });
 }
 
+CLI::App* addBareCommand(CLI::App& parent, const CommandText& text) {
+  const std::string examples =
+      text.another.empty() ? ":\n  " + text.example : "s:\n  " + text.example + "\n  " + text.another;
+  return parent.add_subcommand(text.name, text.help)->footer("Example" + examples);
+}
+
+CLI::App& addGroup(CLI::App& parent, const CommandText& text) {
+  return *addBareCommand(parent, text)->require_subcommand(1);
+}
+
 CLI::Option* addCohortOption(CLI::App& command, std::string& database, const std::string& help) {
   return command.add_option(hasCohortOption ? "--cohort" : "cohort,--cohort", database, help);
 }

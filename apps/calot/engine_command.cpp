@@ -151,20 +151,24 @@ void transcribe(const TranscriptOptions& o) {
 }  // namespace
 
 void addEngine(CLI::App& app, Run& run) {
-  CLI::App* command = app.add_subcommand("engine", "Kept engines: programs that decide recordings of other versions.");
-  command->require_subcommand(1);
+  CLI::App& command = addGroup(
+      app, {"engine", "Kept engines: programs that decide recordings of other versions.", "calot engine list"});
 
-  const auto [listing, l] = addCommand(*command, run, "list", "Shows which engines are there.", listEngines);
+  const auto [listing, l] =
+      addCommand(command, run, {"list", "Shows which engines are there.", "calot engine list --json"}, listEngines);
   listing->add_flag("--json", l->json, "print them as JSON");
 
-  const auto [checking, versions] =
-      addCommand(*command, run, "check",
-                 "Starts engines, compares their answers with their transcripts, and has them replay their goldens.",
-                 checkEngines);
+  const auto [checking, versions] = addCommand(
+      command, run,
+      {"check", "Starts engines, compares their answers with their transcripts, and has them replay their goldens.",
+       "calot engine check 12"},
+      checkEngines);
   checking->add_option("versions", *versions, "simulation versions; none: every engine that is there");
 
-  const auto [building, b] =
-      addCommand(*command, run, "build", "Builds the engine of a version from a clone of the source.", build);
+  const auto [building, b] = addCommand(command, run,
+                                        {"build", "Builds the engine of a version from a clone of the source.",
+                                         "calot engine build 12 -o calot-engine-12"},
+                                        build);
   b->source = recorder::ProgramFiles::ofThisProgram().clone().string();
   building->add_option("version", b->version, "simulation version")->required();
   building->add_option("-o,--output", b->output, "the engine's file")->required();
@@ -174,7 +178,10 @@ void addEngine(CLI::App& app, Run& run) {
   building->add_flag("--force", b->force, "overwrite the file");
 
   const auto [writing, t] =
-      addCommand(*command, run, "transcript", "Writes what an engine answers, for engine check.", transcribe);
+      addCommand(command, run,
+                 {"transcript", "Writes what an engine answers, for engine check.",
+                  "calot engine transcript attempt.h5 --engine calot-engine-12 -o transcript.txt"},
+                 transcribe);
   writing->add_option("recording", t->recording, "whose scene and first steps are asked")->required();
   writing->add_option("--engine", t->engine, "program or module")->required();
   writing->add_option("--steps", t->steps, "steps that it is to do")->capture_default_str();

@@ -128,7 +128,9 @@ void grade(const GradeOptions& o) {
 }  // namespace
 
 void addGrade(CLI::App& app, Run& run) {
-  const auto [command, o] = addCommand(app, run, "grade", "Hold an attempt against a norm", grade);
+  const auto [command, o] = addCommand(
+      app, run, {"grade", "Hold an attempt against a norm", "calot grade c.db --attempt 3f2a --html sheet.html"},
+      grade);
   addCohortOption(*command, o->database)->required();
   command->add_option("--attempt", o->attempt, "Its uuid, or how that begins")->required();
   command->add_option("--norm", o->norm, "The norm; not needed where there is one alone");

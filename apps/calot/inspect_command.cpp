@@ -231,16 +231,20 @@ void recoverRecording(const RecoverOptions& o) {
 }  // namespace
 
 void addInspect(CLI::App& app, Run& run) {
-  const auto [command, o] =
-      addCommand(app, run, "inspect", "Say what a recording holds, and whether its content chain is intact", inspect);
+  const auto [command, o] = addCommand(
+      app, run,
+      {"inspect", "Say what a recording holds, and whether its content chain is intact", "calot inspect attempt.h5"},
+      inspect);
   command->add_option("recording", o->file, "Recording (.h5)")->required();
   command->add_option("--public-key", o->key, "The key that must have signed it; else the exit code is 3");
   command->add_flag("--json", o->json, "Print JSON");
 }
 
 void addRecover(CLI::App& app, Run& run) {
-  const auto [command, o] = addCommand(
-      app, run, "recover", "Rewrite a recording that was cut off or whose writer was killed", recoverRecording);
+  const auto [command, o] = addCommand(app, run,
+                                       {"recover", "Rewrite a recording that was cut off or whose writer was killed",
+                                        "calot recover killed.h5 -o recovered.h5"},
+                                       recoverRecording);
   command->add_option("recording", o->in, "Recording (.h5)")->required();
   command->add_option("-o,--output", o->out, "File to write")->required();
   command->add_flag("--force", o->force, "Replace the output if it is there");

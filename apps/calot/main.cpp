@@ -2,7 +2,6 @@
 #include <algorithm>
 
 #include "apps/calot/command.h"
-#include "apps/calot/help.h"
 #include "recorder/attempt.h"
 #include "recorder/compliance_cache.h"
 #include "recorder/prepared_scene.h"
@@ -14,13 +13,14 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", recorder::softwareName() + " (" + recorder::buildName() + "), simulation version " +
                                         std::to_string(simulationVersion));
   app.require_subcommand(1);
+  app.formatter(apps::helpForm());
   const std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
   apps::lookForCohort(words);
   apps::Run run;
 #define CALOT_ADD_COMMAND(name) apps::add##name(app, run);
   CALOT_COMMAND_LIST(CALOT_ADD_COMMAND)
 #undef CALOT_ADD_COMMAND
-  apps::formatHelp(app);
+  app.footer("calot COMMAND --help has the options of each command, and an example.");
   return apps::runProgram(
       app, argc, argv,
       [&run] {

@@ -189,9 +189,12 @@ void meshSurface(const MeshOptions& o) {
 }  // namespace
 
 void addMesh(CLI::App& app, Run& run) {
-  const auto [command, options] = addCommand(
-      app, run, "mesh", "Fill a closed surface with tetrahedra (isosurface stuffing); repair a surface for a scene",
-      meshSurface);
+  const auto [command, options] =
+      addCommand(app, run,
+                 {"mesh", "Fill a closed surface with tetrahedra (isosurface stuffing); repair a surface for a scene",
+                  "calot mesh liver.stl --unit mm --tetrahedra 1500 -o liver.vtk",
+                  "calot mesh liver.stl --unit mm --repair --surface-output organs/liver.obj --surface-triangles 6000"},
+                 meshSurface);
   command->add_option("surface", options->input, "the surface, a .obj, .stl or .ply file")->required();
   command->add_option("--unit", options->unit, "of the file's coordinates: m, cm or mm")
       ->required()

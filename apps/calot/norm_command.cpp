@@ -254,27 +254,35 @@ void addCreateOptions(CLI::App& command, NormOptions& o) {
 
 void addNorm(CLI::App& app, Run& run) {
   const auto o = std::make_shared<NormOptions>();
-  CLI::App* command = app.add_subcommand("norm", "Make and show the norms that attempts are graded against");
-  command->require_subcommand(1);
-  const auto add = [&](const char* name, const char* what, void (*work)(NormOptions&)) {
-    CLI::App* sub = addCommand(*command, run, name, what, work, o).first;
+  CLI::App& command =
+      addGroup(app, {"norm", "Make and show the norms that attempts are graded against", "calot norm list c.db"});
+  const auto add = [&](const CommandText& text, void (*work)(NormOptions&)) {
+    CLI::App* sub = addCommand(command, run, text, work, o).first;
     addCohortOption(*sub, o->database)->required();
     return sub;
   };
-  CLI::App* made = add("create", "Make the next version of a norm from attempts of a cohort", createNorm);
+  CLI::App* made = add({"create", "Make the next version of a norm from attempts of a cohort",
+                        "calot norm create c.db clinic --by \"A. Instructor\" --rule at-least:6 --attempt-rule first"},
+                       createNorm);
   made->add_option("name", o->name, "Its name")->required();
   addCreateOptions(*made, *o);
-  add("list", "List the norms of a cohort", listNorms)->add_flag("--json", o->json, "Print JSON");
-  CLI::App* shown = add("show", "Show a norm: members, rule, pass rate, pass marks", showNorm);
+  add({"list", "List the norms of a cohort", "calot norm list c.db"}, listNorms)
+      ->add_flag("--json", o->json, "Print JSON");
+  CLI::App* shown =
+      add({"show", "Show a norm: members, rule, pass rate, pass marks", "calot norm show c.db clinic"}, showNorm);
   CLI::App* proven =
-      add("evidence", "Attach the site's validity evidence; without it every sheet is formative", attachEvidence);
+      add({"evidence", "Attach the site's validity evidence; without it every sheet is formative",
+           "calot norm evidence c.db clinic --file report.pdf --statement \"validated 2026\" --by \"A. Instructor\""},
+          attachEvidence);
   for (CLI::App* sub : {shown, proven}) {
     sub->add_option("name", o->name, "Its name")->required();
     sub->add_option("--norm-version", o->version, "Its version; default: the newest");
   }
   const auto [angoff, a] =
-      addCommand(*command, run, "angoff",
-                 "How many figures a borderline trainee passes, by judges (Angoff), for --rule", judgeByAngoff);
+      addCommand(command, run,
+                 {"angoff", "How many figures a borderline trainee passes, by judges (Angoff), for --rule",
+                  "calot norm angoff judges.csv"},
+                 judgeByAngoff);
   angoff->add_option("judges", a->table, "CSV file: a column judge, and one of probabilities for each figure")
       ->required();
   angoff->add_flag("--json", a->json, "Print JSON");

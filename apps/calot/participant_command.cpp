@@ -106,7 +106,10 @@ void withdraw(const WithdrawOptions& o) {
 
 void addWithdraw(CLI::App& participant, Run& run) {
   const auto [command, o] =
-      addCommand(participant, run, "withdraw", "Remove what there is of a participant, for good", withdraw);
+      addCommand(participant, run,
+                 {"withdraw", "Remove what there is of a participant, for good",
+                  "calot participant withdraw P1 --cohort c.db --scope all --recordings recordings"},
+                 withdraw);
   command->add_option("participant", o->pseudonym, "Pseudonym")->required();
   command->add_option("--cohort", o->cohort, "Cohort database")->required();
   command->add_option("--scope", o->scope, "research: all but training goes, the participant stays; all: everything")
@@ -191,10 +194,13 @@ void listParticipants(const ParticipantFilter& o) {
 }  // namespace
 
 void addParticipant(CLI::App& app, Run& run) {
-  CLI::App& participant = *app.add_subcommand("participant", "List, add, change or withdraw participants of a cohort");
-  participant.require_subcommand(1);
+  CLI::App& participant = addGroup(app, {"participant", "List, add, change or withdraw participants of a cohort",
+                                         "calot participant add P1 --cohort c.db --group novice"});
 
-  const auto [list, l] = addCommand(participant, run, "list", "List the participants of a cohort", listParticipants);
+  const auto [list, l] =
+      addCommand(participant, run,
+                 {"list", "List the participants of a cohort", "calot participant list --cohort c.db --group novice"},
+                 listParticipants);
   addCohortOption(*list, l->cohort)->required();
   list->add_option("--group", l->group, "Only this group's");
   list->add_flag("--json", l->json, "Print JSON");
@@ -202,10 +208,16 @@ void addParticipant(CLI::App& app, Run& run) {
   addWithdraw(participant, run);
 
   const auto o = std::make_shared<ParticipantOptions>();
-  CLI::App* added =
-      addCommand(participant, run, "add", "Add a participant; makes the cohort database if there is none", add, o)
-          .first;
-  CLI::App* changed = addCommand(participant, run, "set", "Change what is given of a participant", change, o).first;
+  CLI::App* added = addCommand(participant, run,
+                               {"add", "Add a participant; makes the cohort database if there is none",
+                                "calot participant add P1 --cohort c.db --group novice --consent study:2026-01-31"},
+                               add, o)
+                        .first;
+  CLI::App* changed = addCommand(participant, run,
+                                 {"set", "Change what is given of a participant",
+                                  "calot participant set P1 --cohort c.db --experience laparoscopies=240"},
+                                 change, o)
+                          .first;
   o->command = changed;
   for (CLI::App* command : {added, changed}) {
     command->add_option("participant", o->pseudonym, "Pseudonym, never a name")->required();

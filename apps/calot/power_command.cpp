@@ -317,8 +317,10 @@ void power(PowerOptions& o) {
 }  // namespace
 
 void addPower(CLI::App& app, Run& run) {
-  const auto [command, o] =
-      addCommand(app, run, "power", "How many people a study needs, by simulating the study itself", power);
+  const auto [command, o] = addCommand(app, run,
+                                       {"power", "How many people a study needs, by simulating the study itself",
+                                        "calot power --effect 1.2 --n 8:20:4", "calot power pilot.db --n 10:40:10"},
+                                       power);
   addStudySource(*command, o->source);
   addList(*command, "--effect", o->effects,
           "Shift of the first group in standard deviations, one a checkpoint: A,B,...; 0: none");

@@ -407,7 +407,10 @@ ExitCode rate(const RateOptions& o) {
 
 void addRate(CLI::App& app, Run& run) {
   const auto [command, o] =
-      addCommand(app, run, "rate", "Store and summarise what raters and participants judge, by forms", rate);
+      addCommand(app, run,
+                 {"rate", "Store and summarise what raters and participants judge, by forms", "calot rate --forms",
+                  "calot rate c.db --form osats --attempt 3f2a --rater R1 --answers osats.json"},
+                 rate);
   addCohortOption(*command, o->database);
   command->add_flag("--forms", o->forms, "List the forms that come with the program");
   command->add_option("--form", o->form, "The form that was filled in: its name (calot rate --forms), or a JSON file");
@@ -424,8 +427,9 @@ void addRate(CLI::App& app, Run& run) {
   command->add_flag("--json", o->json, "Print JSON");
 
   const auto [pack, p] = addCommand(
-      *command, run, "pack",
-      "Pack films and a form for raters, under random names and in random order; the key stays in the cohort",
+      *command, run,
+      {"pack", "Pack films and a form for raters, under random names and in random order; the key stays in the cohort",
+       "calot rate pack c.db --form goals --films films --raters R1,R2 -o pack"},
       packForRaters);
   addCohortOption(*pack, p->database)->required();
   pack->add_option("--form", p->form, "The form to fill in: its name, or a file")->required();

@@ -35,8 +35,10 @@ ExitCode regrade(const RegradeOptions& o) {
 }  // namespace
 
 void addRegrade(CLI::App& app, Run& run) {
-  const auto [command, o] =
-      addCommand(app, run, "regrade", "Recompute the derived values of a cohort, and show what changed", regrade);
+  const auto [command, o] = addCommand(
+      app, run,
+      {"regrade", "Recompute the derived values of a cohort, and show what changed", "calot regrade c.db recordings"},
+      regrade);
   addCohortOption(*command, o->cohort)->required();
   command->add_option("recordings", o->places, "Recordings, or folders that hold them; default: the database's folder");
   addThreads(*command, o->jobs, "Recordings at a time; 0: one for each processor", "--jobs");

@@ -84,7 +84,10 @@ ExitCode replay(const ReplayOptions& o) {
 
 void addReplay(CLI::App& app, Run& run) {
   const auto [command, o] =
-      addCommand(app, run, "replay", "Re-simulates recordings and compares every digest and force.", replay);
+      addCommand(app, run,
+                 {"replay", "Re-simulates recordings and compares every digest and force.", "calot replay attempt.h5",
+                  "calot replay recordings/*.h5 --jobs 0 --junit result.xml"},
+                 replay);
   command->add_option("recordings", o->files, "recordings")->required();
   addThreads(*command, o->threads,
              "segments between keyframes that are verified at a time, of each recording; 0: one a processor");

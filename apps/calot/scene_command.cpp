@@ -256,23 +256,28 @@ void writeSceneTemplate(const SceneTemplate& wanted) {
 }  // namespace
 
 void addScenes(CLI::App& app, Run& run) {
-  const auto [command, o] = addCommand(app, run, "scenes", "List the scenes that can be simulated", listScenes);
+  const auto [command, o] =
+      addCommand(app, run, {"scenes", "List the scenes that can be simulated", "calot scenes"}, listScenes);
   command->add_flag("--json", o->json, "Print JSON, with what each scene is built of");
 }
 
 void addScene(CLI::App& app, Run& run) {
-  CLI::App* command = app.add_subcommand("scene", "Make a scene of one's own: a template, and a check");
-  command->require_subcommand(1);
+  CLI::App& command = addGroup(
+      app, {"scene", "Make a scene of one's own: a template, and a check", "calot scene check my/scenes/press.json"});
 
   const auto [check, c] = addCommand(
-      *command, run, "check",
-      "Say all faults of a scene at once, what catches nothing in it, and surfaces that are too fine", checkScene);
+      command, run,
+      {"check", "Say all faults of a scene at once, what catches nothing in it, and surfaces that are too fine",
+       "calot scene check my/scenes/press.json"},
+      checkScene);
   check->add_option("scene", c->scene, "name of a scene (calot scenes), or a scene file")->required();
   check->add_flag("--json", c->json, "print the result as JSON");
 
-  const auto [made, t] = addCommand(
-      *command, run, "template", "Write a scene of one organ that can be recorded at once, and be changed from there",
-      writeSceneTemplate);
+  const auto [made, t] =
+      addCommand(command, run,
+                 {"template", "Write a scene of one organ that can be recorded at once, and be changed from there",
+                  "calot scene template liver.stl --unit mm -o my/scenes/press.json"},
+                 writeSceneTemplate);
   made->add_option("surface", t->surface, "the organ's closed surface, a .obj, .stl or .ply file (calot mesh --repair)")
       ->required();
   made->add_option("--unit", t->unit, "of its coordinates: m, cm or mm")->required()->check(oneOf({"m", "cm", "mm"}));

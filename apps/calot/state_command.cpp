@@ -94,8 +94,10 @@ ExitCode diff(const DiffOptions& o) {
 }  // namespace
 
 void addState(CLI::App& app, Run& run) {
-  const auto [command, o] =
-      addCommand(app, run, "state", "Writes the State after a step, as HDF5 or as plain bytes.", state);
+  const auto [command, o] = addCommand(app, run,
+                                       {"state", "Writes the State after a step, as HDF5 or as plain bytes.",
+                                        "calot state attempt.h5 --step 100 -o step100.h5"},
+                                       state);
   command->add_option("recording", o->recording, "recording")->required();
   command->add_option("--step", o->step, "the step after which")->check(wholeNumber)->required();
   command->add_flag("--flat", o->flat, "scene, State and the next 200 steps' samples as plain bytes, for the matrix");
@@ -106,7 +108,10 @@ void addState(CLI::App& app, Run& run) {
 
 void addDiff(CLI::App& app, Run& run) {
   const auto [command, o] =
-      addCommand(app, run, "diff", "First field, index and both values that differ between two State files.", diff);
+      addCommand(app, run,
+                 {"diff", "First field, index and both values that differ between two State files.",
+                  "calot diff step100.h5 other.h5"},
+                 diff);
   command->add_option("first", o->first, "file of `calot state`")->required();
   command->add_option("second", o->second, "file of `calot state`")->required();
   command->add_flag("--json", o->json, "print the result as JSON");

@@ -202,7 +202,7 @@ void addDesignOptions(CLI::App& command, DesignOptions& o) {
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   command.get_option("--groups")->description("The groups to compare, A,B; three or more for --design groups");
-  command.footer(helpOfDesigns());
+  command.footer(helpOfDesigns() + "\n\n" + command.get_footer());
 }
 
 /// Chosen or implied: three groups, strata. @throws Error (invalid) for options that the design does not take, or
@@ -347,8 +347,11 @@ void study(StudyCommandOptions& o) {
 
 void addStudy(CLI::App& app, Run& run) {
   const auto [command, options] =
-      addCommand(app, run, "study",
-                 "Compare groups of a cohort, or of a table from elsewhere, in two groups or another design", study);
+      addCommand(app, run,
+                 {"study", "Compare groups of a cohort, or of a table from elsewhere, in two groups or another design",
+                  "calot study c.db --attempt-rule mean",
+                  "calot study --table f.csv --participant-column person --group-column level --outcome seconds:lower"},
+                 study);
   addStudySource(*command, options->source);
   command->add_flag("--masked", options->source.masked,
                     "Call the protocol's groups \"group 1\" and \"group 2\" until its analysis is locked");
