@@ -143,7 +143,7 @@ Moment momentOf(DrivenAttempt& driven) {
   return alone(driven.mutex, [&] { return Moment{driven.attempt.view(), {}, {}, {}, {}}; });
 }
 
-/// Where the hands are.
+/// Commands that would leave the hands as they are.
 std::vector<double> actionOf(DrivenAttempt& driven) {
   std::vector<double> numbers;
   for (const recorder::HandCommand& hand : alone(driven.mutex, [&] { return driven.attempt.hands(); })) {

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "analytics/cohort/cohort_database.h"
 #include "apps/calot/command.h"
 #include "apps/calot/replay_report.h"
 
@@ -18,7 +17,6 @@ struct AttemptFilter {
   bool all = false, json = false;
 };
 
-/// Filter of the rows.
 bool isAsked(const AttemptRow& a, const AttemptFilter& o) {
   return (o.participant.empty() || a.participant == o.participant) && (o.group.empty() || a.group == o.group) &&
          (o.scene.empty() || a.scene == o.scene) &&
@@ -59,17 +57,14 @@ void listAttempts(const AttemptFilter& o) {
     if (a.excluded) notes += fmt::format("{} is excluded: {}\n", beginning, a.exclusionReason);
     synthetic += a.synthetic ? 1 : 0;
   }
-  if (o.json) {
-    printResult("attempt-list", {{"attempts", list}});
-    return;
-  }
-  if (!list.empty()) table.print(std::cout, terminalColumns());
-  std::cout << notes;
-  if (synthetic > 0) std::cout << fmt::format("{} of them by performers (synthetic)\n", synthetic);
-  const std::size_t left = rows.size() - list.size();
-  std::cout << fmt::format(
-      "{}: {} attempts{}\n", o.cohort, list.size(),
-      left > 0 ? fmt::format(", {} not listed{}", left, o.all ? "" : " (--all: excluded, too)") : "");
+  if (synthetic > 0) notes += fmt::format("{} of them by performers (synthetic)\n", synthetic);
+  notes += fmt::format("{}: {} attempts", o.cohort, list.size());
+  if (const std::size_t left = rows.size() - list.size(); left > 0)
+    notes += fmt::format(", {} not listed{}", left, o.all ? "" : " (--all: excluded, too)");
+  printResult(o.json, "attempt-list", {{"attempts", list}}, [&](std::ostream& out) {
+    if (!list.empty()) table.print(out, terminalColumns());
+    out << notes << '\n';
+  });
 }
 
 struct AttemptOptions {
@@ -99,12 +94,9 @@ void tag(const AttemptOptions& o) {
   if (!add && changed == 0)
     throw Error(ErrorKind::refused, Where{o.cohort}, fmt::format("attempt {} has no tag \"{}\"", uuid, o.tag));
   const std::vector<std::string> tags = database.attempt(uuid)->tags;
-  if (o.json) {
-    printResult("attempt-tag", {{"attempt", uuid}, {"tags", tags}, {"changed", changed > 0}});
-  } else {
-    std::cout << fmt::format("{}: attempt {}: {}\n", o.cohort, uuid,
-                             tags.empty() ? "no tags" : fmt::format("tags {}", fmt::join(tags, ", ")));
-  }
+  printResult(o.json, "attempt-tag", {{"attempt", uuid}, {"tags", tags}, {"changed", changed > 0}},
+              fmt::format("{}: attempt {}: {}\n", o.cohort, uuid,
+                          tags.empty() ? "no tags" : fmt::format("tags {}", fmt::join(tags, ", "))));
 }
 
 }  // namespace

@@ -12,7 +12,6 @@
 #include "apps/calot/source_options.h"
 #include "gui/film/overlay.h"
 #include "gui/render/image.h"
-#include "recorder/base/errors.h"
 #include "recorder/base/text_output.h"
 #include "recorder/sources/devices/calibration.h"
 #include "recorder/sources/devices/camera/camera_calibration.h"

@@ -2,7 +2,6 @@
 // calot cohort: a cohort database as a whole.
 
 #include "analytics/cohort/check.h"
-#include "analytics/cohort/cohort_database.h"
 #include "analytics/cohort/merge.h"
 #include "analytics/cohort/registers.h"
 #include "analytics/cohort/withdraw.h"
@@ -21,42 +20,38 @@ struct CohortExport {
 };
 
 void exportTables(const CohortExport& o) {
-  const std::vector<analytics::ExportedTable> tables = analytics::exportCohort(o.cohort, o.folder, o.force);
   Json list = Json::array();
-  for (const analytics::ExportedTable& t : tables) {
-    if (o.json) {
-      list.push_back({{"table", t.name}, {"rows", t.rows}});
-    } else {
-      std::cout << fmt::format("{:<24}{} rows\n", t.name, t.rows);
-    }
+  std::string text;
+  for (const analytics::ExportedTable& t : analytics::exportCohort(o.cohort, o.folder, o.force)) {
+    list.push_back({{"table", t.name}, {"rows", t.rows}});
+    text += fmt::format("{:<24}{} rows\n", t.name, t.rows);
   }
-  if (o.json) printResult("cohort-export", {{"tables", list}});
+  printResult(o.json, "cohort-export", {{"tables", list}}, text);
 }
 
 void handOut(const CohortExport& o) {
   const analytics::Bundle b = analytics::writeBundle(o.cohort, o.folder, o.bundle, o.force);
-  if (o.json) {
-    Json left = Json::array(), files = Json::array();
-    for (const auto& row : b.leftOut) left.push_back({{"reason", row.reason}, {"attempts", row.attempts}});
-    for (const auto& f : b.files) files.push_back({{"name", f.name}, {"bytes", f.bytes}, {"sha256", f.sha256}});
-    const Json all{{"participants", b.participants},
-                   {"attempts", b.attempts},
-                   {"values", b.values},
-                   {"recruited", b.recruited},
-                   {"left_out", left},
-                   {"smallest_group", b.smallest},
-                   {"files", files}};
-    printResult("cohort-bundle", all);
-    return;
+  Json left = Json::array(), files = Json::array();
+  std::string text = fmt::format("{}: {} of {} attempts, of {} participants, {} values\n", o.folder, b.attempts,
+                                 b.recruited, b.participants, b.values);
+  for (const auto& row : b.leftOut) {
+    left.push_back({{"reason", row.reason}, {"attempts", row.attempts}});
+    text += fmt::format("{} attempts left out: {}\n", row.attempts, row.reason);
   }
-  std::cout << fmt::format("{}: {} of {} attempts, of {} participants, {} values\n", o.folder, b.attempts, b.recruited,
-                           b.participants, b.values);
-  for (const auto& row : b.leftOut) std::cout << fmt::format("{} attempts left out: {}\n", row.attempts, row.reason);
   if (b.participants > 0)
-    std::cout << fmt::format(
+    text += fmt::format(
         "The smallest group that shares group, arm and site is of {}: look whether its members "
         "can be known by that and their experience.\n",
         b.smallest);
+  for (const auto& f : b.files) files.push_back({{"name", f.name}, {"bytes", f.bytes}, {"sha256", f.sha256}});
+  const Json all{{"participants", b.participants},
+                 {"attempts", b.attempts},
+                 {"values", b.values},
+                 {"recruited", b.recruited},
+                 {"left_out", left},
+                 {"smallest_group", b.smallest},
+                 {"files", files}};
+  printResult(o.json, "cohort-bundle", all, text);
 }
 
 /// Merges one database. @returns what entered; conflicts are reported on stderr.
@@ -108,19 +103,12 @@ struct CohortOptions {
 
 void checkDatabase(const CohortOptions& o) {
   const analytics::CohortCheck c = analytics::checkCohort(o.cohort);
-  if (o.json) {
-    printResult("cohort-check", {{"sound", c.faults.empty()},
-                                 {"database_schema", c.schema},
-                                 {"participants", c.participants},
-                                 {"attempts", c.attempts},
-                                 {"values", c.values},
-                                 {"faults", c.faults}});
-  } else if (c.faults.empty()) {
-    std::cout << fmt::format("{}: sound; schema {}, {} participants, {} attempts, {} values\n", o.cohort, c.schema,
-                             c.participants, c.attempts, c.values);
-  } else {
-    for (const std::string& fault : c.faults) std::cout << fault << '\n';
-  }
+  const Json all{{"sound", c.faults.empty()}, {"database_schema", c.schema}, {"participants", c.participants},
+                 {"attempts", c.attempts},    {"values", c.values},          {"faults", c.faults}};
+  printResult(o.json, "cohort-check", all,
+              c.faults.empty() ? fmt::format("{}: sound; schema {}, {} participants, {} attempts, {} values\n",
+                                             o.cohort, c.schema, c.participants, c.attempts, c.values)
+                               : fmt::format("{}\n", fmt::join(c.faults, "\n")));
   if (c.faults.empty()) return;
   throw Error(ErrorKind::damaged,
               fmt::format("{}: {} faults, the first: {}; restore a copy, or assess the recordings into a new one",
@@ -149,22 +137,20 @@ void listRegisters(const CohortOptions& o) {
   }
   for (const auto& c : r.cohorts)
     out["cohorts"].push_back({{"name", c.name}, {"participants", c.participants}, {"note", c.note}});
-  if (o.json) {
-    printResult("cohort-list", out);
-    return;
-  }
+  std::string text;
   for (const auto& [kind, rows] : out.items()) {
     for (const Json& row : rows) {
       const auto part = [&row](const char* before, const char* member) {
-        const std::string text = row.value(member, "");
-        return text.empty() ? text : before + text;
+        const std::string word = row.value(member, "");
+        return word.empty() ? word : before + word;
       };
-      std::cout << fmt::format("{:<10}{}{}{}", kind, part("", "name"), part(", site ", "site"),
-                               part(", key ", "public_key"));
-      for (const std::string& p : row.value("participants", std::vector<std::string>())) std::cout << ' ' << p;
-      std::cout << part(": ", "note") << '\n';
+      text +=
+          fmt::format("{:<10}{}{}{}", kind, part("", "name"), part(", site ", "site"), part(", key ", "public_key"));
+      for (const std::string& p : row.value("participants", std::vector<std::string>())) text += " " + p;
+      text += part(": ", "note") + "\n";
     }
   }
+  printResult(o.json, "cohort-list", out, text);
 }
 
 struct NameOptions {

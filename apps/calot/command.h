@@ -149,16 +149,17 @@ std::optional<std::string> givenOf(const CLI::App& command, const std::string& o
 /// A row of a cohort as an object.
 [[nodiscard]] Json jsonOf(const analytics::Fields& fields);
 
-/// Head of every result: {"schema": "calot-<what>", "version": N}. The version is raised when a member
-/// changes its meaning or goes; new members alone do not raise it.
-/// @param body an object without these two members
-[[nodiscard]] Json resultOf(std::string_view what, const Json& body);
-
-/// Prints it on stdout, over several lines. Erases a line of progress first.
+/// Prints a result on stdout, over several lines, behind the head of every result: {"schema": "calot-<what>",
+/// "version": N}. The version is raised when a member changes its meaning or goes; new members alone do not raise it.
+/// Erases a line of progress first. @param body an object without these two members
 void printResult(std::string_view what, const Json& body);
 
 /// The same on one line, flushed: of results that come one after the other.
 void printResultLine(std::string_view what, const Json& body);
+
+/// Prints a result as JSON, or else as a text.
+void printResult(bool json, std::string_view what, const Json& body, const std::string& text);
+void printResult(bool json, std::string_view what, const Json& body, const std::function<void(std::ostream&)>& write);
 
 /// The form of the program's help and of all its commands': lines that fit the terminal. Before commands are added.
 std::shared_ptr<CLI::FormatterBase> helpForm();

@@ -22,39 +22,20 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Files kept beside an engine: its transcript and its golden recordings.
-std::vector<fs::path> keptBeside(std::uint32_t version, const std::string& ending) {
-  std::vector<fs::path> files;
-  for (const fs::path& root : assetFolders()) {
-    std::error_code fault;
-    for (fs::directory_iterator it(root / "engines" / std::to_string(version), fault), end; !fault && it != end;
-         it.increment(fault)) {
-      if (it->path().extension() == ending) files.push_back(it->path());
-    }
-    if (!files.empty()) break;
-  }
-  std::sort(files.begin(), files.end());
-  return files;
-}
-
 const char* kindOf(const recorder::KeptEngine& engine) { return engine.isModule ? "module" : "program"; }
 
 void listEngines(const JsonOption& o) {
   const std::vector<recorder::KeptEngine> engines = recorder::listEngines();
   nlohmann::json out = nlohmann::json::array();
-  if (!o.json) fmt::print("this program decides simulation version {}\n", simulationVersion);
+  std::string text = fmt::format("this program decides simulation version {}\n", simulationVersion);
   for (const recorder::KeptEngine& e : engines) {
     out.push_back(
         {{"version", e.version}, {"kind", kindOf(e)}, {"file", e.file.string()}, {"runs", !e.command.empty()}});
-    if (o.json) continue;
-    fmt::print("version {}: {} {}{}\n", e.version, kindOf(e), fs::weakly_canonical(e.file).string(),
-               e.command.empty() ? " (node is needed to run it)" : "");
+    text += fmt::format("version {}: {} {}{}\n", e.version, kindOf(e), fs::weakly_canonical(e.file).string(),
+                        e.command.empty() ? " (node is needed to run it)" : "");
   }
-  if (o.json) {
-    printResult("engines", {{"own_version", simulationVersion}, {"engines", out}});
-  } else if (engines.empty()) {
-    fmt::print("no other engine was found (CALOT_ENGINES names folders that hold some)\n");
-  }
+  if (engines.empty()) text += "no other engine was found (CALOT_ENGINES names folders that hold some)\n";
+  printResult(o.json, "engines", {{"own_version", simulationVersion}, {"engines", out}}, text);
 }
 
 /// @return false where the engine is not what it should be; prints a line of each thing that was looked at
@@ -63,6 +44,7 @@ bool isSound(const recorder::KeptEngine& engine) {
     fmt::print("version {}, {}: {}: {}\n", engine.version, kindOf(engine), what, fault.empty() ? "ok" : fault);
     return fault.empty();
   };
+  const std::string beside = fmt::format("engines/{}", engine.version);  // its transcript and golden recordings
   bool good = true;
   try {
     const recorder::EngineProcess process(engine.command, engine.version);
@@ -70,13 +52,13 @@ bool isSound(const recorder::KeptEngine& engine) {
     good = say(fmt::format("{}, {}", process.identity().software,
                            confined[static_cast<std::size_t>(process.identity().confinement)]),
                "");
-    for (const fs::path& file : keptBeside(engine.version, ".transcript")) {
+    for (const fs::path& file : listAssets(beside, ".transcript")) {
       good = say(file.filename().string(), compareWith(recorder::readTranscript(file), engine.command)) && good;
     }
   } catch (const Error& e) {
     return say("it", e.what());
   }
-  for (const fs::path& golden : keptBeside(engine.version, ".h5")) {
+  for (const fs::path& golden : listAssets(beside, ".h5")) {
     recorder::ReplaySettings settings;
     settings.engine.file = engine.file;
     const recorder::ReplayReport report = recorder::replayRecording(golden, settings);

@@ -118,11 +118,8 @@ void grade(const GradeOptions& o) {
   const analytics::CarriedRecording inPage{name, carried};
   writeReport(analytics::gradeDocument(result, name, howToDraw), o.html, o.pdf, o.force,
               o.withReplay ? &inPage : nullptr);
-  if (o.json) {
-    printResult("grade", analytics::gradeTree(result));
-  } else {
-    analytics::printGrade(result, std::cout);
-  }
+  printResult(o.json, "grade", analytics::gradeTree(result),
+              [&](std::ostream& out) { analytics::printGrade(result, out); });
 }
 
 }  // namespace

@@ -12,9 +12,7 @@
 #include "analytics/import_motion.h"
 #include "analytics/intake/motion_manifest.h"
 #include "apps/calot/command.h"
-#include "apps/calot/environment.h"
 #include "apps/calot/replay_report.h"
-#include "recorder/base/errors.h"
 #include "recorder/sources/tracked_motion.h"
 
 namespace calot::apps {

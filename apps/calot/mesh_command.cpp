@@ -44,8 +44,8 @@ CoarseSurface coarseSurface(const TriangleMesh& surface, int triangles) {
     } else {
       TriangleMesh boundary = boundarySurface(stuffed.mesh);
       const double ratio = static_cast<double>(boundary.triangles()) / triangles;
-      if (const double error = std::abs(ratio - 1.0); error < least) {
-        least = error;
+      if (std::abs(ratio - 1.0) < least) {
+        least = std::abs(ratio - 1.0);
         best.mesh = std::move(boundary);
       }
       if (least <= goodEnough) break;
@@ -175,12 +175,7 @@ void meshSurface(const MeshOptions& o) {
     report.crossing = findSelfCrossing(whole);
     writeOutputs(o, whole, report);
   }
-  if (o.json) {
-    printResult("mesh", Json::parse(recorder::meshReportJson(report)));
-  } else {
-    fmt::print("{}", recorder::meshReportText(report));
-    std::fflush(stdout);
-  }
+  printResult(o.json, "mesh", Json::parse(recorder::meshReportJson(report)), recorder::meshReportText(report));
   for (const std::string& warning : recorder::meshWarnings(report))
     fmt::print(stderr, "calot: warning: {}: {}\n", o.input, warning);
   if (!report.faults.empty()) throw Error(ErrorKind::refused, o.input + ": " + report.faults.front());

@@ -3,7 +3,6 @@
 #include <map>
 #include <set>
 
-#include "analytics/cohort/cohort_database.h"
 #include "analytics/cohort/withdraw.h"
 #include "analytics/cohort_files.h"
 #include "apps/calot/command.h"
@@ -143,24 +142,18 @@ std::map<std::string, std::string> pairs(const std::vector<std::string>& items, 
   return result;
 }
 
-std::map<std::string, std::string> experienceOf(const ParticipantOptions& o) {
-  return pairs(o.experience, '=', "--experience", "CRITERION=VALUE");
-}
-std::map<std::string, std::string> consentOf(const ParticipantOptions& o) {
-  return pairs(o.consent, ':', "--consent", "PURPOSE:YYYY-MM-DD");
-}
-
-void add(const ParticipantOptions& o) {
-  analytics::CohortDatabase(o.database, Access::create)
-      .addParticipant({o.pseudonym, o.group, o.arm, o.site, experienceOf(o), consentOf(o)});
-  std::cout << fmt::format("{}: participant {} added\n", o.database, o.pseudonym);
-}
-
-void change(const ParticipantOptions& o) {
-  analytics::ParticipantChange change{givenOf(*o.command, "--group", o.group), givenOf(*o.command, "--arm", o.arm),
-                                      givenOf(*o.command, "--site", o.site), experienceOf(o), consentOf(o)};
-  analytics::CohortDatabase(o.database, Access::write).setParticipant(o.pseudonym, change);
-  std::cout << fmt::format("{}: participant {} changed\n", o.database, o.pseudonym);
+template <bool isNew>
+void enter(const ParticipantOptions& o) {
+  const auto experience = pairs(o.experience, '=', "--experience", "CRITERION=VALUE");
+  const auto consent = pairs(o.consent, ':', "--consent", "PURPOSE:YYYY-MM-DD");
+  analytics::CohortDatabase database(o.database, isNew ? Access::create : Access::write);
+  if (isNew) {
+    database.addParticipant({o.pseudonym, o.group, o.arm, o.site, experience, consent});
+  } else {
+    database.setParticipant(o.pseudonym, {givenOf(*o.command, "--group", o.group), givenOf(*o.command, "--arm", o.arm),
+                                          givenOf(*o.command, "--site", o.site), experience, consent});
+  }
+  std::cout << fmt::format("{}: participant {} {}\n", o.database, o.pseudonym, isNew ? "added" : "changed");
 }
 
 void listParticipants(const ParticipantFilter& o) {
@@ -183,12 +176,10 @@ void listParticipants(const ParticipantFilter& o) {
     table.rows.push_back({p.pseudonym, p.group, p.arm, p.site, std::to_string(attempts[p.pseudonym]),
                           joined(p.experience, '='), joined(p.consent, ':')});
   }
-  if (o.json) {
-    printResult("participant-list", {{"participants", list}});
-    return;
-  }
-  if (!list.empty()) table.print(std::cout, terminalColumns());
-  std::cout << fmt::format("{}: {} participants\n", o.cohort, list.size());
+  printResult(o.json, "participant-list", {{"participants", list}}, [&](std::ostream& out) {
+    if (!list.empty()) table.print(out, terminalColumns());
+    out << fmt::format("{}: {} participants\n", o.cohort, list.size());
+  });
 }
 
 }  // namespace
@@ -211,12 +202,12 @@ void addParticipant(CLI::App& app, Run& run) {
   CLI::App* added = addCommand(participant, run,
                                {"add", "Add a participant; makes the cohort database if there is none",
                                 "calot participant add P1 --cohort c.db --group novice --consent study:2026-01-31"},
-                               add, o)
+                               enter<true>, o)
                         .first;
   CLI::App* changed = addCommand(participant, run,
                                  {"set", "Change what is given of a participant",
                                   "calot participant set P1 --cohort c.db --experience laparoscopies=240"},
-                                 change, o)
+                                 enter<false>, o)
                           .first;
   o->command = changed;
   for (CLI::App* command : {added, changed}) {

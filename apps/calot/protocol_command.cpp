@@ -81,11 +81,8 @@ void listShipped(const ProtocolOptions& o) {
                         terminalColumns(), 2) +
             '\n';
   }
-  if (o.json) {
-    printResult("protocols", {{"protocols", rows}});
-  } else {
-    std::cout << (text.empty() ? "no protocols (CALOT_ASSETS names the folder that has them)\n" : text);
-  }
+  printResult(o.json, "protocols", {{"protocols", rows}},
+              text.empty() ? "no protocols (CALOT_ASSETS names the folder that has them)\n" : text);
 }
 
 void listProtocols(const ProtocolOptions& o) {
@@ -101,11 +98,7 @@ void listProtocols(const ProtocolOptions& o) {
     text += fmt::format("{} version {}, registered on {} by {}, SHA-256 {}\n", p.name, p.version, p.registeredUtc, p.by,
                         p.sha256);
   }
-  if (o.json) {
-    printResult("protocols", {{"protocols", rows}});
-  } else {
-    std::cout << (text.empty() ? "no protocols\n" : text);
-  }
+  printResult(o.json, "protocols", {{"protocols", rows}}, text.empty() ? "no protocols\n" : text);
 }
 
 }  // namespace

@@ -11,7 +11,6 @@
 #include "analytics/assessment/rating_form.h"
 #include "analytics/cohort/assessment_database.h"
 #include "analytics/cohort/blinding.h"
-#include "analytics/cohort/cohort_database.h"
 #include "analytics/cohort/withdraw.h"
 #include "analytics/intake/manifest_table.h"
 #include "analytics/intake/rating_manifest.h"
@@ -44,17 +43,16 @@ struct RateOptions {
 
 void listForms(const RateOptions& o) {
   Json rows = Json::array();
+  std::string text;
   for (const std::filesystem::path& file : listAssets("forms")) {
     const analytics::RatingForm form = analytics::readRatingForm(file);
-    if (!o.json) {
-      const std::string text = fmt::format("{} version {}: {} ({}, {} to {})", form.name, form.version, form.title,
-                                           form.ofAttempts ? "of attempts" : "of the simulator", form.least, form.most);
-      std::cout << wrappedText(text, terminalColumns(), 4) << '\n';
-    }
+    const std::string head = fmt::format("{} version {}: {} ({}, {} to {})", form.name, form.version, form.title,
+                                         form.ofAttempts ? "of attempts" : "of the simulator", form.least, form.most);
+    text += wrappedText(head, terminalColumns(), 4) + '\n';
     Json items = Json::array();
     for (const analytics::FormItem& item : form.items()) {
       items.push_back({{"item", item.key}, {"text", item.text}});
-      if (!o.json) std::cout << fmt::format("  {}  {}\n", item.key, item.text);
+      text += fmt::format("  {}  {}\n", item.key, item.text);
     }
     rows.push_back({{"form", form.name},
                     {"version", form.version},
@@ -65,7 +63,7 @@ void listForms(const RateOptions& o) {
                     {"most", form.most},
                     {"items", items}});
   }
-  if (o.json) printResult("forms", {{"forms", rows}});
+  printResult(o.json, "forms", {{"forms", rows}}, text);
 }
 
 /// A JSON object of items and scores; null where an item was left blank.
@@ -132,16 +130,14 @@ void showRatings(const RateOptions& o) {
   }
   const std::vector<analytics::FormReport> reports =
       analytics::reportForms(database, groupOf, {groups.begin(), groups.end()}, attemptOf);
-  if (o.json) {
-    printResult("ratings", {{"forms", analytics::ratingsTree(reports)}});
-    return;
-  }
-  if (reports.empty()) std::cout << "no ratings\n";
-  for (const analytics::FormReport& report : reports) {
-    for (const analytics::ReportTable& table : analytics::ratingTables(report)) analytics::printTable(table, std::cout);
-    for (const std::string& note : analytics::ratingNotes(report)) analytics::printWrapped(note, std::cout);
-    if (report.filled > 0) std::cout << '\n';
-  }
+  printResult(o.json, "ratings", {{"forms", analytics::ratingsTree(reports)}}, [&](std::ostream& out) {
+    if (reports.empty()) out << "no ratings\n";
+    for (const analytics::FormReport& report : reports) {
+      for (const analytics::ReportTable& table : analytics::ratingTables(report)) analytics::printTable(table, out);
+      for (const std::string& note : analytics::ratingNotes(report)) analytics::printWrapped(note, out);
+      if (report.filled > 0) out << '\n';
+    }
+  });
 }
 
 ExitCode storeRatingManifest(const RateOptions& o) {
@@ -153,17 +149,14 @@ ExitCode storeRatingManifest(const RateOptions& o) {
   analytics::AssessmentDatabase database(o.database, Access::write);
   const analytics::StoredRatings stored = analytics::storeRatings(database, read, o.force, faults);
   if (!faults.empty()) return refuseRows(faults);
-  if (o.json) {
-    const Json row{{"manifest", o.manifest},
-                   {"ratings", read.rows.size()},
-                   {"added", stored.added},
-                   {"unchanged", stored.unchanged},
-                   {"replaced", stored.replaced}};
-    printResult("rate-manifest", row);
-  } else {
-    std::cout << fmt::format("{}: {} ratings: {} added, {} unchanged, {} replaced\n", o.manifest, read.rows.size(),
-                             stored.added, stored.unchanged, stored.replaced);
-  }
+  const Json row{{"manifest", o.manifest},
+                 {"ratings", read.rows.size()},
+                 {"added", stored.added},
+                 {"unchanged", stored.unchanged},
+                 {"replaced", stored.replaced}};
+  printResult(o.json, "rate-manifest", row,
+              fmt::format("{}: {} ratings: {} added, {} unchanged, {} replaced\n", o.manifest, read.rows.size(),
+                          stored.added, stored.unchanged, stored.replaced));
   return ExitCode::yes;
 }
 
@@ -290,13 +283,11 @@ struct PackOptions {
 
 /// Raters' pseudonyms are names of folders.
 void checkRaters(const std::vector<std::string>& raters) {
+  constexpr const char* letters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_.";
   std::set<std::string> seen;
   for (const std::string& rater : raters) {
     const bool plain = !rater.empty() && rater.size() <= 64 && rater.front() != '.' &&
-                       std::all_of(rater.begin(), rater.end(), [](char c) {
-                         return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-                                c == '-' || c == '_' || c == '.';
-                       });
+                       rater.find_first_not_of(letters) == std::string::npos;
     if (!plain || !seen.insert(rater).second) {
       throw Error(
           ErrorKind::invalid,
@@ -324,13 +315,6 @@ void levelTimes(const fs::path& folder) {
   std::error_code ignored;
   for (fs::recursive_directory_iterator it(folder, ignored), end; it != end; it.increment(ignored))
     fs::last_write_time(it->path(), day, ignored);
-}
-
-analytics::RatingPage pageOf(const analytics::RatingPack& pack, const analytics::PackedRater& rater,
-                             const analytics::RatingForm& form) {
-  analytics::RatingPage page{pack.id, rater.rater, form, {}};
-  for (const analytics::PackedFilm& film : rater.films) page.films.push_back(film.name);
-  return page;
 }
 
 void packForRaters(const PackOptions& o) {
@@ -367,7 +351,9 @@ void packForRaters(const PackOptions& o) {
           fs::copy_file(at->second, target);
         }
       }
-      output.add(rater.rater + "/rate.html", analytics::ratingPageHtml(pageOf(pack, rater, form)));
+      analytics::RatingPage page{pack.id, rater.rater, form, {}};
+      for (const analytics::PackedFilm& film : rater.films) page.films.push_back(film.name);
+      output.add(rater.rater + "/rate.html", analytics::ratingPageHtml(page));
     }
   }
   levelTimes(output.folder());

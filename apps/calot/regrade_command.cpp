@@ -135,11 +135,7 @@ void printRegrade(const analytics::Regrade& regrade) {
 }  // namespace
 
 ExitCode reportRegrade(const std::string& cohort, const analytics::Regrade& regrade, bool json) {
-  if (json) {
-    printResult("regrade", regradeJson(regrade));
-  } else {
-    printRegrade(regrade);
-  }
+  json ? printResult("regrade", regradeJson(regrade)) : printRegrade(regrade);
   std::vector<ExitCode> codes;
   for (const analytics::RegradedAttempt& a : regrade.attempts) {
     codes.push_back(codeOf(a.fault));

@@ -5,10 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "analytics/report/report_document.h"
 #include "apps/calot/command.h"
-#include "apps/calot/environment.h"
-#include "recorder/base/errors.h"
 #include "recorder/base/file_bytes.h"
 #include "recorder/base/text_output.h"
 #include "recorder/formats/mesh_file.h"
@@ -129,7 +126,7 @@ Json checkJson(const std::string& file, const recorder::SceneCheck& check) {
           {"faults", faults}, {"notes", check.notes}, {"surfaces", costs}};
 }
 
-void printCosts(const recorder::SceneCheck& check) {
+void printCosts(const recorder::SceneCheck& check, std::ostream& out) {
   analytics::ReportTable table =
       analytics::tableOf("", {"=organ", "triangles", "edge (mm)", "tetrahedra", "cell (mm)", "=surface"});
   bool fine = false;
@@ -139,22 +136,18 @@ void printCosts(const recorder::SceneCheck& check) {
                           c.isFine() ? fmt::format("fine: {} triangles show as much", c.sensibleTriangles) : "right"});
     fine = fine || c.isFine();
   }
-  table.print(std::cout, terminalColumns());
-  if (fine) std::cout << "calot mesh SURFACE --surface-output F.obj --surface-triangles N makes a coarser surface\n";
-  std::cout << std::flush;
+  table.print(out, terminalColumns());
+  if (fine) out << "calot mesh SURFACE --surface-output F.obj --surface-triangles N makes a coarser surface\n";
 }
 
 void checkScene(const SceneCheckOptions& o) {
   const std::filesystem::path file = recorder::findScene(o.scene, assetFolders());
   const recorder::SceneCheck check = recorder::checkScene(file);
-  if (o.json) {
-    printResult("scene-check", checkJson(file.string(), check));
-  } else {
-    for (const Error& fault : check.faults) fmt::print("fault: {}\n", fault.what());
-    for (const std::string& note : check.notes) fmt::print("note: {}\n", note);
-    std::fflush(stdout);
-    if (!check.costs.empty()) printCosts(check);
-  }
+  printResult(o.json, "scene-check", checkJson(file.string(), check), [&](std::ostream& out) {
+    for (const Error& fault : check.faults) out << fmt::format("fault: {}\n", fault.what());
+    for (const std::string& note : check.notes) out << fmt::format("note: {}\n", note);
+    if (!check.costs.empty()) printCosts(check, out);
+  });
   if (!check.faults.empty())
     throw Error(ErrorKind::damaged, fmt::format("{}: {} faults", file.string(), check.faults.size()));
   if (!o.json) fmt::print("{}: sound, {} notes\n", file.string(), check.notes.size());

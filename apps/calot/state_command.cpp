@@ -73,21 +73,14 @@ ExitCode diff(const DiffOptions& o) {
   const recorder::StateFile a = recorder::readStateFile(o.first);
   const recorder::StateFile b = recorder::readStateFile(o.second);
   const auto difference = recorder::firstDifference(a.fields, b.fields);
-  if (o.json) {
-    nlohmann::json json{{"equal", !difference}};
-    if (difference) {
-      json["field"] = difference->field;
-      json["index"] = difference->index;
-      json["first"] = difference->first;
-      json["second"] = difference->second;
-    }
-    printResult("diff", json);
-  } else if (difference) {
-    fmt::print("{} index {}: {} and {}\n", difference->field, difference->index, difference->first, difference->second);
-  } else {
-    fmt::print("equal: {} fields of step {}\n", a.fields.size(), a.step);
+  nlohmann::json json{{"equal", !difference}};
+  std::string text = fmt::format("equal: {} fields of step {}\n", a.fields.size(), a.step);
+  if (const auto& d = difference) {
+    json.update({{"field", d->field}, {"index", d->index}, {"first", d->first}, {"second", d->second}});
+    text = fmt::format("{} index {}: {} and {}\n", d->field, d->index, d->first, d->second);
   }
-  if (a.step != b.step && !o.json) fmt::print("the first is of step {}, the second of step {}\n", a.step, b.step);
+  if (a.step != b.step) text += fmt::format("the first is of step {}, the second of step {}\n", a.step, b.step);
+  printResult(o.json, "diff", json, text);
   return difference ? ExitCode::no : ExitCode::yes;
 }
 

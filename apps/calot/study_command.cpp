@@ -12,9 +12,7 @@
 #include "analytics/design/design_report.h"
 #include "analytics/report/study_output.h"
 #include "apps/calot/command.h"
-#include "apps/calot/environment.h"
 #include "recorder/attempt.h"
-#include "recorder/base/errors.h"
 #include "recorder/base/text_output.h"
 #ifdef CALOT_PDF
 #include "gui/report/pdf_report.h"
@@ -314,11 +312,7 @@ void runTwoGroups(StudyCommandOptions& options) {
   if (!options.csv.empty()) analytics::writeStudyCsv(study, options.csv, options.force);
   writeReport(analytics::studyDocument(study), options.html, options.pdf, options.force);
   if (isExported(options)) noteExports(options, attemptsIn(study, options.source.database));
-  if (options.json) {
-    printResult("study", analytics::studyTree(study));
-  } else {
-    printStudy(study, options.all);
-  }
+  options.json ? printResult("study", analytics::studyTree(study)) : printStudy(study, options.all);
 }
 
 void runDesign(StudyCommandOptions& options) {
@@ -328,11 +322,7 @@ void runDesign(StudyCommandOptions& options) {
   const analytics::DesignReport report = designReportOf(options.design, options.source);
   writeReport(analytics::designDocument(report), options.html, options.pdf, options.force);
   if (isExported(options)) noteExports(options, report.attempts);
-  if (options.json) {
-    printResult("design", report.json);
-  } else {
-    analytics::printDesign(report, std::cout);
-  }
+  printResult(options.json, "design", report.json, [&](std::ostream& out) { analytics::printDesign(report, out); });
 }
 
 void study(StudyCommandOptions& o) {
