@@ -2,7 +2,6 @@
 // Values of recordings and of cohorts.
 #include <algorithm>
 #include <iterator>
-#include <mutex>
 #include <string>
 
 #include "analytics/assess.h"
@@ -25,28 +24,20 @@ py::dict dictOf(const analytics::Fields& fields) {
 }
 
 /// Judges a recording as `calot assess` does, and stores the values where a cohort is named.
-analytics::JudgedRecording assess(const std::string& file, unsigned threads, double cutoff, bool apart,
-                                  const std::optional<std::string>& cohort) {
-  const bool known = std::find(std::begin(analytics::motionCutoffs), std::end(analytics::motionCutoffs), cutoff) !=
-                     std::end(analytics::motionCutoffs);
-  if (!known) throw Error(ErrorKind::invalid, "cutoff: 3, 6 or 10 Hz is expected");
+py::tuple assessed(const std::filesystem::path& file, unsigned threads, double cutoff, bool apart,
+                   const std::optional<std::filesystem::path>& cohort) {
+  const auto& cutoffs = analytics::motionCutoffs;
+  if (std::find(std::begin(cutoffs), std::end(cutoffs), cutoff) == std::end(cutoffs))
+    throw Error(ErrorKind::invalid, "cutoff: 3, 6 or 10 Hz is expected");
   if (cohort && cutoff != analytics::motionCutoff)
     throw Error(ErrorKind::invalid, "cutoff: values of a cohort have one filter, 6 Hz");
   analytics::AssessSettings settings{.threads = threads, .cutoff = cutoff};
   settings.engine.apart = apart;
-  analytics::JudgedRecording judged = analytics::assessRecording(file, settings);
-  if (cohort && judged.record) {
-    analytics::CohortDatabase database(*cohort, analytics::CohortDatabase::Access::create);
-    database.storeAttempt(*judged.record, judged.values);
-  }
-  return judged;
-}
-
-py::tuple assessed(const std::filesystem::path& file, unsigned threads, double cutoff, bool apart,
-                   const std::optional<std::filesystem::path>& cohort) {
   const analytics::JudgedRecording judged = withoutLock([&] {
-    const auto database = cohort ? std::optional<std::string>(cohort->string()) : std::nullopt;
-    analytics::JudgedRecording result = assess(file.string(), threads, cutoff, apart, database);
+    analytics::JudgedRecording result = analytics::assessRecording(file.string(), settings);
+    if (cohort && result.record)
+      analytics::CohortDatabase(cohort->string(), analytics::CohortDatabase::Access::create)
+          .storeAttempt(*result.record, result.values);
     if (result.report.verdict != recorder::ReplayVerdict::undecided || result.values.empty())
       throwUnlessExact(result.report);
     return result;
@@ -85,21 +76,13 @@ py::dict cohortValueDict(const analytics::AttemptValue& v) {
   return row;
 }
 
-template <class Row>
-py::dict rowDict(const Row& row) {
-  return dictOf(fieldsOf(row));
-}
-
 /// Rows of the cohort as a list of dicts.
-template <class Read, class Row>
-auto listOf(Read read, py::dict (*dictOf)(const Row&)) {
-  return [read, dictOf](CohortReader& cohort) {
-    const std::vector<Row> rows = withoutLock([&] {
-      const std::lock_guard lock(cohort.mutex);
-      return read(cohort.database);
-    });
+template <class Read, class Dict>
+auto listOf(Read read, Dict dict) {
+  return [read, dict](CohortReader& cohort) {
+    const auto rows = alone(cohort.mutex, [&] { return read(cohort.database); });
     py::list list;
-    for (const Row& row : rows) list.append(dictOf(row));
+    for (const auto& row : rows) list.append(dict(row));
     return list;
   };
 }
@@ -109,11 +92,12 @@ auto listOf(Read read, py::dict (*dictOf)(const Row&)) {
 void bindCohort(py::module_& m) {
   m.def("assess", assessed, "path"_a, "threads"_a, "cutoff"_a, "apart"_a, "cohort"_a);
   m.def("checkpoints", checkpoints, "Definition of every checkpoint.");
+  const auto rowDict = [](const auto& row) { return dictOf(fieldsOf(row)); };
   py::class_<CohortReader>(m, "Cohort", "A cohort's database, opened for reading.")
       .def(py::init<const std::filesystem::path&>(), "path"_a, py::call_guard<py::gil_scoped_release>())
-      .def("attempts", listOf([](const auto& d) { return d.listAttempts(); }, rowDict<analytics::AttemptRow>))
+      .def("attempts", listOf([](const auto& d) { return d.listAttempts(); }, rowDict))
       .def("values", listOf([](const auto& d) { return d.allValues(); }, cohortValueDict))
-      .def("participants", listOf([](const auto& d) { return d.participants(); }, rowDict<analytics::Participant>));
+      .def("participants", listOf([](const auto& d) { return d.participants(); }, rowDict));
   m.def("record_export", analytics::recordExport, "cohort"_a, "kind"_a, "target"_a, "attempts"_a,
         py::call_guard<py::gil_scoped_release>(),
         "Registers in a cohort an export of attempts to a file or folder, so that a withdrawal lists it.");

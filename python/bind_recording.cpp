@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-#include <mutex>
 #include <optional>
 #include <string>
 
@@ -16,47 +15,23 @@ namespace calot::python {
 namespace {
 
 /// A recording that was probed and opened. May be used by several threads, one at a time.
-class OpenedRecording {
- public:
-  explicit OpenedRecording(const std::filesystem::path& path) : chain_(recorder::probe(path)), recording_(path) {}
+struct OpenedRecording {
+  explicit OpenedRecording(const std::filesystem::path& path) : chain(recorder::probe(path)), recording(path) {}
 
-  [[nodiscard]] const recorder::Recording& recording() const { return recording_; }
-  [[nodiscard]] const recorder::ChainVerdict& chain() const { return chain_; }
-
-  recorder::RecordedColumns columns() {
-    const std::lock_guard lock(mutex_);
-    return recorder::recordedColumns(recording_);
-  }
-  std::vector<std::byte> rawSamples(Hand hand) {
-    const std::lock_guard lock(mutex_);
-    return recorder::packedRawSamples(recording_, hand);
-  }
-  /// @throws Error (invalid) where there is none of that number
-  recorder::Keyframe keyframe(std::size_t index) {
-    const std::lock_guard lock(mutex_);
-    const std::size_t count = recording_.keyframeSteps().size();
-    if (index >= count)
-      throw Error(
-          ErrorKind::invalid, Where{recording_.path().string()},
-          "has " + std::to_string(count) + " keyframes, from 0 on: there is none of number " + std::to_string(index));
-    return recording_.keyframe(index);
-  }
-
- private:
-  std::mutex mutex_;
-  recorder::ChainVerdict chain_;
-  recorder::Recording recording_;
+  std::mutex mutex;
+  recorder::ChainVerdict chain;
+  recorder::Recording recording;
 };
 
 py::dict headerOf(const OpenedRecording& opened) {
   py::dict out;
-  recorder::forEachAttribute(opened.recording().header(),
+  recorder::forEachAttribute(opened.recording.header(),
                              [&](const char* name, const auto& value) { out[name] = value; });
   return out;
 }
 
 py::object signatureOf(const OpenedRecording& opened) {
-  const recorder::Recording& recording = opened.recording();
+  const recorder::Recording& recording = opened.recording;
   const auto& signature = recording.signature();
   if (!signature) return py::none();
   const auto value =
@@ -73,17 +48,28 @@ py::list listOf(const std::vector<recorder::RecordedColumn>& columns) {
 }
 
 py::tuple columnsOf(OpenedRecording& opened) {
-  const recorder::RecordedColumns columns = withoutLock([&] { return opened.columns(); });
+  const recorder::RecordedColumns columns =
+      alone(opened.mutex, [&] { return recorder::recordedColumns(opened.recording); });
   return py::make_tuple(listOf(columns.ticks), listOf(columns.steps), bytesOf(columns.events));
 }
 
 py::tuple rawSamplesOf(OpenedRecording& opened) {
-  const auto of = [&](Hand hand) { return bytesOf(withoutLock([&] { return opened.rawSamples(hand); })); };
+  const auto of = [&](Hand hand) {
+    return bytesOf(alone(opened.mutex, [&] { return recorder::packedRawSamples(opened.recording, hand); }));
+  };
   return py::make_tuple(of(Hand::left), of(Hand::right));
 }
 
+/// @throws Error (invalid) where there is none of that number
 py::tuple keyframeOf(OpenedRecording& opened, std::size_t index) {
-  const recorder::Keyframe keyframe = withoutLock([&] { return opened.keyframe(index); });
+  const recorder::Keyframe keyframe = alone(opened.mutex, [&] {
+    const std::size_t count = opened.recording.keyframeSteps().size();
+    if (index >= count)
+      throw Error(
+          ErrorKind::invalid, Where{opened.recording.path().string()},
+          "has " + std::to_string(count) + " keyframes, from 0 on: there is none of number " + std::to_string(index));
+    return opened.recording.keyframe(index);
+  });
   return py::make_tuple(keyframe.step, bytesOf(keyframe.state), bytesOf(keyframe.haptics));
 }
 
@@ -93,19 +79,19 @@ void bindRecording(py::module_& m) {
   py::class_<OpenedRecording>(m, "Recording", "A recording, checked in a process of its own, then opened.")
       .def(py::init<const std::filesystem::path&>(), "path"_a, py::call_guard<py::gil_scoped_release>())
       .def_property_readonly("header", headerOf)
-      .def_property_readonly("names", [](const OpenedRecording& o) { return o.recording().header().structures(); })
-      .def_property_readonly("steps", [](const OpenedRecording& o) { return o.recording().stepCount(); })
-      .def_property_readonly("ticks", [](const OpenedRecording& o) { return o.recording().tickCount(); })
-      .def_property_readonly("seconds", [](const OpenedRecording& o) { return o.recording().seconds(); })
-      .def_property_readonly("complete", [](const OpenedRecording& o) { return o.recording().complete(); })
+      .def_property_readonly("names", [](const OpenedRecording& o) { return o.recording.header().structures(); })
+      .def_property_readonly("steps", [](const OpenedRecording& o) { return o.recording.stepCount(); })
+      .def_property_readonly("ticks", [](const OpenedRecording& o) { return o.recording.tickCount(); })
+      .def_property_readonly("seconds", [](const OpenedRecording& o) { return o.recording.seconds(); })
+      .def_property_readonly("complete", [](const OpenedRecording& o) { return o.recording.complete(); })
       .def_property_readonly("outcome",
-                             [](const OpenedRecording& o) { return recorder::wordFor(o.recording().outcome()); })
-      .def_property_readonly("keyframe_steps", [](const OpenedRecording& o) { return o.recording().keyframeSteps(); })
-      .def_property_readonly("chain_intact", [](const OpenedRecording& o) { return o.chain().intact; })
-      .def_property_readonly("chain_fault", [](const OpenedRecording& o) { return o.chain().what; })
+                             [](const OpenedRecording& o) { return recorder::wordFor(o.recording.outcome()); })
+      .def_property_readonly("keyframe_steps", [](const OpenedRecording& o) { return o.recording.keyframeSteps(); })
+      .def_property_readonly("chain_intact", [](const OpenedRecording& o) { return o.chain.intact; })
+      .def_property_readonly("chain_fault", [](const OpenedRecording& o) { return o.chain.what; })
       .def_property_readonly("chain_head",
                              [](const OpenedRecording& o) {
-                               const auto& head = o.recording().status().back().chain;
+                               const auto& head = o.recording.status().back().chain;
                                return bytesOf(head.data(), head.size());
                              })
       .def_property_readonly("signature", signatureOf)

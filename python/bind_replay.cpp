@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <memory>
-#include <mutex>
 #include <optional>
 
 #include "analytics/checkpoints/replay_words.h"
@@ -20,57 +19,46 @@ namespace calot::python {
 namespace {
 
 /// Re-simulates a recording step by step, and compares each with what is recorded.
-class SteppedReplay {
- public:
-  explicit SteppedReplay(const std::filesystem::path& path)
-      : path_(path),
-        chainIntact_(recorder::probe(path).intact),
-        recording_(path),
-        choice_(recording_, {}),
-        scene_(recorder::sceneOf(recording_)),
-        engine_(choice_.make(executor_)),
-        facts_(choice_.scene()),
-        observers_{&facts_} {
-    engine_->start(recording_.header().seed);
+struct SteppedReplay {
+  explicit SteppedReplay(const std::filesystem::path& file)
+      : path(file),
+        chainIntact(recorder::probe(file).intact),
+        recording(file),
+        choice(recording, {}),
+        scene(recorder::sceneOf(recording)),
+        engine(choice.make(executor)),
+        facts(choice.scene()) {
+    engine->start(recording.header().seed);
   }
 
-  /// Does up to `steps` steps. @returns whether the last of them is there @throws ReplayFault
+  /// Does up to `steps` steps. @returns whether the last of them is there @throws Error as throwUnlessExact()
   bool advance(std::uint64_t steps) {
-    const std::lock_guard lock(mutex_);
-    const std::uint64_t end = std::min(engine_->steps() + steps, recording_.stepCount());
-    if (engine_->steps() < end) {
-      if (recorder::follow(recording_, *engine_, end, observers_)) fail();
+    const auto fail = [&] { throwUnlessExact(recorder::replayRecording(path, {})); };  // says what a whole replay says
+    const std::uint64_t end = std::min(engine->steps() + steps, recording.stepCount());
+    if (engine->steps() < end) {
+      if (recorder::follow(recording, *engine, end, {&facts})) fail();
       return true;
     }
-    if (!over_) choice_.save();
-    over_ = true;
-    if (!chainIntact_) fail();  // the re-simulation agrees, and the recording was changed all the same
+    if (!over) choice.save();
+    over = true;
+    if (!chainIntact) fail();  // the re-simulation agrees, and the recording was changed all the same
     return false;
   }
 
-  [[nodiscard]] const StepFacts& facts() const { return facts_.facts(); }
-  [[nodiscard]] std::vector<recorder::wire::Column> columns() const { return recorder::resultColumns(scene_->model()); }
-  [[nodiscard]] std::uint64_t steps() const { return engine_->steps(); }
-
- private:
-  /// Throws what a whole replay says of the recording.
-  void fail() const { throwUnlessExact(recorder::replayRecording(path_, {})); }
-
-  std::mutex mutex_;
-  std::filesystem::path path_;
-  bool chainIntact_ = false, over_ = false;
-  recorder::Recording recording_;
-  recorder::EngineChoice choice_;
-  std::shared_ptr<recorder::PreparedScene> scene_;
-  SerialExecutor executor_;
-  std::unique_ptr<recorder::Engine> engine_;
-  FactsObserver facts_;
-  std::vector<recorder::Observer*> observers_;
+  std::mutex mutex;
+  std::filesystem::path path;
+  bool chainIntact = false, over = false;
+  recorder::Recording recording;
+  recorder::EngineChoice choice;
+  std::shared_ptr<recorder::PreparedScene> scene;
+  SerialExecutor executor;
+  std::unique_ptr<recorder::Engine> engine;
+  FactsObserver facts;
 };
 
 py::object nextOf(SteppedReplay& replay, std::uint64_t steps) {
-  const bool there = withoutLock([&] { return replay.advance(steps); });
-  return there ? py::cast(replay.facts()) : py::object(py::none());
+  const bool there = alone(replay.mutex, [&] { return replay.advance(steps); });
+  return there ? py::cast(replay.facts.facts()) : py::object(py::none());
 }
 
 py::dict replayed(const std::filesystem::path& path, unsigned threads, bool anyway, bool apart) {
@@ -115,8 +103,9 @@ void bindReplay(py::module_& m) {
   py::class_<SteppedReplay>(m, "Replay", "Re-simulates a recording step by step, and compares.")
       .def(py::init<const std::filesystem::path&>(), "path"_a, py::call_guard<py::gil_scoped_release>())
       .def("advance", nextOf, "steps"_a = 1, "Does these steps; the facts of the last one, or None at the end.")
-      .def_property_readonly("columns", [](const SteppedReplay& r) { return columnList(r.columns()); })
-      .def_property_readonly("steps", &SteppedReplay::steps);
+      .def_property_readonly(
+          "columns", [](const SteppedReplay& r) { return columnList(recorder::resultColumns(r.scene->model())); })
+      .def_property_readonly("steps", [](const SteppedReplay& r) { return r.engine->steps(); });
   m.def("result_units", resultUnits, "Unit of each field of a step's result.");
   m.def("replay", replayed, "path"_a, "threads"_a, "anyway"_a, "apart"_a);
 }

@@ -8,6 +8,8 @@
 #include <pybind11/stl/filesystem.h>
 
 #include <cstddef>
+#include <filesystem>
+#include <mutex>
 #include <vector>
 
 #include "analytics/checkpoints/checkpoint.h"
@@ -24,27 +26,25 @@ void bindReplay(pybind11::module_& m);
 void bindMoment(pybind11::module_& m);
 void bindCohort(pybind11::module_& m);
 void bindAttempt(pybind11::module_& m);
-/// Makes C++ errors Python's from here on.
-void translateErrors();
 
-/// A recording that is not what its re-simulation gives.
-class ReplayFault : public Error {
- public:
-  /// @pre the report's verdict is `diverged`
-  explicit ReplayFault(const recorder::ReplayReport& report);
-  [[nodiscard]] const recorder::ReplayReport& report() const { return report_; }
+/// Folders that may hold scenes, organs and performers (recorder::ProgramFiles): beside the programs that the module
+/// was built or installed with.
+std::vector<std::filesystem::path> assetFolders();
 
- private:
-  recorder::ReplayReport report_;
-};
-
-/// Throws what a verdict amounts to; returns where it is exact. @throws ReplayFault; Error (damaged, undecided)
+/// Throws what a verdict amounts to; returns where it is exact. @throws Error (refused, damaged, undecided)
 void throwUnlessExact(const recorder::ReplayReport& report);
 
 /// Result of a task that runs without Python's lock.
 template <class Task>
 auto withoutLock(const Task& task) {
   const pybind11::gil_scoped_release release;
+  return task();
+}
+/// The same of an object that several threads may use, one at a time.
+template <class Task>
+auto alone(std::mutex& mutex, const Task& task) {
+  const pybind11::gil_scoped_release release;
+  const std::lock_guard lock(mutex);
   return task();
 }
 

@@ -1,11 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "apps/common/program.h"
 #include "gui/dashboard/import_queue.h"
 
 namespace calot::apps {
 
 /// `calot assess`, for the dashboard.
-gui::AssessProgram assessProgram();
+inline gui::AssessProgram assessProgram() {
+  gui::AssessProgram program;
+  program.arguments = [](const QString& file, const QString& database, int threads) {
+    return QStringList{"assess", file, "--cohort", database, "--threads", QString::number(threads), "--json"};
+  };
+  program.refused = [](int exitCode) {
+    return exitCode == static_cast<int>(ExitCode::damaged) || exitCode == static_cast<int>(ExitCode::no);
+  };
+  program.typed = [](const QString& database) { return "calot assess recording.h5 --cohort " + database; };
+  return program;
+}
 
 }  // namespace calot::apps

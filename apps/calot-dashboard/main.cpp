@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <optional>
 #include <QApplication>
 #include <QSize>
 #include <QStandardPaths>
@@ -14,7 +15,6 @@
 #include <vector>
 
 #include "apps/calot-dashboard/assess_program.h"
-#include "apps/common/help_json.h"
 #include "apps/common/program.h"
 #include "apps/window/window_start.h"
 #include "gui/attempt/theme.h"
@@ -29,8 +29,6 @@
 #include "recorder/recording/reader.h"
 
 namespace {
-
-constexpr const char* programName = "calot-dashboard";
 
 namespace fs = std::filesystem;
 
@@ -55,58 +53,44 @@ fs::path openedCohort() {
   return folder / "opened.db";
 }
 
-int run(int argc, char** argv) {
-  CLI::App options{"Shows the attempts and checkpoints of a cohort database, or a recording.", programName};
-  options.footer("Example:\n  calot-dashboard c.db");
-  std::string file, pictures, graphics = "auto";
+struct Options {
+  std::optional<std::string> file;
+  std::string pictures, graphics = "auto";
   calot::apps::LookOptions look;
-  options.set_version_flag("--version", "calot-dashboard " CALOT_VERSION);
-  const CLI::Option* const given =
-      options.add_option("file", file,
-                         "Cohort database, as `calot assess --cohort` writes it; or a recording, which is verified, "
-                         "assessed and kept in the cohort calot/opened.db of the user's data folder");
-  options.add_option("--pictures", pictures, "Write a PNG of each page into this folder, and end");
-  calot::apps::addLook(options, look, "as in the settings");
-  calot::apps::addGraphics(options, graphics);
-  calot::apps::addHelpJson(options);
-  try {
-    options.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return options.exit(error);
-    return calot::apps::endWith(calot::apps::ExitCode::usage, programName, std::string(error.what()) + "; try --help");
-  }
+};
 
+int run(const Options& o, int argc, char** argv) {
   calot::recorder::useComplianceCache(calot::recorder::userCacheFolder());
   // A file that cannot be opened is reported before there is a window, and needs none.
   std::shared_ptr<const calot::gui::CohortDocument> document;
-  const bool recording = given->count() > 0 && isRecording(file);
+  const bool recording = o.file && isRecording(*o.file);
   std::string attempt;  // uuid of the recording's
   if (recording) {
-    calot::recorder::probe(file);
-    attempt = calot::recorder::Recording(file).header().attempt;
+    calot::recorder::probe(*o.file);
+    attempt = calot::recorder::Recording(*o.file).header().attempt;
   }
   bool older = false;  // of an older schema, which the window brings up to date
-  if (given->count() > 0 && !recording) {
+  if (o.file && !recording) {
     try {
-      document = std::make_shared<const calot::gui::CohortDocument>(file);
+      document = std::make_shared<const calot::gui::CohortDocument>(*o.file);
     } catch (const calot::Error& error) {
       const std::vector<calot::Remedy>& remedies = error.remedies();
       older = std::find(remedies.begin(), remedies.end(), calot::Remedy::upgradeCohort) != remedies.end();
       if (!older) throw;
     }
   }
-  if (recording && !pictures.empty())
+  if (recording && !o.pictures.empty())
     throw calot::Error(calot::ErrorKind::invalid, "--pictures: needs a cohort database, not a recording");
-  const QSize asked = calot::apps::windowSize(look);
-  if (!pictures.empty()) calot::apps::requireFolder(pictures, "pictures");
+  const QSize asked = calot::apps::windowSize(o.look);
+  if (!o.pictures.empty()) calot::apps::requireFolder(o.pictures, "pictures");
   calot::apps::requireScreen();
-  calot::apps::useGraphics(graphics);
+  calot::apps::useGraphics(o.graphics);
 
   QApplication application(argc, argv);
   QApplication::setApplicationName("Calot");
-  calot::gui::theme::apply(look.colours.empty() ? calot::gui::settings::colours()
-                                                : calot::gui::theme::choiceOf(QString::fromStdString(look.colours)),
-                           look.type == 0 ? calot::gui::settings::type() : look.type);
+  calot::gui::theme::apply(o.look.colours.empty() ? calot::gui::settings::colours()
+                                                  : calot::gui::theme::choiceOf(QString::fromStdString(o.look.colours)),
+                           o.look.type == 0 ? calot::gui::settings::type() : o.look.type);
   const calot::recorder::ProgramFiles files = calot::recorder::ProgramFiles::ofThisProgram();
   const std::vector<fs::path> assets = files.assetRoots();
   calot::recorder::useEngines(calot::recorder::userEnginePlaces(files.programs(), assets));
@@ -114,11 +98,11 @@ int run(int argc, char** argv) {
   if (document) window.setDocument(document);
   if (!asked.isNull()) window.resize(asked);
   window.show();
-  if (older) window.openDatabase(QString::fromStdString(file));
+  if (older) window.openDatabase(QString::fromStdString(*o.file));
   if (recording && window.createDatabase(QString::fromStdString(openedCohort().string())))
-    window.showRecording(QString::fromStdString(fs::absolute(file).string()), QString::fromStdString(attempt));
-  if (!pictures.empty()) {
-    window.savePictures(QString::fromLocal8Bit(pictures.c_str()));
+    window.showRecording(QString::fromStdString(fs::absolute(*o.file).string()), QString::fromStdString(attempt));
+  if (!o.pictures.empty()) {
+    window.savePictures(QString::fromLocal8Bit(o.pictures.c_str()));
     return 0;
   }
   return QApplication::exec();
@@ -127,5 +111,15 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return calot::apps::runProgram(programName, [&] { return run(argc, argv); });
+  CLI::App app{"Shows the attempts and checkpoints of a cohort database, or a recording.", "calot-dashboard"};
+  app.footer("Example:\n  calot-dashboard c.db");
+  app.set_version_flag("--version", "calot-dashboard " CALOT_VERSION);
+  Options o;
+  app.add_option("file", o.file,
+                 "Cohort database, as `calot assess --cohort` writes it; or a recording, which is verified, "
+                 "assessed and kept in the cohort calot/opened.db of the user's data folder");
+  app.add_option("--pictures", o.pictures, "Write a PNG of each page into this folder, and end");
+  calot::apps::addLook(app, o.look, "as in the settings");
+  calot::apps::addGraphics(app, o.graphics);
+  return calot::apps::runProgram(app, argc, argv, [&] { return run(o, argc, argv); });
 }

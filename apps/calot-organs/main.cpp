@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// calot-organs: writes the organ surfaces of assets/organs, or checks that they are what it would write; prints the
-// vessels' paths as scenes hold them.
+// calot-organs: writes the organ surfaces of assets/organs, or checks that they are what it would write.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,7 +9,6 @@
 #include <vector>
 
 #include "apps/calot-organs/organ_shapes.h"
-#include "apps/common/help_json.h"
 #include "apps/common/program.h"
 #include "recorder/base/errors.h"
 #include "recorder/base/files.h"
@@ -22,14 +20,15 @@ namespace {
 struct Organ {
   std::string file;
   calot::TriangleMesh mesh;
-  const char* head;
+  std::string head;
 };
 
 int run(const std::filesystem::path& folder, bool check, bool force) {
   using namespace calot;
-  const std::vector<Organ> organs{{"liver.obj", organs::makeLiver(), organs::liverHead},
-                                  {"gallbladder.obj", organs::makeGallbladder(), organs::gallbladderHead},
-                                  {"fat.obj", organs::makeFat(), organs::fatHead}};
+  const std::vector<Organ> organs{
+      {"liver.obj", organs::makeLiver(), organs::headOf("Liver of an adult")},
+      {"gallbladder.obj", organs::makeGallbladder(), organs::headOf("Gallbladder of an adult")},
+      {"fat.obj", organs::makeFat(), organs::headOf("Fat over Calot's triangle")}};
   int result = 0;
   for (const Organ& organ : organs) {
     const SurfaceReport report = inspectSurface(organ.mesh);
@@ -57,41 +56,14 @@ int run(const std::filesystem::path& folder, bool check, bool force) {
   return result;
 }
 
-/// The values of "path", "radius", "wall" and "elements" of each vessel of a scene file.
-int printVessels() {
-  using namespace calot;
-  for (const organs::VesselPath& vessel : organs::vesselPaths()) {
-    fmt::print("\"name\": \"{}\", \"elements\": {}, \"radius\": {}, \"wall\": {},\n  \"path\": [", vessel.name,
-               organs::vesselElements, vessel.radius, vessel.wall);
-    for (const Vec3& p : vessel.point) {
-      fmt::print("{}[{}, {}, {}]", &p == vessel.point.data() ? "" : ", ", p[0], p[1], p[2]);
-    }
-    fmt::print("]\n");
-  }
-  return static_cast<int>(apps::ExitCode::yes);
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
   CLI::App app("Makes the organ surfaces liver.obj, gallbladder.obj and fat.obj from implicit shapes.", "calot-organs");
   std::string folder;
-  bool check = false;
-  bool force = false;
-  bool vessels = false;
-  app.add_option("folder", folder, "where to write them");
-  app.add_flag("--vessels", vessels, "print the vessels' paths for scene files, and write nothing");
+  bool check = false, force = false;
+  app.add_option("folder", folder, "where to write them")->required();
   app.add_flag("--check", check, "write nothing; exit 3 where a file differs from what would be written");
   app.add_flag("--force", force, "replace files that are there");
-  calot::apps::addHelpJson(app);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : static_cast<int>(calot::apps::ExitCode::usage);
-  }
-  return calot::apps::runProgram("calot-organs", [&] {
-    if (vessels) return printVessels();
-    if (folder.empty()) throw calot::Error(calot::ErrorKind::invalid, "name the folder, or ask for --vessels");
-    return run(folder, check, force);
-  });
+  return calot::apps::runProgram(app, argc, argv, [&] { return run(folder, check, force); });
 }

@@ -18,7 +18,6 @@
 #include "analytics/cohort/cohort_database.h"
 #include "apps/calot/environment.h"
 #include "apps/calot/source_options.h"
-#include "apps/common/help_json.h"
 #include "apps/common/program.h"
 #include "apps/window/window_start.h"
 #include "gui/attempt/theme.h"
@@ -36,8 +35,6 @@
 
 namespace calot::apps {
 namespace {
-
-constexpr const char* programName = "calot-trainer";
 
 struct Options {
   SourceOptions source;
@@ -254,17 +251,7 @@ void onMessage(QtMsgType type, const QMessageLogContext& context, const QString&
   std::_Exit(static_cast<int>(ExitCode::failure));
 }
 
-int run(int argc, char** argv) {
-  CLI::App app{"Practises or assesses an operation, live: every attempt is recorded.", programName};
-  Options o;
-  add(app, o);
-  addHelpJson(app);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return app.exit(error);
-    return endWith(ExitCode::usage, programName, std::string(error.what()) + "; try --help");
-  }
+int run(const Options& o, int argc, char** argv) {
   stopOnSignals();
   recorder::useComplianceCache(recorder::userCacheFolder());
   recorder::useEngines(enginePlaces());
@@ -316,5 +303,8 @@ int run(int argc, char** argv) {
 }  // namespace calot::apps
 
 int main(int argc, char** argv) {
-  return calot::apps::runProgram(calot::apps::programName, [&] { return calot::apps::run(argc, argv); });
+  CLI::App app{"Practises or assesses an operation, live: every attempt is recorded.", "calot-trainer"};
+  calot::apps::Options o;
+  calot::apps::add(app, o);
+  return calot::apps::runProgram(app, argc, argv, [&] { return calot::apps::run(o, argc, argv); });
 }

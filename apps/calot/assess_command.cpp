@@ -188,8 +188,11 @@ ExitCode assess(const AssessOptions& o) {
 }  // namespace
 
 void addAssess(CLI::App& app, Run& run) {
-  const auto [command, o] = addCommand(
-      app, run, "assess", "Re-simulates recordings, computes their checkpoints and stores them in a cohort.", assess);
+  const auto [command, o] =
+      addCommand(app, run,
+                 {"assess", "Re-simulates recordings, computes their checkpoints and stores them in a cohort.",
+                  "calot assess attempt.h5 --cohort c.db", "calot assess recordings --cohort c.db --metric my.py"},
+                 assess);
   command->add_option("recordings", o->files, "recordings, or folders that hold them")->required();
   addStoring(*command, o->cohort, o->cutoff);
   addMetrics(*command, o->metrics);

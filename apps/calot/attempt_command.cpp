@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "analytics/cohort/cohort_database.h"
 #include "apps/calot/command.h"
 #include "apps/calot/replay_report.h"
 
@@ -18,7 +17,6 @@ struct AttemptFilter {
   bool all = false, json = false;
 };
 
-/// Filter of the rows.
 bool isAsked(const AttemptRow& a, const AttemptFilter& o) {
   return (o.participant.empty() || a.participant == o.participant) && (o.group.empty() || a.group == o.group) &&
          (o.scene.empty() || a.scene == o.scene) &&
@@ -59,17 +57,14 @@ void listAttempts(const AttemptFilter& o) {
     if (a.excluded) notes += fmt::format("{} is excluded: {}\n", beginning, a.exclusionReason);
     synthetic += a.synthetic ? 1 : 0;
   }
-  if (o.json) {
-    printResult("attempt-list", {{"attempts", list}});
-    return;
-  }
-  if (!list.empty()) table.print(std::cout, terminalColumns());
-  std::cout << notes;
-  if (synthetic > 0) std::cout << fmt::format("{} of them by performers (synthetic)\n", synthetic);
-  const std::size_t left = rows.size() - list.size();
-  std::cout << fmt::format(
-      "{}: {} attempts{}\n", o.cohort, list.size(),
-      left > 0 ? fmt::format(", {} not listed{}", left, o.all ? "" : " (--all: excluded, too)") : "");
+  if (synthetic > 0) notes += fmt::format("{} of them by performers (synthetic)\n", synthetic);
+  notes += fmt::format("{}: {} attempts", o.cohort, list.size());
+  if (const std::size_t left = rows.size() - list.size(); left > 0)
+    notes += fmt::format(", {} not listed{}", left, o.all ? "" : " (--all: excluded, too)");
+  printResult(o.json, "attempt-list", {{"attempts", list}}, [&](std::ostream& out) {
+    if (!list.empty()) table.print(out, terminalColumns());
+    out << notes << '\n';
+  });
 }
 
 struct AttemptOptions {
@@ -99,23 +94,21 @@ void tag(const AttemptOptions& o) {
   if (!add && changed == 0)
     throw Error(ErrorKind::refused, Where{o.cohort}, fmt::format("attempt {} has no tag \"{}\"", uuid, o.tag));
   const std::vector<std::string> tags = database.attempt(uuid)->tags;
-  if (o.json) {
-    printResult("attempt-tag", {{"attempt", uuid}, {"tags", tags}, {"changed", changed > 0}});
-  } else {
-    std::cout << fmt::format("{}: attempt {}: {}\n", o.cohort, uuid,
-                             tags.empty() ? "no tags" : fmt::format("tags {}", fmt::join(tags, ", ")));
-  }
+  printResult(o.json, "attempt-tag", {{"attempt", uuid}, {"tags", tags}, {"changed", changed > 0}},
+              fmt::format("{}: attempt {}: {}\n", o.cohort, uuid,
+                          tags.empty() ? "no tags" : fmt::format("tags {}", fmt::join(tags, ", "))));
 }
 
 }  // namespace
 
 void addAttempt(CLI::App& app, Run& run) {
   CLI::App& attempt =
-      *app.add_subcommand("attempt", "List and tag attempts, keep them out of studies, or take them in again");
-  attempt.require_subcommand(1);
+      addGroup(app, {"attempt", "List and tag attempts, keep them out of studies, or take them in again",
+                     "calot attempt exclude 3f2a --cohort c.db --reason \"camera failed\" --by \"A. Instructor\""});
 
-  const auto [list, l] =
-      addCommand(attempt, run, "list", "List the attempts of a cohort, by their start", listAttempts);
+  const auto [list, l] = addCommand(
+      attempt, run, {"list", "List the attempts of a cohort, by their start", "calot attempt list --cohort c.db"},
+      listAttempts);
   addCohortOption(*list, l->cohort)->required();
   list->add_option("--participant", l->participant, "Only this participant's");
   list->add_option("--group", l->group, "Only this group's");
@@ -126,10 +119,22 @@ void addAttempt(CLI::App& app, Run& run) {
 
   const auto o = std::make_shared<AttemptOptions>();
   CLI::App* exclude =
-      addCommand(attempt, run, "exclude", "Keep an attempt out of studies and norms", decide<true>, o).first;
-  CLI::App* include = addCommand(attempt, run, "include", "Take an exclusion back", decide<false>, o).first;
-  CLI::App* tagged =
-      addCommand(attempt, run, "tag", "Put a word on an attempt to find it by, or take it off", tag, o).first;
+      addCommand(attempt, run,
+                 {"exclude", "Keep an attempt out of studies and norms",
+                  "calot attempt exclude 3f2a --cohort c.db --reason \"camera failed\" --by \"A. Instructor\""},
+                 decide<true>, o)
+          .first;
+  CLI::App* include =
+      addCommand(attempt, run,
+                 {"include", "Take an exclusion back",
+                  "calot attempt include 3f2a --cohort c.db --reason \"film found\" --by \"A. Instructor\""},
+                 decide<false>, o)
+          .first;
+  CLI::App* tagged = addCommand(attempt, run,
+                                {"tag", "Put a word on an attempt to find it by, or take it off",
+                                 "calot attempt tag 3f2a add teaching --cohort c.db --by \"A. Instructor\""},
+                                tag, o)
+                         .first;
   for (CLI::App* command : {exclude, include, tagged}) {
     command->add_option("attempt", o->attempt, "Its uuid, or the beginning of it")->required();
     if (command == tagged) {

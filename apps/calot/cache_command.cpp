@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // calot cache: what the user's cache folder holds.
 
-#include <iostream>
-#include <memory>
-#include <nlohmann/json.hpp>
-#include "analytics/report/report_document.h"
 #include "apps/calot/command.h"
 #include "recorder/compliance_cache.h"
 
@@ -47,22 +43,22 @@ void cache(const CacheOptions& o) {
                           known ? std::to_string(e.columns) : "-", megabytes(e.bytes), stateName(e.state)});
     bytes += e.bytes;
   }
-  if (o.json) {
-    printResult("cache", {{"folder", folder ? folder->string() : ""}, {"removed", o.clean}, {"entries", rows}});
-  } else if (!folder) {
-    fmt::print("no cache folder: CALOT_CACHE is off, or there is no home\n");
-  } else {
-    if (!table.rows.empty()) table.print(std::cout);
-    std::cout << fmt::format("{}: {}{} entries, {}\n", folder->string(), o.clean ? "removed " : "", entries.size(),
-                             megabytes(bytes));
-  }
+  const std::string place = folder ? folder->string() : "";
+  printResult(o.json, "cache", {{"folder", place}, {"removed", o.clean}, {"entries", rows}}, [&](std::ostream& out) {
+    if (!table.rows.empty()) table.print(out);
+    out << (folder ? fmt::format("{}: {}{} entries, {}\n", place, o.clean ? "removed " : "", entries.size(),
+                                 megabytes(bytes))
+                   : "no cache folder: CALOT_CACHE is off, or there is no home\n");
+  });
 }
 
 }  // namespace
 
 void addCache(CLI::App& app, Run& run) {
   const auto [command, o] = addCommand(
-      app, run, "cache", "Show or clean what is kept in the cache folder so that scenes start sooner", cache);
+      app, run,
+      {"cache", "Show or clean what is kept in the cache folder so that scenes start sooner", "calot cache --clean"},
+      cache);
   CLI::Option* const clean =
       command->add_flag("--clean", o->clean, "Remove what this build cannot use: damaged, foreign, of other versions");
   command->add_flag("--all", o->all, "With --clean: everything")->needs(clean);

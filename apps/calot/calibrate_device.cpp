@@ -332,8 +332,11 @@ void calibrate(const CalibrateOptions& o) {
 }  // namespace
 
 void addCalibrateDevice(CLI::App& devices, Run& run) {
-  const auto [measure, c] =
-      addCommand(devices, run, "calibrate", "Measures a device in guided steps and stores the result.", calibrate);
+  const auto [measure, c] = addCommand(devices, run,
+                                       {"calibrate", "Measures a device in guided steps and stores the result.",
+                                        "calot devices calibrate gamepad -o gamepad.json",
+                                        "calot devices calibrate camera:0 -o camera.json --pictures ."},
+                                       calibrate);
   measure->add_option("device", c->device.name, "as for record --device")->required();
   addTools(*measure, c->device);
   measure->add_option("--from", c->from, "measure this stream instead, recorded by --keep-stream");

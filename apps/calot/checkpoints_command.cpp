@@ -36,11 +36,11 @@ Json definitionJson(const CheckpointDefinition& d) {
           {"not_outcome_because", d.notOutcome}};
 }
 
-void printDefinition(const CheckpointDefinition& d) {
+std::string definitionText(const CheckpointDefinition& d) {
   const std::size_t columns = terminalColumns();
-  std::cout << wrappedText(fmt::format("{} (version {}): {}", d.name, d.version, d.title), columns, 4) << '\n';
-  const auto line = [columns](const char* word, const std::string& text) {
-    if (!text.empty()) std::cout << fmt::format("  {:<12} {}\n", word, wrappedText(text, columns, 15, 15));
+  std::string all = wrappedText(fmt::format("{} (version {}): {}", d.name, d.version, d.title), columns, 4) + '\n';
+  const auto line = [&](const char* word, const std::string& text) {
+    if (!text.empty()) all += fmt::format("  {:<12} {}\n", word, wrappedText(text, columns, 15, 15));
   };
   line("definition", d.definition);
   line("unit", d.unit == d.displayUnit ? d.unit : fmt::format("{} (shown in {})", d.unit, d.displayUnit));
@@ -54,25 +54,25 @@ void printDefinition(const CheckpointDefinition& d) {
   line("known", d.finality == analytics::Finality::running ? "after every step" : "at the end");
   line("paper", d.paperReading);
   line("outcome", d.notOutcome.empty() ? "" : "no: " + d.notOutcome);
+  return all;
 }
 
 void listCheckpoints(const JsonOption& o) {
   Json list = Json::array();
+  std::string text;
   for (const analytics::CheckpointEntry& entry : analytics::checkpointRegistry()) {
-    if (o.json) {
-      list.push_back(definitionJson(entry.definition));
-    } else {
-      printDefinition(entry.definition);
-    }
+    list.push_back(definitionJson(entry.definition));
+    text += definitionText(entry.definition);
   }
-  if (o.json) printResult("checkpoints", {{"checkpoints", list}});
+  printResult(o.json, "checkpoints", {{"checkpoints", list}}, text);
 }
 
 }  // namespace
 
 void addCheckpoints(CLI::App& app, Run& run) {
   const auto [command, o] =
-      addCommand(app, run, "checkpoints", "List the checkpoints and their definitions", listCheckpoints);
+      addCommand(app, run, {"checkpoints", "List the checkpoints and their definitions", "calot checkpoints --json"},
+                 listCheckpoints);
   command->add_flag("--json", o->json, "Print JSON");
 }
 

@@ -20,42 +20,38 @@ struct CohortExport {
 };
 
 void exportTables(const CohortExport& o) {
-  const std::vector<analytics::ExportedTable> tables = analytics::exportCohort(o.cohort, o.folder, o.force);
   Json list = Json::array();
-  for (const analytics::ExportedTable& t : tables) {
-    if (o.json) {
-      list.push_back({{"table", t.name}, {"rows", t.rows}});
-    } else {
-      std::cout << fmt::format("{:<24}{} rows\n", t.name, t.rows);
-    }
+  std::string text;
+  for (const analytics::ExportedTable& t : analytics::exportCohort(o.cohort, o.folder, o.force)) {
+    list.push_back({{"table", t.name}, {"rows", t.rows}});
+    text += fmt::format("{:<24}{} rows\n", t.name, t.rows);
   }
-  if (o.json) printResult("cohort-export", {{"tables", list}});
+  printResult(o.json, "cohort-export", {{"tables", list}}, text);
 }
 
 void handOut(const CohortExport& o) {
   const analytics::Bundle b = analytics::writeBundle(o.cohort, o.folder, o.bundle, o.force);
-  if (o.json) {
-    Json left = Json::array(), files = Json::array();
-    for (const auto& row : b.leftOut) left.push_back({{"reason", row.reason}, {"attempts", row.attempts}});
-    for (const auto& f : b.files) files.push_back({{"name", f.name}, {"bytes", f.bytes}, {"sha256", f.sha256}});
-    const Json all{{"participants", b.participants},
-                   {"attempts", b.attempts},
-                   {"values", b.values},
-                   {"recruited", b.recruited},
-                   {"left_out", left},
-                   {"smallest_group", b.smallest},
-                   {"files", files}};
-    printResult("cohort-bundle", all);
-    return;
+  Json left = Json::array(), files = Json::array();
+  std::string text = fmt::format("{}: {} of {} attempts, of {} participants, {} values\n", o.folder, b.attempts,
+                                 b.recruited, b.participants, b.values);
+  for (const auto& row : b.leftOut) {
+    left.push_back({{"reason", row.reason}, {"attempts", row.attempts}});
+    text += fmt::format("{} attempts left out: {}\n", row.attempts, row.reason);
   }
-  std::cout << fmt::format("{}: {} of {} attempts, of {} participants, {} values\n", o.folder, b.attempts, b.recruited,
-                           b.participants, b.values);
-  for (const auto& row : b.leftOut) std::cout << fmt::format("{} attempts left out: {}\n", row.attempts, row.reason);
   if (b.participants > 0)
-    std::cout << fmt::format(
+    text += fmt::format(
         "The smallest group that shares group, arm and site is of {}: look whether its members "
         "can be known by that and their experience.\n",
         b.smallest);
+  for (const auto& f : b.files) files.push_back({{"name", f.name}, {"bytes", f.bytes}, {"sha256", f.sha256}});
+  const Json all{{"participants", b.participants},
+                 {"attempts", b.attempts},
+                 {"values", b.values},
+                 {"recruited", b.recruited},
+                 {"left_out", left},
+                 {"smallest_group", b.smallest},
+                 {"files", files}};
+  printResult(o.json, "cohort-bundle", all, text);
 }
 
 /// Merges one database. @returns what entered; conflicts are reported on stderr.
@@ -107,19 +103,12 @@ struct CohortOptions {
 
 void checkDatabase(const CohortOptions& o) {
   const analytics::CohortCheck c = analytics::checkCohort(o.cohort);
-  if (o.json) {
-    printResult("cohort-check", {{"sound", c.faults.empty()},
-                                 {"database_schema", c.schema},
-                                 {"participants", c.participants},
-                                 {"attempts", c.attempts},
-                                 {"values", c.values},
-                                 {"faults", c.faults}});
-  } else if (c.faults.empty()) {
-    std::cout << fmt::format("{}: sound; schema {}, {} participants, {} attempts, {} values\n", o.cohort, c.schema,
-                             c.participants, c.attempts, c.values);
-  } else {
-    for (const std::string& fault : c.faults) std::cout << fault << '\n';
-  }
+  const Json all{{"sound", c.faults.empty()}, {"database_schema", c.schema}, {"participants", c.participants},
+                 {"attempts", c.attempts},    {"values", c.values},          {"faults", c.faults}};
+  printResult(o.json, "cohort-check", all,
+              c.faults.empty() ? fmt::format("{}: sound; schema {}, {} participants, {} attempts, {} values\n",
+                                             o.cohort, c.schema, c.participants, c.attempts, c.values)
+                               : fmt::format("{}\n", fmt::join(c.faults, "\n")));
   if (c.faults.empty()) return;
   throw Error(ErrorKind::damaged,
               fmt::format("{}: {} faults, the first: {}; restore a copy, or assess the recordings into a new one",
@@ -148,22 +137,20 @@ void listRegisters(const CohortOptions& o) {
   }
   for (const auto& c : r.cohorts)
     out["cohorts"].push_back({{"name", c.name}, {"participants", c.participants}, {"note", c.note}});
-  if (o.json) {
-    printResult("cohort-list", out);
-    return;
-  }
+  std::string text;
   for (const auto& [kind, rows] : out.items()) {
     for (const Json& row : rows) {
       const auto part = [&row](const char* before, const char* member) {
-        const std::string text = row.value(member, "");
-        return text.empty() ? text : before + text;
+        const std::string word = row.value(member, "");
+        return word.empty() ? word : before + word;
       };
-      std::cout << fmt::format("{:<10}{}{}{}", kind, part("", "name"), part(", site ", "site"),
-                               part(", key ", "public_key"));
-      for (const std::string& p : row.value("participants", std::vector<std::string>())) std::cout << ' ' << p;
-      std::cout << part(": ", "note") << '\n';
+      text +=
+          fmt::format("{:<10}{}{}{}", kind, part("", "name"), part(", site ", "site"), part(", key ", "public_key"));
+      for (const std::string& p : row.value("participants", std::vector<std::string>())) text += " " + p;
+      text += part(": ", "note") + "\n";
     }
   }
+  printResult(o.json, "cohort-list", out, text);
 }
 
 struct NameOptions {
@@ -200,11 +187,12 @@ void nameCohort(const NameOptions& o) {
 }  // namespace
 
 void addCohort(CLI::App& app, Run& run) {
-  CLI::App& cohort = *app.add_subcommand("cohort", "Merge, check, name and hand out what is in a cohort database");
-  cohort.require_subcommand(1);
+  CLI::App& cohort = addGroup(
+      app, {"cohort", "Merge, check, name and hand out what is in a cohort database", "calot cohort list c.db"});
 
-  const auto [merged, m] =
-      addCommand(cohort, run, "merge", "Take everything of other cohort databases into one", merge);
+  const auto [merged, m] = addCommand(
+      cohort, run,
+      {"merge", "Take everything of other cohort databases into one", "calot cohort merge all.db site2.db"}, merge);
   merged->add_option("into", m->into, "Database to add to")->required();
   merged->add_option("from", m->from, "Databases to take from; they stay as they are")->required();
   merged->add_flag("--newer", m->newer,
@@ -212,45 +200,55 @@ void addCohort(CLI::App& app, Run& run) {
                    "newer ones");
   merged->add_flag("--json", m->json, "Print JSON");
 
-  const auto addOne = [&](const char* name, const char* help, void (*work)(const CohortOptions&), bool asJson) {
-    const auto [command, o] = addCommand(cohort, run, name, help, work);
+  const auto addOne = [&](const CommandText& text, void (*work)(const CohortOptions&), bool asJson) {
+    const auto [command, o] = addCommand(cohort, run, text, work);
     addCohortOption(*command, o->cohort)->required();
     if (asJson) command->add_flag("--json", o->json, "Print JSON");
   };
-  addOne("check", "Look at a whole cohort database for damage", checkDatabase, true);
-  addOne("upgrade", "Bring a database of an older Calot to the schema of this one; a copy is kept beside it", upgrade,
-         false);
-  addOne("scrub", "Overwrite what was deleted, empty the log, remove backups of migrations", scrub, false);
-  addOne("list", "Sites, arms, stations and cohorts of a database", listRegisters, true);
+  addOne({"check", "Look at a whole cohort database for damage", "calot cohort check c.db"}, checkDatabase, true);
+  addOne({"upgrade", "Bring a database of an older Calot to the schema of this one; a copy is kept beside it",
+          "calot cohort upgrade c.db"},
+         upgrade, false);
+  addOne(
+      {"scrub", "Overwrite what was deleted, empty the log, remove backups of migrations", "calot cohort scrub c.db"},
+      scrub, false);
+  addOne({"list", "Sites, arms, stations and cohorts of a database", "calot cohort list c.db"}, listRegisters, true);
 
-  const auto addName = [&](const char* kind, const char* help, void (*work)(const NameOptions&)) {
-    const auto [command, o] = addCommand(cohort, run, kind, help, work);
+  const auto addName = [&](const CommandText& text, void (*work)(const NameOptions&)) {
+    const auto [command, o] = addCommand(cohort, run, text, work);
     o->command = command;
     command->add_option("name", o->name, "Its name")->required();
     command->add_option("--cohort", o->cohort, "Cohort database; made where there is none")->required();
     command->add_option("--note", o->note, "A word on it; never about a person");
     return std::pair{command, o};
   };
-  addName("site", "Name a site", nameSite);
-  addName("arm", "Name a study arm", nameArm);
-  const auto [station, s] = addName("station", "Name a station, and the key that it signs with", nameStation);
+  addName({"site", "Name a site", "calot cohort site north --cohort c.db"}, nameSite);
+  addName({"arm", "Name a study arm", "calot cohort arm simulator-first --cohort c.db"}, nameArm);
+  const auto [station, s] = addName({"station", "Name a station, and the key that it signs with",
+                                     "calot cohort station trainer-1 --cohort c.db --site north"},
+                                    nameStation);
   station->add_option("--site", s->site, "Site at which it stands");
   station->add_option("--public-key", s->key, "64 hexadecimal digits, as `calot station show` prints them");
-  const auto [name, n] = addName("name", "Name a cohort of participants", nameCohort);
+  const auto [name, n] = addName(
+      {"name", "Name a cohort of participants", "calot cohort name second-years --cohort c.db --add P1 --add P2"},
+      nameCohort);
   name->add_option("--add", n->add, "Participant who belongs to it; may be repeated")->allow_extra_args(false);
   name->add_option("--remove", n->remove, "Participant who does not any more")->allow_extra_args(false);
 
-  const auto addExport = [&](const char* kind, const char* help, void (*work)(const CohortExport&)) {
-    const auto [command, o] = addCommand(cohort, run, kind, help, work);
+  const auto addExport = [&](const CommandText& text, void (*work)(const CohortExport&)) {
+    const auto [command, o] = addCommand(cohort, run, text, work);
     addCohortOption(*command, o->cohort)->required();
     command->add_option("-o,--output", o->folder, "Folder to make")->required();
     command->add_flag("--force", o->force, "Replace a folder of this name that holds no other files");
     command->add_flag("--json", o->json, "Print JSON");
     return std::pair{command, o};
   };
-  addExport("export", "Write every table as CSV and JSON, with a codebook; names and dates as they are", exportTables);
-  const auto [bundle, b] =
-      addExport("bundle", "Write what was measured for others, de-identified, with a manifest", handOut);
+  addExport({"export", "Write every table as CSV and JSON, with a codebook; names and dates as they are",
+             "calot cohort export c.db -o tables"},
+            exportTables);
+  const auto [bundle, b] = addExport({"bundle", "Write what was measured for others, de-identified, with a manifest",
+                                      "calot cohort bundle c.db -o bundle"},
+                                     handOut);
   bundle->add_option("--scope", b->bundle.scope, "Purpose to which participants have consented; others stay out")
       ->capture_default_str();
   bundle->add_flag("--include-synthetic", b->bundle.includeSynthetic, "Take in what performers made");

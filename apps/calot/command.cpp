@@ -25,24 +25,53 @@ void lookForCohort(const std::vector<std::string>& words) {
   });
 }
 
+CLI::App* addBareCommand(CLI::App& parent, const CommandText& text) {
+  const std::string examples =
+      text.another.empty() ? ":\n  " + text.example : "s:\n  " + text.example + "\n  " + text.another;
+  return parent.add_subcommand(text.name, text.help)->footer("Example" + examples);
+}
+
+CLI::App& addGroup(CLI::App& parent, const CommandText& text) {
+  return *addBareCommand(parent, text)->require_subcommand(1);
+}
+
 CLI::Option* addCohortOption(CLI::App& command, std::string& database, const std::string& help) {
   return command.add_option(hasCohortOption ? "--cohort" : "cohort,--cohort", database, help);
 }
 
 namespace {
 
-/// Version of every result. A command whose members change gets its own version here.
-constexpr int resultVersion = 1;
-
 void print(const std::string& text) {
   Progress::erase();
   // In order with what was printed through the other of the two streams.
   std::cout << std::flush;
-  fmt::print("{}\n", text);
+  fmt::print("{}", text);
   if (std::fflush(stdout) != 0) throw Error(ErrorKind::failure, "standard output cannot be written");
 }
 
+/// @param indent blanks a level; -1: all on one line
+void printJson(std::string_view what, const Json& body, int indent) {
+  constexpr int version = 1;  // a command whose members change gets its own here
+  Json result{{"schema", fmt::format("calot-{}", what)}, {"version", version}};
+  result.update(body);
+  print(result.dump(indent, ' ', false, Json::error_handler_t::replace) + "\n");
+}
+
 }  // namespace
+
+void printResult(std::string_view what, const Json& body) { printJson(what, body, 2); }
+
+void printResultLine(std::string_view what, const Json& body) { printJson(what, body, -1); }
+
+void printResult(bool json, std::string_view what, const Json& body, const std::string& text) {
+  json ? printResult(what, body) : print(text);
+}
+
+void printResult(bool json, std::string_view what, const Json& body, const std::function<void(std::ostream&)>& write) {
+  std::ostringstream text;
+  if (!json) write(text);
+  printResult(json, what, body, text.str());
+}
 
 Json jsonOf(const analytics::Fields& fields) {
   Json object;
@@ -55,20 +84,6 @@ Json jsonOf(const analytics::Fields& fields) {
         value);
   }
   return object;
-}
-
-Json resultOf(std::string_view what, const Json& body) {
-  Json result{{"schema", fmt::format("calot-{}", what)}, {"version", resultVersion}};
-  for (const auto& member : body.items()) result[member.key()] = member.value();
-  return result;
-}
-
-void printResult(std::string_view what, const Json& body) {
-  print(resultOf(what, body).dump(2, ' ', false, Json::error_handler_t::replace));
-}
-
-void printResultLine(std::string_view what, const Json& body) {
-  print(resultOf(what, body).dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
 CLI::Validator oneOf(std::vector<std::string> words) {

@@ -30,7 +30,7 @@ using Json = nlohmann::ordered_json;
 using Run = std::function<int()>;
 
 /// Each function adds a command with its options to the application. A new command is a file that defines its function,
-/// with an example in help.cpp, and a line of this list.
+/// and a line of this list.
 // In the order of `calot --help`.
 #define CALOT_COMMAND_LIST(X) \
   X(Record)                   \
@@ -72,14 +72,26 @@ CALOT_COMMAND_LIST(CALOT_DECLARE_COMMAND)
 /// `calot devices calibrate`, in a file of its own.
 void addCalibrateDevice(CLI::App& devices, Run& run);
 
+/// A command in the help.
+struct CommandText {
+  std::string name, help;
+  std::string example, another = {};  ///< lines to type
+};
+
+/// Adds a command that is followed by one of those below it.
+CLI::App& addGroup(CLI::App& parent, const CommandText& text);
+
+/// Adds a command without options.
+CLI::App* addBareCommand(CLI::App& parent, const CommandText& text);
+
 /// Adds a command whose work has these options. The options live as long as the command.
 /// @param run is set to the work when the command is chosen, unless a command below it was
 /// @param work returns an exit code, or nothing: ExitCode::yes
 template <class Result, class Options>
-auto addCommand(CLI::App& parent, Run& run, const std::string& name, const std::string& help, Result (*work)(Options&),
+auto addCommand(CLI::App& parent, Run& run, const CommandText& text, Result (*work)(Options&),
                 std::shared_ptr<std::remove_const_t<Options>> options = {}) {
   if (!options) options = std::make_shared<std::remove_const_t<Options>>();
-  CLI::App* const command = parent.add_subcommand(name, help);
+  CLI::App* const command = addBareCommand(parent, text);
   command->callback([options, work, &run] {
     if (run) return;
     run = [options, work] {
@@ -137,16 +149,25 @@ std::optional<std::string> givenOf(const CLI::App& command, const std::string& o
 /// A row of a cohort as an object.
 [[nodiscard]] Json jsonOf(const analytics::Fields& fields);
 
-/// Head of every result: {"schema": "calot-<what>", "version": N}. The version is raised when a member
-/// changes its meaning or goes; new members alone do not raise it.
-/// @param body an object without these two members
-[[nodiscard]] Json resultOf(std::string_view what, const Json& body);
-
-/// Prints it on stdout, over several lines. Erases a line of progress first.
+/// Prints a result on stdout, over several lines, behind the head of every result: {"schema": "calot-<what>",
+/// "version": N}. The version is raised when a member changes its meaning or goes; new members alone do not raise it.
+/// Erases a line of progress first. @param body an object without these two members
 void printResult(std::string_view what, const Json& body);
 
 /// The same on one line, flushed: of results that come one after the other.
 void printResultLine(std::string_view what, const Json& body);
+
+/// Prints a result as JSON, or else as a text.
+void printResult(bool json, std::string_view what, const Json& body, const std::string& text);
+void printResult(bool json, std::string_view what, const Json& body, const std::function<void(std::ostream&)>& write);
+
+/// The form of the program's help and of all its commands': lines that fit the terminal. Before commands are added.
+std::shared_ptr<CLI::FormatterBase> helpForm();
+
+/// One line about the first word of a command line that is no command or option where it stands, with the nearest one;
+/// else the parser's own message. Ends with the help to look at.
+/// @param app after parse() threw `fault`. @param words the command line without the program's name
+std::string wrongWord(const CLI::App& app, const std::vector<std::string>& words, const CLI::ParseError& fault);
 
 /// Columns of the terminal on stdout, from 60 to 160; 80 without a terminal.
 std::size_t terminalColumns();

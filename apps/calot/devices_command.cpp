@@ -96,18 +96,22 @@ void serve(const ServeOptions& o) {
 
 void addDevices(CLI::App& app, Run& run) {
   const auto [devices, l] =
-      addCommand(app, run, "devices", "Lists input devices; measures one; plays one.", listDevices);
+      addCommand(app, run, {"devices", "Lists input devices; measures one; plays one.", "calot devices"}, listDevices);
   devices->add_flag("--json", l->json, "print JSON");
   devices->require_subcommand(0, 1);
 
-  const auto [print, p] =
-      addCommand(*devices, run, "print", "Handles and board for cameras, to print: a PDF, true to scale.", printSheets);
+  const auto [print, p] = addCommand(
+      *devices, run,
+      {"print", "Handles and board for cameras, to print: a PDF, true to scale.", "calot devices print -o handles.pdf"},
+      printSheets);
   print->add_option("-o,--output", p->output, "the PDF")->required();
   print->add_flag("--force", p->force, "replace the output if it is there");
 
   const auto [play, s] = addCommand(
-      *devices, run, "serve",
-      "An OpenIGTLink server on this machine that plays a motion, to try a set-up without a tracker.", serve);
+      *devices, run,
+      {"serve", "An OpenIGTLink server on this machine that plays a motion, to try a set-up without a tracker.",
+       "calot devices serve --kinematics motion.txt --port 18944"},
+      serve);
   play->add_option("--kinematics", s->kinematics, "two-handed motion file, 76 columns at 30 Hz, or a device script")
       ->required();
   addNumber(*play, "--port", s->settings.port, "0: any that is free", 0, 65535);
@@ -116,8 +120,10 @@ void addDevices(CLI::App& app, Run& run) {
   play->add_flag("--once", s->settings.once, "end when the first client has gone");
 
   const auto [simulated, o] = addCommand(
-      *devices, run, "simulate",
-      "A simulated force device in a simulated hand on this machine, to try forces without a device.", simulate);
+      *devices, run,
+      {"simulate", "A simulated force device in a simulated hand on this machine, to try forces without a device.",
+       "calot devices simulate --hands both --delay 2"},
+      simulate);
   simulated->add_option(
       "--kinematics", o->kinematics,
       "what the hand intends: a two-handed motion file or a device script; default: it reaches out and back");

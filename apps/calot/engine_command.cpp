@@ -22,39 +22,20 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Files kept beside an engine: its transcript and its golden recordings.
-std::vector<fs::path> keptBeside(std::uint32_t version, const std::string& ending) {
-  std::vector<fs::path> files;
-  for (const fs::path& root : assetFolders()) {
-    std::error_code fault;
-    for (fs::directory_iterator it(root / "engines" / std::to_string(version), fault), end; !fault && it != end;
-         it.increment(fault)) {
-      if (it->path().extension() == ending) files.push_back(it->path());
-    }
-    if (!files.empty()) break;
-  }
-  std::sort(files.begin(), files.end());
-  return files;
-}
-
 const char* kindOf(const recorder::KeptEngine& engine) { return engine.isModule ? "module" : "program"; }
 
 void listEngines(const JsonOption& o) {
   const std::vector<recorder::KeptEngine> engines = recorder::listEngines();
   nlohmann::json out = nlohmann::json::array();
-  if (!o.json) fmt::print("this program decides simulation version {}\n", simulationVersion);
+  std::string text = fmt::format("this program decides simulation version {}\n", simulationVersion);
   for (const recorder::KeptEngine& e : engines) {
     out.push_back(
         {{"version", e.version}, {"kind", kindOf(e)}, {"file", e.file.string()}, {"runs", !e.command.empty()}});
-    if (o.json) continue;
-    fmt::print("version {}: {} {}{}\n", e.version, kindOf(e), fs::weakly_canonical(e.file).string(),
-               e.command.empty() ? " (node is needed to run it)" : "");
+    text += fmt::format("version {}: {} {}{}\n", e.version, kindOf(e), fs::weakly_canonical(e.file).string(),
+                        e.command.empty() ? " (node is needed to run it)" : "");
   }
-  if (o.json) {
-    printResult("engines", {{"own_version", simulationVersion}, {"engines", out}});
-  } else if (engines.empty()) {
-    fmt::print("no other engine was found (CALOT_ENGINES names folders that hold some)\n");
-  }
+  if (engines.empty()) text += "no other engine was found (CALOT_ENGINES names folders that hold some)\n";
+  printResult(o.json, "engines", {{"own_version", simulationVersion}, {"engines", out}}, text);
 }
 
 /// @return false where the engine is not what it should be; prints a line of each thing that was looked at
@@ -63,6 +44,7 @@ bool isSound(const recorder::KeptEngine& engine) {
     fmt::print("version {}, {}: {}: {}\n", engine.version, kindOf(engine), what, fault.empty() ? "ok" : fault);
     return fault.empty();
   };
+  const std::string beside = fmt::format("engines/{}", engine.version);  // its transcript and golden recordings
   bool good = true;
   try {
     const recorder::EngineProcess process(engine.command, engine.version);
@@ -70,13 +52,13 @@ bool isSound(const recorder::KeptEngine& engine) {
     good = say(fmt::format("{}, {}", process.identity().software,
                            confined[static_cast<std::size_t>(process.identity().confinement)]),
                "");
-    for (const fs::path& file : keptBeside(engine.version, ".transcript")) {
+    for (const fs::path& file : listAssets(beside, ".transcript")) {
       good = say(file.filename().string(), compareWith(recorder::readTranscript(file), engine.command)) && good;
     }
   } catch (const Error& e) {
     return say("it", e.what());
   }
-  for (const fs::path& golden : keptBeside(engine.version, ".h5")) {
+  for (const fs::path& golden : listAssets(beside, ".h5")) {
     recorder::ReplaySettings settings;
     settings.engine.file = engine.file;
     const recorder::ReplayReport report = recorder::replayRecording(golden, settings);
@@ -151,20 +133,24 @@ void transcribe(const TranscriptOptions& o) {
 }  // namespace
 
 void addEngine(CLI::App& app, Run& run) {
-  CLI::App* command = app.add_subcommand("engine", "Kept engines: programs that decide recordings of other versions.");
-  command->require_subcommand(1);
+  CLI::App& command = addGroup(
+      app, {"engine", "Kept engines: programs that decide recordings of other versions.", "calot engine list"});
 
-  const auto [listing, l] = addCommand(*command, run, "list", "Shows which engines are there.", listEngines);
+  const auto [listing, l] =
+      addCommand(command, run, {"list", "Shows which engines are there.", "calot engine list --json"}, listEngines);
   listing->add_flag("--json", l->json, "print them as JSON");
 
-  const auto [checking, versions] =
-      addCommand(*command, run, "check",
-                 "Starts engines, compares their answers with their transcripts, and has them replay their goldens.",
-                 checkEngines);
+  const auto [checking, versions] = addCommand(
+      command, run,
+      {"check", "Starts engines, compares their answers with their transcripts, and has them replay their goldens.",
+       "calot engine check 12"},
+      checkEngines);
   checking->add_option("versions", *versions, "simulation versions; none: every engine that is there");
 
-  const auto [building, b] =
-      addCommand(*command, run, "build", "Builds the engine of a version from a clone of the source.", build);
+  const auto [building, b] = addCommand(command, run,
+                                        {"build", "Builds the engine of a version from a clone of the source.",
+                                         "calot engine build 12 -o calot-engine-12"},
+                                        build);
   b->source = recorder::ProgramFiles::ofThisProgram().clone().string();
   building->add_option("version", b->version, "simulation version")->required();
   building->add_option("-o,--output", b->output, "the engine's file")->required();
@@ -174,7 +160,10 @@ void addEngine(CLI::App& app, Run& run) {
   building->add_flag("--force", b->force, "overwrite the file");
 
   const auto [writing, t] =
-      addCommand(*command, run, "transcript", "Writes what an engine answers, for engine check.", transcribe);
+      addCommand(command, run,
+                 {"transcript", "Writes what an engine answers, for engine check.",
+                  "calot engine transcript attempt.h5 --engine calot-engine-12 -o transcript.txt"},
+                 transcribe);
   writing->add_option("recording", t->recording, "whose scene and first steps are asked")->required();
   writing->add_option("--engine", t->engine, "program or module")->required();
   writing->add_option("--steps", t->steps, "steps that it is to do")->capture_default_str();

@@ -3,6 +3,7 @@
 #include "apps/calot/environment.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 #include <atomic>
 #include <charconv>
@@ -23,6 +24,9 @@ namespace {
 /// A terminal has one last line.
 std::atomic<bool> lineDrawn{false};
 
+std::atomic<bool> requested{false};
+static_assert(std::atomic<bool>::is_always_lock_free);  // a signal's handler may do no more
+
 }  // namespace
 
 std::vector<std::filesystem::path> assetFolders() { return recorder::ProgramFiles::ofThisProgram().assetRoots(); }
@@ -32,13 +36,13 @@ recorder::EnginePlaces enginePlaces() {
   return recorder::userEnginePlaces(files.programs(), files.assetRoots());
 }
 
-std::vector<std::filesystem::path> listAssets(const std::string& folder) {
+std::vector<std::filesystem::path> listAssets(const std::string& folder, const std::string& ending) {
   namespace fs = std::filesystem;
   std::map<std::string, fs::path> byName;
   for (const fs::path& root : assetFolders()) {
     std::error_code fault;
     for (fs::directory_iterator it(root / folder, fault), end; !fault && it != end; it.increment(fault)) {
-      if (it->path().extension() == ".json") byName.emplace(it->path().stem().string(), it->path());
+      if (it->path().extension() == ending) byName.emplace(it->path().stem().string(), it->path());
     }
   }
   std::vector<fs::path> files;
@@ -49,20 +53,19 @@ std::vector<std::filesystem::path> listAssets(const std::string& folder) {
 
 std::filesystem::path findAsset(const std::string& name, const std::string& folder, const std::string& what) {
   std::error_code ignored;
-  if (name.size() > 5 && name.substr(name.size() - 5) == ".json") {
+  if (name.size() > 5 && name.ends_with(".json")) {
     if (std::filesystem::is_regular_file(name, ignored)) return name;
     throw Error(ErrorKind::damaged, Where{name}, "there is no such file");
   }
-  std::string known;
   std::vector<std::string> names;
   for (const std::filesystem::path& file : listAssets(folder)) {
     if (file.stem() == name) return file;
     names.push_back(file.stem().string());
-    known += (known.empty() ? "" : ", ") + names.back();
   }
   throw Error(ErrorKind::invalid,
               fmt::format("there is no {} \"{}\"{}; {}", what, recorder::shown(name), recorder::didYouMean(name, names),
-                          known.empty() ? "none was found (set CALOT_ASSETS)" : "there are " + known));
+                          names.empty() ? "none was found (set CALOT_ASSETS)"
+                                        : fmt::format("there are {}", fmt::join(names, ", "))));
 }
 
 Progress::Progress(std::string what, bool quiet)
@@ -112,31 +115,25 @@ std::string wholeNumber(const std::string& text) {
 }
 
 double parseTime(const std::string& text) {
-  std::string rest = text;
-  if (!rest.empty() && rest.back() == 's') rest.pop_back();
-  double minutes = 0.0;
-  const auto number = [&](const std::string& part, double& out) {
-    const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), out);
-    return error == std::errc() && end == part.data() + part.size() && out >= 0.0 && out < 1e7;
-  };
-  const std::size_t colon = rest.find(':');
-  double seconds = 0.0;
   bool good = true;
-  if (colon != std::string::npos) {
-    good = number(rest.substr(0, colon), minutes);
-    rest = rest.substr(colon + 1);
+  const auto number = [&](std::string_view part) {
+    double value = 0.0;
+    const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), value);
+    good = good && error == std::errc() && end == part.data() + part.size() && value >= 0.0 && value < 1e7;
+    return value;
+  };
+  std::string_view seconds = text;
+  if (seconds.ends_with('s')) seconds.remove_suffix(1);
+  double minutes = 0.0;
+  if (const std::size_t colon = seconds.find(':'); colon != std::string_view::npos) {
+    minutes = number(seconds.substr(0, colon));
+    seconds.remove_prefix(colon + 1);
   }
-  good = good && number(rest, seconds);
-  if (!good)
-    throw Error(ErrorKind::invalid,
-                fmt::format("'{}' is not a time: write seconds (12.5) or minutes and seconds (1:02.5)", text));
-  return 60.0 * minutes + seconds;
+  const double time = 60.0 * minutes + number(seconds);
+  if (good) return time;
+  throw Error(ErrorKind::invalid,
+              fmt::format("'{}' is not a time: write seconds (12.5) or minutes and seconds (1:02.5)", text));
 }
-
-namespace {
-std::atomic<bool> requested{false};
-static_assert(std::atomic<bool>::is_always_lock_free);  // a signal's handler may do no more
-}  // namespace
 
 void stopOnSignals() {
   for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { requested = true; });

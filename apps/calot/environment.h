@@ -27,8 +27,8 @@ recorder::EnginePlaces enginePlaces();
 /// A JSON file of the assets by its name ("goals"), or any file by its path ("mine/goals.json").
 /// @param folder of the assets: "forms". @param what messages call it: "form". @throws Error (invalid)
 std::filesystem::path findAsset(const std::string& name, const std::string& folder, const std::string& what);
-/// All of them, by name.
-std::vector<std::filesystem::path> listAssets(const std::string& folder);
+/// All of them, by name, or those of another ending.
+std::vector<std::filesystem::path> listAssets(const std::string& folder, const std::string& ending = ".json");
 
 /// A line that is drawn again and again on a terminal; nothing in a pipe or with --json.
 class Progress {

@@ -4,9 +4,7 @@
 #include "analytics/cohort/withdraw.h"
 #include "analytics/interchange/export_tables.h"
 #include "apps/calot/command.h"
-#include "apps/calot/environment.h"
 #include "apps/calot/import_command.h"
-#include "recorder/base/errors.h"
 #include "recorder/recording/layout.h"
 #include "recorder/recording/probe.h"
 #include "recorder/recording/recorded_columns.h"
@@ -68,8 +66,11 @@ void exportFile(const ExportOptions& o) {
 }  // namespace
 
 void addExport(CLI::App& app, Run& run) {
-  const auto [command, o] = addCommand(
-      app, run, "export", "Write a recording, or the motion in it, as tables for other programs", exportFile);
+  const auto [command, o] =
+      addCommand(app, run,
+                 {"export", "Write a recording, or the motion in it, as tables for other programs",
+                  "calot export attempt.h5 --csv tables", "calot export attempt.h5 --motion motion"},
+                 exportFile);
   command->add_option("file", o->file, "Recording (.h5); with --motion also a motion file, as calot import reads")
       ->required();
   command->add_option("--csv", o->folder, "Folder for all that is recorded");

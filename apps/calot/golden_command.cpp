@@ -398,17 +398,23 @@ void updateGolden(const GoldenOptions& o) {
 }  // namespace
 
 void addGolden(CLI::App& app, Run& run) {
-  CLI::App* command = app.add_subcommand("golden", "Recordings that every build must replay bit for bit.");
-  command->require_subcommand(1);
+  CLI::App& command =
+      addGroup(app, {"golden", "Recordings that every build must replay bit for bit.", "calot golden check"});
   const auto o = std::make_shared<GoldenOptions>();
-  const auto add = [&](const char* name, const char* help, auto work) {
-    CLI::App* const one = addCommand(*command, run, name, help, work, o).first;
+  const auto add = [&](const CommandText& text, auto work) {
+    CLI::App* const one = addCommand(command, run, text, work, o).first;
     one->add_option("--folder", o->folder, "with golden.json; default: golden/ of the assets");
     return one;
   };
-  CLI::App* checking = add("check", "Replays them; compares checkpoints with those of the list.", checkGolden);
-  CLI::App* updating = add("update", "Records them again, after a change of the simulation.", updateGolden);
-  CLI::App* values = add("values", "Replays them; the list takes over what the checkpoints give.", takeValues);
+  CLI::App* checking = add({"check", "Replays them; compares checkpoints with those of the list.",
+                            "calot golden check --junit golden.xml", "calot golden check --folder my-golden"},
+                           checkGolden);
+  CLI::App* updating = add({"update", "Records them again, after a change of the simulation.",
+                            "calot golden update --reason \"contact solver: other tolerance\""},
+                           updateGolden);
+  CLI::App* values = add({"values", "Replays them; the list takes over what the checkpoints give.",
+                          "calot golden values --reason \"new checkpoint\""},
+                         takeValues);
   checking->add_option("--only", o->only, "one file of the list");
   for (CLI::App* one : {checking, values}) addThreads(*one, o->threads, "of the simulation; 0: all");
   addJunitOptions(*checking, o->junit);

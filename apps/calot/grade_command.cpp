@@ -116,17 +116,16 @@ void grade(const GradeOptions& o) {
   const analytics::CarriedRecording inPage{name, carried};
   writeReport(analytics::gradeDocument(result, name, howToDraw), o.html, o.pdf, o.force,
               o.withReplay ? &inPage : nullptr);
-  if (o.json) {
-    printResult("grade", analytics::gradeTree(result));
-  } else {
-    analytics::printGrade(result, std::cout);
-  }
+  printResult(o.json, "grade", analytics::gradeTree(result),
+              [&](std::ostream& out) { analytics::printGrade(result, out); });
 }
 
 }  // namespace
 
 void addGrade(CLI::App& app, Run& run) {
-  const auto [command, o] = addCommand(app, run, "grade", "Hold an attempt against a norm", grade);
+  const auto [command, o] = addCommand(
+      app, run, {"grade", "Hold an attempt against a norm", "calot grade c.db --attempt 3f2a --html sheet.html"},
+      grade);
   addCohortOption(*command, o->database)->required();
   command->add_option("--attempt", o->attempt, "Its uuid, or how that begins")->required();
   command->add_option("--norm", o->norm, "The norm; not needed where there is one alone");

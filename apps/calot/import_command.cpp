@@ -11,7 +11,6 @@
 #include "analytics/checkpoints/collector.h"
 #include "analytics/intake/manifests.h"
 #include "apps/calot/command.h"
-#include "apps/calot/environment.h"
 #include "apps/calot/replay_report.h"
 #include "gui/words/attempt_tables.h"
 #include "recorder/base/errors.h"
@@ -320,9 +319,12 @@ ExitCode importMotion(ImportOptions& o) {
 }  // namespace
 
 void addImport(CLI::App& app, Run& run) {
-  const auto [command, o] = addCommand(
-      app, run, "import", "Computes the motion checkpoints of motion without a scene and stores them in a cohort.",
-      importMotion);
+  const auto [command, o] =
+      addCommand(app, run,
+                 {"import", "Computes the motion checkpoints of motion without a scene and stores them in a cohort.",
+                  "calot import knots.txt --task knot-tying --participant P1 --mode assessment --cohort c.db",
+                  "calot import --manifest table.csv --mode assessment --cohort c.db"},
+                 importMotion);
   CLI::Option* manifest = command->add_option(
       "--manifest", o->manifest,
       "A CSV table instead of files: a row each with file, participant, group, task, start, outcome, experience and "

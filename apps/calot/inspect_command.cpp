@@ -2,6 +2,7 @@
 // calot inspect and calot recover: a recording as it is, and one that was cut off.
 
 #include <algorithm>
+#include <map>
 
 #include "apps/calot/command.h"
 #include "recorder/recording/layout.h"
@@ -104,8 +105,6 @@ Json describe(recorder::Recording& recording, const recorder::ChainVerdict& chai
   return out;
 }
 
-using Lines = std::vector<std::pair<std::string, std::string>>;
-
 /// Headings in their order, each with the members that stand under it. What no heading names stands under the attempt.
 struct Group {
   const char* heading;
@@ -153,44 +152,33 @@ std::string deviceOf(const Json& s) {
       shownValue(s["missing"]), s["rate_hz"].get<double>(), 1e3 * s["longest_interval_s"].get<double>());
 }
 
-/// The lines under one heading.
-Lines linesOf(const Json& d, const std::string& heading) {
-  Lines lines;
-  const auto take = [&](const std::string& member, const Json& value) {
-    if (headingOf(member) == heading && !shownValue(value).empty()) lines.emplace_back(member, shownValue(value));
-  };
-  for (const auto& [member, value] : d.items()) {
-    if (member == "attempt") {
-      for (const auto& [name, attribute] : value.items()) take(name, attribute);
-    } else if (member == "scene_files") {
-      if (heading != "Scene") continue;
-      for (const auto& asset : value)
-        lines.emplace_back("scene file",
-                           fmt::format("{} ({} bytes)", shownValue(asset["name"]), shownValue(asset["bytes"])));
-    } else if (member == "bytes_by_group") {
-      if (heading != "Size") continue;
-      for (const auto& [group, bytes] : value.items())
-        lines.emplace_back("bytes, " + group, shareOf(bytes, d["bytes"]));
-    } else if (member == "device_samples") {
-      if (heading != "Device") continue;
-      for (const auto& [hand, samples] : value.items()) lines.emplace_back("device, " + hand, deviceOf(samples));
-    } else {
-      take(member, value);
-    }
-  }
-  return lines;
-}
-
 /// The members of the JSON form, under headings.
 std::string inspectText(const Json& recording) {
-  constexpr std::size_t valueAt = 27;
+  std::map<std::string, std::string> under;
+  const auto add = [&](const std::string& heading, const std::string& name, const std::string& value) {
+    constexpr std::size_t valueAt = 27;
+    if (!value.empty())
+      under[heading] += fmt::format("  {:<24} {}\n", name, wrappedText(value, terminalColumns(), valueAt, valueAt));
+  };
+  for (const auto& [member, value] : recording.items()) {
+    if (member == "attempt") {
+      for (const auto& [name, attribute] : value.items()) add(headingOf(name), name, shownValue(attribute));
+    } else if (member == "scene_files") {
+      for (const auto& asset : value)
+        add("Scene", "scene file", fmt::format("{} ({} bytes)", shownValue(asset["name"]), shownValue(asset["bytes"])));
+    } else if (member == "bytes_by_group") {
+      for (const auto& [group, bytes] : value.items())
+        add("Size", "bytes, " + group, shareOf(bytes, recording["bytes"]));
+    } else if (member == "device_samples") {
+      for (const auto& [hand, samples] : value.items()) add("Device", "device, " + hand, deviceOf(samples));
+    } else {
+      add(headingOf(member), member, shownValue(value));
+    }
+  }
   std::string text;
   for (const Group& group : groups) {
-    const Lines lines = linesOf(recording, group.heading);
-    if (lines.empty()) continue;
-    text += fmt::format("{}{}\n", text.empty() ? "" : "\n", group.heading);
-    for (const auto& [name, value] : lines)
-      text += fmt::format("  {:<24} {}\n", name, wrappedText(value, terminalColumns(), valueAt, valueAt));
+    if (const std::string& lines = under[group.heading]; !lines.empty())
+      text += fmt::format("{}{}\n{}", text.empty() ? "" : "\n", group.heading, lines);
   }
   return text;
 }
@@ -204,11 +192,7 @@ void inspect(const InspectOptions& o) {
   const recorder::ChainVerdict chain = recorder::probe(o.file);
   recorder::Recording recording(o.file);
   const Json d = describe(recording, chain);
-  if (o.json) {
-    printResult("inspect", d);
-  } else {
-    fmt::print("{}", inspectText(d));
-  }
+  printResult(o.json, "inspect", d, inspectText(d));
   const std::string wanted = o.key.empty() ? "" : toHex(fromHex<32>(o.key, "--public-key"));
   if (!chain.intact) throw Error(ErrorKind::refused, fmt::format("{}: {}", o.file, chain.what));
   const auto& signature = recording.signature();
@@ -231,16 +215,20 @@ void recoverRecording(const RecoverOptions& o) {
 }  // namespace
 
 void addInspect(CLI::App& app, Run& run) {
-  const auto [command, o] =
-      addCommand(app, run, "inspect", "Say what a recording holds, and whether its content chain is intact", inspect);
+  const auto [command, o] = addCommand(
+      app, run,
+      {"inspect", "Say what a recording holds, and whether its content chain is intact", "calot inspect attempt.h5"},
+      inspect);
   command->add_option("recording", o->file, "Recording (.h5)")->required();
   command->add_option("--public-key", o->key, "The key that must have signed it; else the exit code is 3");
   command->add_flag("--json", o->json, "Print JSON");
 }
 
 void addRecover(CLI::App& app, Run& run) {
-  const auto [command, o] = addCommand(
-      app, run, "recover", "Rewrite a recording that was cut off or whose writer was killed", recoverRecording);
+  const auto [command, o] = addCommand(app, run,
+                                       {"recover", "Rewrite a recording that was cut off or whose writer was killed",
+                                        "calot recover killed.h5 -o recovered.h5"},
+                                       recoverRecording);
   command->add_option("recording", o->in, "Recording (.h5)")->required();
   command->add_option("-o,--output", o->out, "File to write")->required();
   command->add_flag("--force", o->force, "Replace the output if it is there");

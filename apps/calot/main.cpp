@@ -2,8 +2,6 @@
 #include <algorithm>
 
 #include "apps/calot/command.h"
-#include "apps/calot/help.h"
-#include "apps/common/help_json.h"
 #include "recorder/compliance_cache.h"
 #include "recorder/loop.h"
 #include "recorder/prepared_scene.h"
@@ -15,21 +13,20 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", recorder::softwareName() + " (" + recorder::buildName() + "), simulation version " +
                                         std::to_string(simulationVersion));
   app.require_subcommand(1);
+  app.formatter(apps::helpForm());
   const std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
   apps::lookForCohort(words);
   apps::Run run;
 #define CALOT_ADD_COMMAND(name) apps::add##name(app, run);
   CALOT_COMMAND_LIST(CALOT_ADD_COMMAND)
 #undef CALOT_ADD_COMMAND
-  apps::formatHelp(app);
-  apps::addHelpJson(app);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& e) {
-    if (e.get_exit_code() == 0) return app.exit(e);  // --help, --version
-    return apps::endWith(apps::ExitCode::usage, "calot", apps::wrongWord(app, words, e));
-  }
-  recorder::useComplianceCache(recorder::userCacheFolder());
-  recorder::useEngines(apps::enginePlaces());
-  return apps::runProgram("calot", run);
+  app.footer("calot COMMAND --help has the options of each command, and an example.");
+  return apps::runProgram(
+      app, argc, argv,
+      [&run] {
+        recorder::useComplianceCache(recorder::userCacheFolder());
+        recorder::useEngines(apps::enginePlaces());
+        return run();
+      },
+      [&](const CLI::ParseError& e) { return apps::wrongWord(app, words, e); });
 }

@@ -44,8 +44,8 @@ CoarseSurface coarseSurface(const TriangleMesh& surface, int triangles) {
     } else {
       TriangleMesh boundary = boundarySurface(stuffed.mesh);
       const double ratio = static_cast<double>(boundary.triangles()) / triangles;
-      if (const double error = std::abs(ratio - 1.0); error < least) {
-        least = error;
+      if (std::abs(ratio - 1.0) < least) {
+        least = std::abs(ratio - 1.0);
         best.mesh = std::move(boundary);
       }
       if (least <= goodEnough) break;
@@ -176,12 +176,7 @@ void meshSurface(const MeshOptions& o) {
     report.crossing = findSelfCrossing(whole);
     writeOutputs(o, whole, report);
   }
-  if (o.json) {
-    printResult("mesh", meshReportJson(report));
-  } else {
-    fmt::print("{}", meshReportText(report));
-    std::fflush(stdout);
-  }
+  printResult(o.json, "mesh", Json::parse(meshReportJson(report)), meshReportText(report));
   for (const std::string& warning : meshWarnings(report))
     fmt::print(stderr, "calot: warning: {}: {}\n", o.input, warning);
   if (!report.faults.empty()) throw Error(ErrorKind::refused, o.input + ": " + report.faults.front());
@@ -190,9 +185,12 @@ void meshSurface(const MeshOptions& o) {
 }  // namespace
 
 void addMesh(CLI::App& app, Run& run) {
-  const auto [command, options] = addCommand(
-      app, run, "mesh", "Fill a closed surface with tetrahedra (isosurface stuffing); repair a surface for a scene",
-      meshSurface);
+  const auto [command, options] =
+      addCommand(app, run,
+                 {"mesh", "Fill a closed surface with tetrahedra (isosurface stuffing); repair a surface for a scene",
+                  "calot mesh liver.stl --unit mm --tetrahedra 1500 -o liver.vtk",
+                  "calot mesh liver.stl --unit mm --repair --surface-output organs/liver.obj --surface-triangles 6000"},
+                 meshSurface);
   command->add_option("surface", options->input, "the surface, a .obj, .stl or .ply file")->required();
   command->add_option("--unit", options->unit, "of the file's coordinates: m, cm or mm")
       ->required()

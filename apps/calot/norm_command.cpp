@@ -8,6 +8,7 @@
 #include "analytics/cohort/cohort_database.h"
 #include "analytics/report/report_document.h"
 #include "analytics/report/study_output.h"
+#include "analytics/report/value_tree.h"
 #include "apps/calot/command.h"
 #include "apps/calot/environment.h"
 #include "recorder/base/errors.h"
@@ -24,40 +25,42 @@ struct AngoffOptions {
 
 void judgeByAngoff(const AngoffOptions& o) {
   const analytics::AngoffJudgement a = analytics::readAngoff(readCsvTable(o.table));
-  const double judges = static_cast<double>(a.judges.size());
-  analytics::ReportTable table =
-      analytics::tableOf("Probability that a borderline trainee passes", {"=item", "mean", "least", "most"});
   Json items = Json::array();
   for (std::size_t item = 0; item < a.items.size(); ++item) {
     double sum = 0.0, least = 1.0, most = 0.0;
     for (std::size_t j = 0; j < a.judges.size(); ++j) {
       const double p = a.probabilities.at(j, item);
       sum += p;
-      if (p < least) least = p;
-      if (p > most) most = p;
+      least = std::min(least, p);
+      most = std::max(most, p);
     }
-    table.rows.push_back({a.items[item], fmt::format("{:.2f}", sum / judges), fmt::format("{:.2f}", least),
-                          fmt::format("{:.2f}", most)});
-    items.push_back({{"item", a.items[item]}, {"mean", sum / judges}, {"least", least}, {"most", most}});
+    items.push_back({{"item", a.items[item]},
+                     {"mean", sum / static_cast<double>(a.judges.size())},
+                     {"least", least},
+                     {"most", most}});
   }
-  if (o.json) {
-    printResult("norm-angoff", {{"judges", a.judges},
-                                {"items", items},
-                                {"cut", a.cut.cut},
-                                {"error", a.cut.error},
-                                {"lower", a.cut.interval.lower},
-                                {"upper", a.cut.interval.upper},
-                                {"needed", a.needed}});
-    return;
-  }
-  analytics::printTable(table, std::cout);
-  analytics::printWrapped(
-      fmt::format(
-          "Angoff's mark by {} judges: {} of {} items, 95 % [{}, {}] by Student's t over the judges. The rule of "
-          "norm create: --rule at-least:{}.",
-          a.judges.size(), analytics::significant(a.cut.cut), a.items.size(),
-          analytics::significant(a.cut.interval.lower), analytics::significant(a.cut.interval.upper), a.needed),
-      std::cout);
+  const Json all{{"judges", a.judges},
+                 {"items", items},
+                 {"cut", a.cut.cut},
+                 {"error", a.cut.error},
+                 {"lower", a.cut.interval.lower},
+                 {"upper", a.cut.interval.upper},
+                 {"needed", a.needed}};
+  printResult(o.json, "norm-angoff", all, [&](std::ostream& out) {
+    using namespace analytics;
+    printTable(
+        tableOf(
+            "Probability that a borderline trainee passes", items,
+            {{"=item", "item", plain}, {"mean", "mean", share2}, {"least", "least", share2}, {"most", "most", share2}}),
+        out);
+    printWrapped(
+        fmt::format(
+            "Angoff's mark by {} judges: {} of {} items, 95 % [{}, {}] by Student's t over the judges. The rule of "
+            "norm create: --rule at-least:{}.",
+            a.judges.size(), significant(a.cut.cut), a.items.size(), significant(a.cut.interval.lower),
+            significant(a.cut.interval.upper), a.needed),
+        out);
+  });
 }
 
 using Access = analytics::CohortDatabase::Access;
@@ -126,10 +129,10 @@ Json normJson(const analytics::Norm& norm) {
   return j;
 }
 
-void printNorm(const analytics::Norm& norm) {
-  if (norm.synthetic) std::cout << analytics::watermarkText << '\n';
-  for (const std::string& line : analytics::normSummary(norm)) analytics::printWrapped(line, std::cout);
-  std::cout << '\n';
+void printNorm(const analytics::Norm& norm, std::ostream& out) {
+  if (norm.synthetic) out << analytics::watermarkText << '\n';
+  for (const std::string& line : analytics::normSummary(norm)) analytics::printWrapped(line, out);
+  out << '\n';
   analytics::ReportTable table =
       analytics::tableOf("Pass marks", {"=checkpoint", "=unit", "=better", "cut", "95 %", "=rule", "="});
   for (const analytics::NormCheckpoint& c : norm.checkpoints) {
@@ -142,9 +145,9 @@ void printNorm(const analytics::Norm& norm) {
                           c.lower ? fmt::format("[{}, {}]", number(*c.lower), number(*c.upper)) : "-",
                           c.inRule ? "counts" : "", c.reason});
   }
-  analytics::printTable(table, std::cout);
-  for (const std::string& warning : analytics::normWarnings(norm)) analytics::printWrapped(warning, std::cout);
-  if (norm.synthetic) std::cout << analytics::watermarkText << '\n';
+  analytics::printTable(table, out);
+  for (const std::string& warning : analytics::normWarnings(norm)) analytics::printWrapped(warning, out);
+  if (norm.synthetic) out << analytics::watermarkText << '\n';
 }
 
 void createNorm(NormOptions& o) {
@@ -162,7 +165,7 @@ void createNorm(NormOptions& o) {
   const analytics::Norm norm =
       analytics::createNorm(o.database, o.request, {}, [&](double share, const char*) { progress.showShare(share); });
   Progress::erase();
-  printNorm(norm);
+  printNorm(norm, std::cout);
 }
 
 void listNorms(NormOptions& o) {
@@ -178,20 +181,12 @@ void listNorms(NormOptions& o) {
                                                   : fmt::format(", FAILED by {} of its {} competent members",
                                                                 own.members - own.passed, own.members));
   }
-  if (o.json) {
-    printResult("norms", {{"norms", rows}});
-  } else {
-    std::cout << (text.empty() ? "no norms\n" : text);
-  }
+  printResult(o.json, "norms", {{"norms", rows}}, text.empty() ? "no norms\n" : text);
 }
 
 void showNorm(NormOptions& o) {
   const analytics::Norm norm = analytics::CohortDatabase(o.database, Access::read).norm(o.name, o.version);
-  if (o.json) {
-    printResult("norm", normJson(norm));
-  } else {
-    printNorm(norm);
-  }
+  printResult(o.json, "norm", normJson(norm), [&](std::ostream& out) { printNorm(norm, out); });
 }
 
 void attachEvidence(NormOptions& o) {
@@ -252,27 +247,35 @@ void addCreateOptions(CLI::App& command, NormOptions& o) {
 
 void addNorm(CLI::App& app, Run& run) {
   const auto o = std::make_shared<NormOptions>();
-  CLI::App* command = app.add_subcommand("norm", "Make and show the norms that attempts are graded against");
-  command->require_subcommand(1);
-  const auto add = [&](const char* name, const char* what, void (*work)(NormOptions&)) {
-    CLI::App* sub = addCommand(*command, run, name, what, work, o).first;
+  CLI::App& command =
+      addGroup(app, {"norm", "Make and show the norms that attempts are graded against", "calot norm list c.db"});
+  const auto add = [&](const CommandText& text, void (*work)(NormOptions&)) {
+    CLI::App* sub = addCommand(command, run, text, work, o).first;
     addCohortOption(*sub, o->database)->required();
     return sub;
   };
-  CLI::App* made = add("create", "Make the next version of a norm from attempts of a cohort", createNorm);
+  CLI::App* made = add({"create", "Make the next version of a norm from attempts of a cohort",
+                        "calot norm create c.db clinic --by \"A. Instructor\" --rule at-least:6 --attempt-rule first"},
+                       createNorm);
   made->add_option("name", o->name, "Its name")->required();
   addCreateOptions(*made, *o);
-  add("list", "List the norms of a cohort", listNorms)->add_flag("--json", o->json, "Print JSON");
-  CLI::App* shown = add("show", "Show a norm: members, rule, pass rate, pass marks", showNorm);
+  add({"list", "List the norms of a cohort", "calot norm list c.db"}, listNorms)
+      ->add_flag("--json", o->json, "Print JSON");
+  CLI::App* shown =
+      add({"show", "Show a norm: members, rule, pass rate, pass marks", "calot norm show c.db clinic"}, showNorm);
   CLI::App* proven =
-      add("evidence", "Attach the site's validity evidence; without it every sheet is formative", attachEvidence);
+      add({"evidence", "Attach the site's validity evidence; without it every sheet is formative",
+           "calot norm evidence c.db clinic --file report.pdf --statement \"validated 2026\" --by \"A. Instructor\""},
+          attachEvidence);
   for (CLI::App* sub : {shown, proven}) {
     sub->add_option("name", o->name, "Its name")->required();
     sub->add_option("--norm-version", o->version, "Its version; default: the newest");
   }
   const auto [angoff, a] =
-      addCommand(*command, run, "angoff",
-                 "How many figures a borderline trainee passes, by judges (Angoff), for --rule", judgeByAngoff);
+      addCommand(command, run,
+                 {"angoff", "How many figures a borderline trainee passes, by judges (Angoff), for --rule",
+                  "calot norm angoff judges.csv"},
+                 judgeByAngoff);
   angoff->add_option("judges", a->table, "CSV file: a column judge, and one of probabilities for each figure")
       ->required();
   angoff->add_flag("--json", a->json, "Print JSON");

@@ -3,7 +3,6 @@
 #include <map>
 #include <set>
 
-#include "analytics/cohort/cohort_database.h"
 #include "analytics/cohort/withdraw.h"
 #include "analytics/cohort_files.h"
 #include "apps/calot/command.h"
@@ -106,7 +105,10 @@ void withdraw(const WithdrawOptions& o) {
 
 void addWithdraw(CLI::App& participant, Run& run) {
   const auto [command, o] =
-      addCommand(participant, run, "withdraw", "Remove what there is of a participant, for good", withdraw);
+      addCommand(participant, run,
+                 {"withdraw", "Remove what there is of a participant, for good",
+                  "calot participant withdraw P1 --cohort c.db --scope all --recordings recordings"},
+                 withdraw);
   command->add_option("participant", o->pseudonym, "Pseudonym")->required();
   command->add_option("--cohort", o->cohort, "Cohort database")->required();
   command->add_option("--scope", o->scope, "research: all but training goes, the participant stays; all: everything")
@@ -140,24 +142,18 @@ std::map<std::string, std::string> pairs(const std::vector<std::string>& items, 
   return result;
 }
 
-std::map<std::string, std::string> experienceOf(const ParticipantOptions& o) {
-  return pairs(o.experience, '=', "--experience", "CRITERION=VALUE");
-}
-std::map<std::string, std::string> consentOf(const ParticipantOptions& o) {
-  return pairs(o.consent, ':', "--consent", "PURPOSE:YYYY-MM-DD");
-}
-
-void add(const ParticipantOptions& o) {
-  analytics::CohortDatabase(o.database, Access::create)
-      .addParticipant({o.pseudonym, o.group, o.arm, o.site, experienceOf(o), consentOf(o)});
-  std::cout << fmt::format("{}: participant {} added\n", o.database, o.pseudonym);
-}
-
-void change(const ParticipantOptions& o) {
-  analytics::ParticipantChange change{givenOf(*o.command, "--group", o.group), givenOf(*o.command, "--arm", o.arm),
-                                      givenOf(*o.command, "--site", o.site), experienceOf(o), consentOf(o)};
-  analytics::CohortDatabase(o.database, Access::write).setParticipant(o.pseudonym, change);
-  std::cout << fmt::format("{}: participant {} changed\n", o.database, o.pseudonym);
+template <bool isNew>
+void enter(const ParticipantOptions& o) {
+  const auto experience = pairs(o.experience, '=', "--experience", "CRITERION=VALUE");
+  const auto consent = pairs(o.consent, ':', "--consent", "PURPOSE:YYYY-MM-DD");
+  analytics::CohortDatabase database(o.database, isNew ? Access::create : Access::write);
+  if (isNew) {
+    database.addParticipant({o.pseudonym, o.group, o.arm, o.site, experience, consent});
+  } else {
+    database.setParticipant(o.pseudonym, {givenOf(*o.command, "--group", o.group), givenOf(*o.command, "--arm", o.arm),
+                                          givenOf(*o.command, "--site", o.site), experience, consent});
+  }
+  std::cout << fmt::format("{}: participant {} {}\n", o.database, o.pseudonym, isNew ? "added" : "changed");
 }
 
 void listParticipants(const ParticipantFilter& o) {
@@ -180,21 +176,22 @@ void listParticipants(const ParticipantFilter& o) {
     table.rows.push_back({p.pseudonym, p.group, p.arm, p.site, std::to_string(attempts[p.pseudonym]),
                           joined(p.experience, '='), joined(p.consent, ':')});
   }
-  if (o.json) {
-    printResult("participant-list", {{"participants", list}});
-    return;
-  }
-  if (!list.empty()) table.print(std::cout, terminalColumns());
-  std::cout << fmt::format("{}: {} participants\n", o.cohort, list.size());
+  printResult(o.json, "participant-list", {{"participants", list}}, [&](std::ostream& out) {
+    if (!list.empty()) table.print(out, terminalColumns());
+    out << fmt::format("{}: {} participants\n", o.cohort, list.size());
+  });
 }
 
 }  // namespace
 
 void addParticipant(CLI::App& app, Run& run) {
-  CLI::App& participant = *app.add_subcommand("participant", "List, add, change or withdraw participants of a cohort");
-  participant.require_subcommand(1);
+  CLI::App& participant = addGroup(app, {"participant", "List, add, change or withdraw participants of a cohort",
+                                         "calot participant add P1 --cohort c.db --group novice"});
 
-  const auto [list, l] = addCommand(participant, run, "list", "List the participants of a cohort", listParticipants);
+  const auto [list, l] =
+      addCommand(participant, run,
+                 {"list", "List the participants of a cohort", "calot participant list --cohort c.db --group novice"},
+                 listParticipants);
   addCohortOption(*list, l->cohort)->required();
   list->add_option("--group", l->group, "Only this group's");
   list->add_flag("--json", l->json, "Print JSON");
@@ -202,10 +199,16 @@ void addParticipant(CLI::App& app, Run& run) {
   addWithdraw(participant, run);
 
   const auto o = std::make_shared<ParticipantOptions>();
-  CLI::App* added =
-      addCommand(participant, run, "add", "Add a participant; makes the cohort database if there is none", add, o)
-          .first;
-  CLI::App* changed = addCommand(participant, run, "set", "Change what is given of a participant", change, o).first;
+  CLI::App* added = addCommand(participant, run,
+                               {"add", "Add a participant; makes the cohort database if there is none",
+                                "calot participant add P1 --cohort c.db --group novice --consent study:2026-01-31"},
+                               enter<true>, o)
+                        .first;
+  CLI::App* changed = addCommand(participant, run,
+                                 {"set", "Change what is given of a participant",
+                                  "calot participant set P1 --cohort c.db --experience laparoscopies=240"},
+                                 enter<false>, o)
+                          .first;
   o->command = changed;
   for (CLI::App* command : {added, changed}) {
     command->add_option("participant", o->pseudonym, "Pseudonym, never a name")->required();

@@ -16,7 +16,7 @@
 namespace calot::apps {
 namespace {
 
-inline constexpr std::size_t maxPeople = 500;  ///< in a group
+constexpr std::size_t maxPeople = 500;  ///< in a group
 
 /// Options of the command line.
 struct PowerOptions {
@@ -45,14 +45,9 @@ constexpr std::size_t maxSizes = 100, maxCheckpoints = 200;
 [[noreturn]] void failPower(const std::string& what) { throw Error(ErrorKind::invalid, "power: " + what); }
 
 std::vector<std::string> split(const std::string& text, char mark) {
-  std::vector<std::string> parts{""};
-  for (const char c : text) {
-    if (c == mark) {
-      parts.emplace_back();
-    } else {
-      parts.back() += c;
-    }
-  }
+  std::vector<std::string> parts;
+  std::istringstream in(text + mark);
+  for (std::string part; std::getline(in, part, mark);) parts.push_back(part);
   return parts;
 }
 
@@ -73,8 +68,9 @@ void addCheckpoint(PlannedStudy& planned, const std::string& text, bool lognorma
   for (const std::string& word : words) {
     std::string fault;
     numbers.push_back(recorder::readFiniteNumber(word, fault));
-    if (!fault.empty()) numbers.clear();
-    if (!fault.empty()) break;
+    if (fault.empty()) continue;
+    numbers.clear();
+    break;
   }
   if (colon == std::string::npos || colon == 0 || numbers.size() != 4)
     failPower(fmt::format("--checkpoint {}: NAME:MEAN,SD,MEAN,SD is expected", recorder::shown(text)));
@@ -220,12 +216,12 @@ double markOf(const PowerOptions& o, const PlannedStudy& planned) {
 }
 
 void printPower(const PowerOptions& o, const PlannedStudy& planned, const std::vector<Sized>& results,
-                std::size_t enough) {
-  if (planned.synthetic) std::cout << analytics::watermarkText << '\n';
-  std::cout << fmt::format("Power of two-sided Mann-Whitney tests at {:g}, adjustment {}: {}\n", o.level, o.adjustment,
-                           planned.origin);
-  std::cout << fmt::format("{} simulations each, seed {}; in brackets Wilson's 95 % interval of the simulation\n\n",
-                           planned.plan.simulations, o.seed);
+                std::size_t enough, std::ostream& out) {
+  if (planned.synthetic) out << analytics::watermarkText << '\n';
+  out << fmt::format("Power of two-sided Mann-Whitney tests at {:g}, adjustment {}: {}\n", o.level, o.adjustment,
+                     planned.origin);
+  out << fmt::format("{} simulations each, seed {}; in brackets Wilson's 95 % interval of the simulation\n\n",
+                     planned.plan.simulations, o.seed);
   analytics::ReportTable table = analytics::tableOf(
       "", {"n (" + planned.groups[0] + ")", "n (" + planned.groups[1] + ")", "=checkpoint", "power"});
   std::size_t untestable = 0;
@@ -243,8 +239,8 @@ void printPower(const PowerOptions& o, const PlannedStudy& planned, const std::v
     }
     untestable += r.power.untestable;
   }
-  table.print(std::cout);
-  std::cout << '\n';
+  table.print(out);
+  out << '\n';
   for (const Sized& r : results) {
     const double smallest = analytics::smallestRankTestP(r.nx, r.ny);
     if (smallest <= markOf(o, planned)) continue;
@@ -252,16 +248,14 @@ void printPower(const PowerOptions& o, const PlannedStudy& planned, const std::v
         fmt::format("n = {} + {}: nothing can be rejected, the smallest p of a rank test is {:.2g} and "
                     "{:.2g} is needed.",
                     r.nx, r.ny, smallest, markOf(o, planned)),
-        std::cout);
+        out);
   }
-  if (untestable > 0) std::cout << fmt::format("{} tests had no answer and count as not rejected.\n", untestable);
-  if (enough > 0) {
-    std::cout << fmt::format("From n = {} ({}) on all effects together reach {:g} with the whole interval.\n", enough,
-                             planned.groups[0], o.target);
-  } else {
-    std::cout << fmt::format("None of these sizes reaches {:g} for all effects together with the whole interval.\n",
-                             o.target);
-  }
+  if (untestable > 0) out << fmt::format("{} tests had no answer and count as not rejected.\n", untestable);
+  out << (enough > 0
+              ? fmt::format("From n = {} ({}) on all effects together reach {:g} with the whole interval.\n", enough,
+                            planned.groups[0], o.target)
+              : fmt::format("None of these sizes reaches {:g} for all effects together with the whole interval.\n",
+                            o.target));
 }
 
 void power(PowerOptions& o) {
@@ -283,10 +277,6 @@ void power(PowerOptions& o) {
     progress.show(results.size(), sizes.size());
   }
   Progress::erase();
-  if (!o.json) {
-    printPower(o, planned, results, enough);
-    return;
-  }
   Json j{{"synthetic", planned.synthetic},
          {"distributions", planned.origin},
          {"groups", planned.groups},
@@ -311,14 +301,16 @@ void power(PowerOptions& o) {
     row["untestable"] = r.power.untestable;
     j["sizes"].push_back(row);
   }
-  printResult("power", j);
+  printResult(o.json, "power", j, [&](std::ostream& out) { printPower(o, planned, results, enough, out); });
 }
 
 }  // namespace
 
 void addPower(CLI::App& app, Run& run) {
-  const auto [command, o] =
-      addCommand(app, run, "power", "How many people a study needs, by simulating the study itself", power);
+  const auto [command, o] = addCommand(app, run,
+                                       {"power", "How many people a study needs, by simulating the study itself",
+                                        "calot power --effect 1.2 --n 8:20:4", "calot power pilot.db --n 10:40:10"},
+                                       power);
   addStudySource(*command, o->source);
   addList(*command, "--effect", o->effects,
           "Shift of the first group in standard deviations, one a checkpoint: A,B,...; 0: none");

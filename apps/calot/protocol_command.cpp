@@ -80,11 +80,8 @@ void listShipped(const ProtocolOptions& o) {
                         terminalColumns(), 2) +
             '\n';
   }
-  if (o.json) {
-    printResult("protocols", {{"protocols", rows}});
-  } else {
-    std::cout << (text.empty() ? "no protocols (CALOT_ASSETS names the folder that has them)\n" : text);
-  }
+  printResult(o.json, "protocols", {{"protocols", rows}},
+              text.empty() ? "no protocols (CALOT_ASSETS names the folder that has them)\n" : text);
 }
 
 void listProtocols(const ProtocolOptions& o) {
@@ -100,30 +97,31 @@ void listProtocols(const ProtocolOptions& o) {
     text += fmt::format("{} version {}, registered on {} by {}, SHA-256 {}\n", p.name, p.version, p.registeredUtc, p.by,
                         p.sha256);
   }
-  if (o.json) {
-    printResult("protocols", {{"protocols", rows}});
-  } else {
-    std::cout << (text.empty() ? "no protocols\n" : text);
-  }
+  printResult(o.json, "protocols", {{"protocols", rows}}, text.empty() ? "no protocols\n" : text);
 }
 
 }  // namespace
 
 void addProtocol(CLI::App& app, Run& run) {
   const auto o = std::make_shared<ProtocolOptions>();
-  CLI::App* command = app.add_subcommand("protocol", "Check, register, lock and list the protocols of studies");
-  command->require_subcommand(1);
-  const auto add = [&](const char* name, const char* what, void (*work)(const ProtocolOptions&)) {
-    return addCommand(*command, run, name, what, work, o).first;
+  CLI::App& command =
+      addGroup(app, {"protocol", "Check, register, lock and list the protocols of studies", "calot protocol list"});
+  const auto add = [&](const CommandText& text, void (*work)(const ProtocolOptions&)) {
+    return addCommand(command, run, text, work, o).first;
   };
   const char* file = "A protocol's JSON file, or the name of one that comes with the program";
-  CLI::App* checked = add("check", "Read a protocol and say what it holds", checkProtocol);
+  CLI::App* checked =
+      add({"check", "Read a protocol and say what it holds", "calot protocol check my-protocol.json"}, checkProtocol);
   checked->add_option("protocol", o->protocol, file)->required();
-  CLI::App* registered = add("register", "Store a protocol with its hash and the time of now", registerProtocol);
+  CLI::App* registered = add({"register", "Store a protocol with its hash and the time of now",
+                              "calot protocol register my-protocol.json c.db --by \"A. Instructor\""},
+                             registerProtocol);
   registered->add_option("protocol", o->protocol, file)->required();
   addCohortOption(*registered, o->database, "Cohort database; made where there is none")->required();
   registered->add_option("--by", o->by, "Person who registers it")->required();
-  CLI::App* locked = add("lock", "Fix a study's analysis, after which its groups are named", lockAnalysis);
+  CLI::App* locked = add({"lock", "Fix a study's analysis, after which its groups are named",
+                          "calot protocol lock my-protocol.json c.db --by \"A. Analyst\""},
+                         lockAnalysis);
   locked->add_option("protocol", o->protocol, file)->required();
   addCohortOption(*locked, o->database)->required();
   locked->add_option("--by", o->by, "Person who locks it")->required();
@@ -131,8 +129,9 @@ void addProtocol(CLI::App& app, Run& run) {
   locked->add_option("--key", o->study.cohort.key, "As the study's option of this name");
   locked->add_flag("--mix-keys", o->study.cohort.mixKeys, "As the study's option of this name");
   locked->add_flag("--phases", o->study.cohort.includePhases, "As the study's option of this name");
-  CLI::App* listed =
-      add("list", "List the protocols that a cohort holds, or those that come with the program", listProtocols);
+  CLI::App* listed = add({"list", "List the protocols that a cohort holds, or those that come with the program",
+                          "calot protocol list c.db"},
+                         listProtocols);
   addCohortOption(*listed, o->database, "Cohort database (default: the protocols that come with the program)");
   listed->add_flag("--json", o->json, "Print JSON");
 }

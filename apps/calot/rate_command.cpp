@@ -10,7 +10,6 @@
 #include "analytics/assessment/pack_answers.h"
 #include "analytics/assessment/rating_form.h"
 #include "analytics/cohort/blinding.h"
-#include "analytics/cohort/cohort_database.h"
 #include "analytics/cohort/withdraw.h"
 #include "analytics/intake/manifests.h"
 #include "analytics/interchange/folder_output.h"
@@ -42,17 +41,16 @@ struct RateOptions {
 
 void listForms(const RateOptions& o) {
   Json rows = Json::array();
+  std::string text;
   for (const std::filesystem::path& file : listAssets("forms")) {
     const analytics::RatingForm form = analytics::readRatingForm(file);
-    if (!o.json) {
-      const std::string text = fmt::format("{} version {}: {} ({}, {} to {})", form.name, form.version, form.title,
-                                           form.ofAttempts ? "of attempts" : "of the simulator", form.least, form.most);
-      std::cout << wrappedText(text, terminalColumns(), 4) << '\n';
-    }
+    const std::string head = fmt::format("{} version {}: {} ({}, {} to {})", form.name, form.version, form.title,
+                                         form.ofAttempts ? "of attempts" : "of the simulator", form.least, form.most);
+    text += wrappedText(head, terminalColumns(), 4) + '\n';
     Json items = Json::array();
     for (const analytics::FormItem& item : form.items()) {
       items.push_back({{"item", item.key}, {"text", item.text}});
-      if (!o.json) std::cout << fmt::format("  {}  {}\n", item.key, item.text);
+      text += fmt::format("  {}  {}\n", item.key, item.text);
     }
     rows.push_back({{"form", form.name},
                     {"version", form.version},
@@ -63,7 +61,7 @@ void listForms(const RateOptions& o) {
                     {"most", form.most},
                     {"items", items}});
   }
-  if (o.json) printResult("forms", {{"forms", rows}});
+  printResult(o.json, "forms", {{"forms", rows}}, text);
 }
 
 /// A JSON object of items and scores; null where an item was left blank.
@@ -129,16 +127,14 @@ void showRatings(const RateOptions& o) {
   }
   const std::vector<analytics::FormReport> reports =
       analytics::reportForms(cohort, groupOf, {groups.begin(), groups.end()}, attemptOf);
-  if (o.json) {
-    printResult("ratings", {{"forms", analytics::ratingsTree(reports)}});
-    return;
-  }
-  if (reports.empty()) std::cout << "no ratings\n";
-  for (const analytics::FormReport& report : reports) {
-    for (const analytics::ReportTable& table : analytics::ratingTables(report)) analytics::printTable(table, std::cout);
-    for (const std::string& note : analytics::ratingNotes(report)) analytics::printWrapped(note, std::cout);
-    if (report.filled > 0) std::cout << '\n';
-  }
+  printResult(o.json, "ratings", {{"forms", analytics::ratingsTree(reports)}}, [&](std::ostream& out) {
+    if (reports.empty()) out << "no ratings\n";
+    for (const analytics::FormReport& report : reports) {
+      for (const analytics::ReportTable& table : analytics::ratingTables(report)) analytics::printTable(table, out);
+      for (const std::string& note : analytics::ratingNotes(report)) analytics::printWrapped(note, out);
+      if (report.filled > 0) out << '\n';
+    }
+  });
 }
 
 ExitCode storeRatingManifest(const RateOptions& o) {
@@ -150,17 +146,14 @@ ExitCode storeRatingManifest(const RateOptions& o) {
   analytics::CohortDatabase database(o.database, Access::write);
   const analytics::StoredRatings stored = analytics::storeRatings(database, read, o.force, faults);
   if (!faults.empty()) return refuseRows(faults);
-  if (o.json) {
-    const Json row{{"manifest", o.manifest},
-                   {"ratings", read.rows.size()},
-                   {"added", stored.added},
-                   {"unchanged", stored.unchanged},
-                   {"replaced", stored.replaced}};
-    printResult("rate-manifest", row);
-  } else {
-    std::cout << fmt::format("{}: {} ratings: {} added, {} unchanged, {} replaced\n", o.manifest, read.rows.size(),
-                             stored.added, stored.unchanged, stored.replaced);
-  }
+  const Json row{{"manifest", o.manifest},
+                 {"ratings", read.rows.size()},
+                 {"added", stored.added},
+                 {"unchanged", stored.unchanged},
+                 {"replaced", stored.replaced}};
+  printResult(o.json, "rate-manifest", row,
+              fmt::format("{}: {} ratings: {} added, {} unchanged, {} replaced\n", o.manifest, read.rows.size(),
+                          stored.added, stored.unchanged, stored.replaced));
   return ExitCode::yes;
 }
 
@@ -287,13 +280,11 @@ struct PackOptions {
 
 /// Raters' pseudonyms are names of folders.
 void checkRaters(const std::vector<std::string>& raters) {
+  constexpr const char* letters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_.";
   std::set<std::string> seen;
   for (const std::string& rater : raters) {
     const bool plain = !rater.empty() && rater.size() <= 64 && rater.front() != '.' &&
-                       std::all_of(rater.begin(), rater.end(), [](char c) {
-                         return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-                                c == '-' || c == '_' || c == '.';
-                       });
+                       rater.find_first_not_of(letters) == std::string::npos;
     if (!plain || !seen.insert(rater).second) {
       throw Error(
           ErrorKind::invalid,
@@ -321,13 +312,6 @@ void levelTimes(const fs::path& folder) {
   std::error_code ignored;
   for (fs::recursive_directory_iterator it(folder, ignored), end; it != end; it.increment(ignored))
     fs::last_write_time(it->path(), day, ignored);
-}
-
-analytics::RatingPage pageOf(const analytics::RatingPack& pack, const analytics::PackedRater& rater,
-                             const analytics::RatingForm& form) {
-  analytics::RatingPage page{pack.id, rater.rater, form, {}};
-  for (const analytics::PackedFilm& film : rater.films) page.films.push_back(film.name);
-  return page;
 }
 
 void packForRaters(const PackOptions& o) {
@@ -364,7 +348,9 @@ void packForRaters(const PackOptions& o) {
           fs::copy_file(at->second, target);
         }
       }
-      output.add(rater.rater + "/rate.html", analytics::ratingPageHtml(pageOf(pack, rater, form)));
+      analytics::RatingPage page{pack.id, rater.rater, form, {}};
+      for (const analytics::PackedFilm& film : rater.films) page.films.push_back(film.name);
+      output.add(rater.rater + "/rate.html", analytics::ratingPageHtml(page));
     }
   }
   levelTimes(output.folder());
@@ -404,7 +390,10 @@ ExitCode rate(const RateOptions& o) {
 
 void addRate(CLI::App& app, Run& run) {
   const auto [command, o] =
-      addCommand(app, run, "rate", "Store and summarise what raters and participants judge, by forms", rate);
+      addCommand(app, run,
+                 {"rate", "Store and summarise what raters and participants judge, by forms", "calot rate --forms",
+                  "calot rate c.db --form osats --attempt 3f2a --rater R1 --answers osats.json"},
+                 rate);
   addCohortOption(*command, o->database);
   command->add_flag("--forms", o->forms, "List the forms that come with the program");
   command->add_option("--form", o->form, "The form that was filled in: its name (calot rate --forms), or a JSON file");
@@ -421,8 +410,9 @@ void addRate(CLI::App& app, Run& run) {
   command->add_flag("--json", o->json, "Print JSON");
 
   const auto [pack, p] = addCommand(
-      *command, run, "pack",
-      "Pack films and a form for raters, under random names and in random order; the key stays in the cohort",
+      *command, run,
+      {"pack", "Pack films and a form for raters, under random names and in random order; the key stays in the cohort",
+       "calot rate pack c.db --form goals --films films --raters R1,R2 -o pack"},
       packForRaters);
   addCohortOption(*pack, p->database)->required();
   pack->add_option("--form", p->form, "The form to fill in: its name, or a file")->required();

@@ -243,7 +243,12 @@ void branch(const BranchOptions& o) {
 }  // namespace
 
 void addRecord(CLI::App& app, Run& run) {
-  const auto [command, o] = addCommand(app, run, "record", "Runs an attempt and records it.", record);
+  const auto [command, o] =
+      addCommand(app, run,
+                 {"record", "Runs an attempt and records it.",
+                  "calot record --scene touch-liver --performer skilled --seed 7 -o attempt.h5",
+                  "calot record --scene cholecystectomy --device gamepad --participant P1 -o attempt.h5"},
+                 record);
   command->add_option("--scene", o->scene, "name of a scene (calot scenes), or a scene file")->required();
   addSource(*command, o->source);
   command->add_option("--seed", o->seed, "of performer and simulation")->check(wholeNumber)->capture_default_str();
@@ -268,8 +273,10 @@ void addRecord(CLI::App& app, Run& run) {
 }
 
 void addBranch(CLI::App& app, Run& run) {
-  const auto [command, o] =
-      addCommand(app, run, "branch", "Continues a recording from a chosen moment as a new recording.", branch);
+  const auto [command, o] = addCommand(app, run,
+                                       {"branch", "Continues a recording from a chosen moment as a new recording.",
+                                        "calot branch attempt.h5 --at 1:02.5 --performer skilled -o branch.h5"},
+                                       branch);
   command->add_option("recording", o->parent, "the parent")->required();
   command->add_option("--at", o->at, "where the branch leaves it: seconds (12.5) or minutes and seconds (1:02.5)")
       ->required();

@@ -35,8 +35,10 @@ ExitCode regrade(const RegradeOptions& o) {
 }  // namespace
 
 void addRegrade(CLI::App& app, Run& run) {
-  const auto [command, o] =
-      addCommand(app, run, "regrade", "Recompute the derived values of a cohort, and show what changed", regrade);
+  const auto [command, o] = addCommand(
+      app, run,
+      {"regrade", "Recompute the derived values of a cohort, and show what changed", "calot regrade c.db recordings"},
+      regrade);
   addCohortOption(*command, o->cohort)->required();
   command->add_option("recordings", o->places, "Recordings, or folders that hold them; default: the database's folder");
   addThreads(*command, o->jobs, "Recordings at a time; 0: one for each processor", "--jobs");
@@ -133,11 +135,7 @@ void printRegrade(const analytics::Regrade& regrade) {
 }  // namespace
 
 ExitCode reportRegrade(const std::string& cohort, const analytics::Regrade& regrade, bool json) {
-  if (json) {
-    printResult("regrade", regradeJson(regrade));
-  } else {
-    printRegrade(regrade);
-  }
+  json ? printResult("regrade", regradeJson(regrade)) : printRegrade(regrade);
   std::vector<ExitCode> codes;
   for (const analytics::RegradedAttempt& a : regrade.attempts) {
     codes.push_back(codeOf(a.fault));

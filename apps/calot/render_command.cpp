@@ -87,8 +87,11 @@ void render(const RenderOptions& o) {
 }  // namespace
 
 void addRender(CLI::App& app, Run& run) {
-  const auto [command, o] =
-      addCommand(app, run, "render", "Draws a moment of a recording, or makes a film of it.", render);
+  const auto [command, o] = addCommand(app, run,
+                                       {"render", "Draws a moment of a recording, or makes a film of it.",
+                                        "calot render attempt.h5 --at 12.5 -o moment.png",
+                                        "calot render attempt.h5 --from 10 --to 20 --overlay time,phase -o film.mp4"},
+                                       render);
   command->add_option("recording", o->recording, "recording")->required();
   command->add_option("-o,--output", o->output, "picture (.png) or film (.mp4, .mkv)")->required();
   command->add_option("--at", o->at, "of a picture: seconds, or minutes:seconds (default: the start)");

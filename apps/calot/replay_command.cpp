@@ -8,6 +8,7 @@
 #include "apps/calot/replay_report.h"
 #include "apps/calot/source_options.h"
 #include "recorder/base/files.h"
+#include "recorder/live/worker_pool.h"
 #include "recorder/recording/probe.h"
 #include "recorder/replay.h"
 
@@ -32,38 +33,32 @@ ExitCode replay(const ReplayOptions& o) {
   std::vector<recorder::ReplayReport> reports(o.files.size());
   const bool single = o.files.size() == 1;
   Progress progress(single ? "replaying, step" : "replaying, recordings", o.json);
-  std::atomic<std::size_t> next{0};
-  std::atomic<std::size_t> done{0};
+  std::size_t done = 0;
   std::mutex drawing;
   std::exception_ptr failure;
-  const auto work = [&] {
-    for (std::size_t i = next++; i < o.files.size(); i = next++) {
-      recorder::ReplaySettings settings;
-      settings.threads = o.threads;
-      settings.engine = {o.apart, o.anyway, o.engine, makeBroadPhase};
-      if (!o.segments.empty()) settings.part.emplace(o.segments.front(), o.segments.back());
-      if (single) settings.progress = [&](std::uint64_t step, std::uint64_t of) { progress.show(step, of); };
-      try {
-        reports[i] = recorder::replayRecording(o.files[i], settings);
-      } catch (...) {
-        const std::lock_guard lock(drawing);
-        failure = std::current_exception();
-        reports[i].path = o.files[i];
-        reports[i].error = "failed inside";
-      }
-      ++done;
-      const std::lock_guard lock(drawing);
-      if (!single) progress.show(done, o.files.size());
-    }
-  };
   const std::size_t jobs =
       std::min<std::size_t>(o.jobs == 0 ? std::thread::hardware_concurrency() : o.jobs, o.files.size());
   std::optional<recorder::ProbeProcesses> probes;
   if (!single) probes.emplace(static_cast<unsigned>(jobs));
-  std::vector<std::thread> threads;
-  for (std::size_t j = 1; j < jobs; ++j) threads.emplace_back(work);
-  work();
-  for (std::thread& t : threads) t.join();
+  recorder::WorkerPool pool(static_cast<unsigned>(jobs));
+  pool.run(o.files.size(), [&](std::size_t i) {
+    recorder::ReplaySettings settings;
+    settings.threads = o.threads;
+    settings.engine = {o.apart, o.anyway, o.engine, makeBroadPhase};
+    if (!o.segments.empty()) settings.part.emplace(o.segments.front(), o.segments.back());
+    if (single) settings.progress = [&](std::uint64_t step, std::uint64_t of) { progress.show(step, of); };
+    try {
+      reports[i] = recorder::replayRecording(o.files[i], settings);
+    } catch (...) {
+      const std::lock_guard lock(drawing);
+      failure = std::current_exception();
+      reports[i].path = o.files[i];
+      reports[i].error = "failed inside";
+    }
+    const std::lock_guard lock(drawing);
+    ++done;
+    if (!single) progress.show(done, o.files.size());
+  });
   writeJunit(o.junit, "calot replay", reports);
   if (failure) std::rethrow_exception(failure);
   if (o.json) {
@@ -84,7 +79,10 @@ ExitCode replay(const ReplayOptions& o) {
 
 void addReplay(CLI::App& app, Run& run) {
   const auto [command, o] =
-      addCommand(app, run, "replay", "Re-simulates recordings and compares every digest and force.", replay);
+      addCommand(app, run,
+                 {"replay", "Re-simulates recordings and compares every digest and force.", "calot replay attempt.h5",
+                  "calot replay recordings/*.h5 --jobs 0 --junit result.xml"},
+                 replay);
   command->add_option("recordings", o->files, "recordings")->required();
   addThreads(*command, o->threads,
              "segments between keyframes that are verified at a time, of each recording; 0: one a processor");

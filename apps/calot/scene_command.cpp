@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "analytics/report/report_document.h"
 #include "apps/calot/command.h"
 #include "apps/calot/environment.h"
 #include "recorder/base/errors.h"
@@ -127,7 +126,7 @@ Json checkJson(const std::string& file, const recorder::SceneCheck& check) {
           {"faults", faults}, {"notes", check.notes}, {"surfaces", costs}};
 }
 
-void printCosts(const recorder::SceneCheck& check) {
+void printCosts(const recorder::SceneCheck& check, std::ostream& out) {
   analytics::ReportTable table =
       analytics::tableOf("", {"=organ", "triangles", "edge (mm)", "tetrahedra", "cell (mm)", "=surface"});
   bool fine = false;
@@ -137,22 +136,18 @@ void printCosts(const recorder::SceneCheck& check) {
                           c.isFine() ? fmt::format("fine: {} triangles show as much", c.sensibleTriangles) : "right"});
     fine = fine || c.isFine();
   }
-  table.print(std::cout, terminalColumns());
-  if (fine) std::cout << "calot mesh SURFACE --surface-output F.obj --surface-triangles N makes a coarser surface\n";
-  std::cout << std::flush;
+  table.print(out, terminalColumns());
+  if (fine) out << "calot mesh SURFACE --surface-output F.obj --surface-triangles N makes a coarser surface\n";
 }
 
 void checkScene(const SceneCheckOptions& o) {
   const std::filesystem::path file = recorder::findScene(o.scene, assetFolders());
   const recorder::SceneCheck check = recorder::checkScene(file);
-  if (o.json) {
-    printResult("scene-check", checkJson(file.string(), check));
-  } else {
-    for (const Error& fault : check.faults) fmt::print("fault: {}\n", fault.what());
-    for (const std::string& note : check.notes) fmt::print("note: {}\n", note);
-    std::fflush(stdout);
-    if (!check.costs.empty()) printCosts(check);
-  }
+  printResult(o.json, "scene-check", checkJson(file.string(), check), [&](std::ostream& out) {
+    for (const Error& fault : check.faults) out << fmt::format("fault: {}\n", fault.what());
+    for (const std::string& note : check.notes) out << fmt::format("note: {}\n", note);
+    if (!check.costs.empty()) printCosts(check, out);
+  });
   if (!check.faults.empty())
     throw Error(ErrorKind::damaged, fmt::format("{}: {} faults", file.string(), check.faults.size()));
   if (!o.json) fmt::print("{}: sound, {} notes\n", file.string(), check.notes.size());
@@ -254,23 +249,28 @@ void writeSceneTemplate(const SceneTemplate& wanted) {
 }  // namespace
 
 void addScenes(CLI::App& app, Run& run) {
-  const auto [command, o] = addCommand(app, run, "scenes", "List the scenes that can be simulated", listScenes);
+  const auto [command, o] =
+      addCommand(app, run, {"scenes", "List the scenes that can be simulated", "calot scenes"}, listScenes);
   command->add_flag("--json", o->json, "Print JSON, with what each scene is built of");
 }
 
 void addScene(CLI::App& app, Run& run) {
-  CLI::App* command = app.add_subcommand("scene", "Make a scene of one's own: a template, and a check");
-  command->require_subcommand(1);
+  CLI::App& command = addGroup(
+      app, {"scene", "Make a scene of one's own: a template, and a check", "calot scene check my/scenes/press.json"});
 
   const auto [check, c] = addCommand(
-      *command, run, "check",
-      "Say all faults of a scene at once, what catches nothing in it, and surfaces that are too fine", checkScene);
+      command, run,
+      {"check", "Say all faults of a scene at once, what catches nothing in it, and surfaces that are too fine",
+       "calot scene check my/scenes/press.json"},
+      checkScene);
   check->add_option("scene", c->scene, "name of a scene (calot scenes), or a scene file")->required();
   check->add_flag("--json", c->json, "print the result as JSON");
 
-  const auto [made, t] = addCommand(
-      *command, run, "template", "Write a scene of one organ that can be recorded at once, and be changed from there",
-      writeSceneTemplate);
+  const auto [made, t] =
+      addCommand(command, run,
+                 {"template", "Write a scene of one organ that can be recorded at once, and be changed from there",
+                  "calot scene template liver.stl --unit mm -o my/scenes/press.json"},
+                 writeSceneTemplate);
   made->add_option("surface", t->surface, "the organ's closed surface, a .obj, .stl or .ply file (calot mesh --repair)")
       ->required();
   made->add_option("--unit", t->unit, "of its coordinates: m, cm or mm")->required()->check(oneOf({"m", "cm", "mm"}));

@@ -20,10 +20,6 @@
 #endif
 
 namespace calot::apps {
-namespace {
-constexpr double patience = 10.0;  // s
-}
-
 void addTools(CLI::App& command, DeviceOptions& options) {
   command.add_option("--tools", options.tools, "names of an OpenIGTLink server's tools: LEFT,RIGHT; - for none")
       ->delimiter(',')
@@ -35,27 +31,6 @@ std::array<std::string, handCount> toolsOf(const DeviceOptions& options) {
   std::array<std::string, handCount> out;
   for (std::size_t h = 0; h < handCount; ++h) out[h] = options.tools[h] == "-" ? "" : options.tools[h];
   return out;
-}
-
-std::unique_ptr<recorder::DeviceSource> makeDeviceSource(const DeviceOptions& options, const SceneDescription& scene,
-                                                         recorder::Mode mode, const std::atomic<bool>* stop) {
-  if (mode == recorder::Mode::assessment && options.calibration.empty()) {
-    throw Error(ErrorKind::invalid,
-                "--device: an assessment needs --calibration (calot devices calibrate measures one)");
-  }
-  recorder::DeviceSourceSettings settings;
-  settings.mode = mode;
-  if (!options.calibration.empty()) settings.calibration = recorder::readCalibration(options.calibration);
-  recorder::OpenedDevice opened =
-      recorder::openDevice(options.name, toolsOf(options), settings.calibration ? &*settings.calibration : nullptr);
-  settings.tickClock = opened.tickClock;
-  if (settings.calibration) {
-    recorder::checkCalibration(*settings.calibration, opened.device->info(), mode, recorder::presentDate(),
-                               options.calibration);
-  }
-  auto source = std::make_unique<recorder::DeviceSource>(std::move(opened.device), scene, std::move(settings));
-  source->waitForFirst(patience, stop);
-  return source;
 }
 
 void driveDevice(recorder::SampleSource& source, recorder::RunSettings& run) {
@@ -87,6 +62,31 @@ void printDevice(recorder::SampleSource& source) {
 }
 
 namespace {
+
+/// Opens the device, takes its calibration, waits for its first samples.
+/// @throws Error: invalid, for names, and for an assessment without calibration; refused, for a calibration that is not
+/// to be used; damaged, for files; failure, where the device is not there or says nothing.
+std::unique_ptr<recorder::DeviceSource> makeDeviceSource(const DeviceOptions& options, const SceneDescription& scene,
+                                                         recorder::Mode mode) {
+  constexpr double patience = 10.0;  // s
+  if (mode == recorder::Mode::assessment && options.calibration.empty()) {
+    throw Error(ErrorKind::invalid,
+                "--device: an assessment needs --calibration (calot devices calibrate measures one)");
+  }
+  recorder::DeviceSourceSettings settings;
+  settings.mode = mode;
+  if (!options.calibration.empty()) settings.calibration = recorder::readCalibration(options.calibration);
+  recorder::OpenedDevice opened =
+      recorder::openDevice(options.name, toolsOf(options), settings.calibration ? &*settings.calibration : nullptr);
+  settings.tickClock = opened.tickClock;
+  if (settings.calibration) {
+    recorder::checkCalibration(*settings.calibration, opened.device->info(), mode, recorder::presentDate(),
+                               options.calibration);
+  }
+  auto source = std::make_unique<recorder::DeviceSource>(std::move(opened.device), scene, std::move(settings));
+  source->waitForFirst(patience, &stopRequested());
+  return source;
+}
 
 constexpr double maxOpticDegrees = 70.0;
 constexpr double degree = recorder::Endoscope::maxOptic / maxOpticDegrees;
@@ -129,7 +129,7 @@ std::unique_ptr<recorder::SampleSource> withScope(std::unique_ptr<recorder::Samp
                                                  driverOf(options, endoscope, assistant, seed));
 }
 
-CLI::Option_group* addSource(CLI::App& command, SourceOptions& options) {
+void addSource(CLI::App& command, SourceOptions& options) {
   auto* source = command.add_option_group("source", "who acts");
   source->add_option("--performer", options.performer,
                      "profile of a synthetic operator: skilled, intermediate, unskilled, or a file");
@@ -139,7 +139,6 @@ CLI::Option_group* addSource(CLI::App& command, SourceOptions& options) {
   addTools(command, options.device);
   command.add_option("--calibration", options.device.calibration, "of the device; an assessment needs one");
   addScope(command, options.scope);
-  return source;
 }
 
 std::unique_ptr<recorder::SampleSource> makeSource(const SourceOptions& options, const SceneDescription& scene,
@@ -148,7 +147,7 @@ std::unique_ptr<recorder::SampleSource> makeSource(const SourceOptions& options,
   recorder::ScopeSkill assistant;
   refuseScope(options.scope);
   if (!options.device.name.empty()) {
-    source = makeDeviceSource(options.device, scene, options.mode, &stopRequested());
+    source = makeDeviceSource(options.device, scene, options.mode);
   } else if (!options.kinematics.empty()) {
     source = std::make_unique<recorder::KinematicsSource>(options.kinematics, scene);
   } else {

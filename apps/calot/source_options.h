@@ -39,12 +39,6 @@ void addTools(CLI::App& command, DeviceOptions& options);
 /// Left and right; "-" stands for none. @throws Error (invalid) unless there are two.
 std::array<std::string, handCount> toolsOf(const DeviceOptions& options);
 
-/// Opens the device, takes its calibration, waits for its first samples (at most ten seconds).
-/// @throws Error: invalid, for names, and for an assessment without calibration; refused, for a calibration that is not
-/// to be used; damaged, for files; failure, where the device is not there or says nothing.
-std::unique_ptr<recorder::DeviceSource> makeDeviceSource(const DeviceOptions& options, const SceneDescription& scene,
-                                                         recorder::Mode mode, const std::atomic<bool>* stop);
-
 /// If the source is a device: runs it at the pace of the clock if it lives in real time, and gives its motors
 /// the forces. @param source outlives the run.
 void driveDevice(recorder::SampleSource& source, recorder::RunSettings& run);
@@ -84,7 +78,7 @@ struct SourceOptions {
 };
 
 /// Adds the group of options of which one must be given. @param options outlives the parsing.
-CLI::Option_group* addSource(CLI::App& command, SourceOptions& options);
+void addSource(CLI::App& command, SourceOptions& options);
 
 /// Opens what was chosen. @param seed of a performer. @throws Error
 std::unique_ptr<recorder::SampleSource> makeSource(const SourceOptions& options, const SceneDescription& scene,

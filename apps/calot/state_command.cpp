@@ -73,29 +73,24 @@ ExitCode diff(const DiffOptions& o) {
   const recorder::StateFile a = recorder::readStateFile(o.first);
   const recorder::StateFile b = recorder::readStateFile(o.second);
   const auto difference = recorder::firstDifference(a.fields, b.fields);
-  if (o.json) {
-    nlohmann::json json{{"equal", !difference}};
-    if (difference) {
-      json["field"] = difference->field;
-      json["index"] = difference->index;
-      json["first"] = difference->first;
-      json["second"] = difference->second;
-    }
-    printResult("diff", json);
-  } else if (difference) {
-    fmt::print("{} index {}: {} and {}\n", difference->field, difference->index, difference->first, difference->second);
-  } else {
-    fmt::print("equal: {} fields of step {}\n", a.fields.size(), a.step);
+  nlohmann::json json{{"equal", !difference}};
+  std::string text = fmt::format("equal: {} fields of step {}\n", a.fields.size(), a.step);
+  if (const auto& d = difference) {
+    json.update({{"field", d->field}, {"index", d->index}, {"first", d->first}, {"second", d->second}});
+    text = fmt::format("{} index {}: {} and {}\n", d->field, d->index, d->first, d->second);
   }
-  if (a.step != b.step && !o.json) fmt::print("the first is of step {}, the second of step {}\n", a.step, b.step);
+  if (a.step != b.step) text += fmt::format("the first is of step {}, the second of step {}\n", a.step, b.step);
+  printResult(o.json, "diff", json, text);
   return difference ? ExitCode::no : ExitCode::yes;
 }
 
 }  // namespace
 
 void addState(CLI::App& app, Run& run) {
-  const auto [command, o] =
-      addCommand(app, run, "state", "Writes the State after a step, as HDF5 or as plain bytes.", state);
+  const auto [command, o] = addCommand(app, run,
+                                       {"state", "Writes the State after a step, as HDF5 or as plain bytes.",
+                                        "calot state attempt.h5 --step 100 -o step100.h5"},
+                                       state);
   command->add_option("recording", o->recording, "recording")->required();
   command->add_option("--step", o->step, "the step after which")->check(wholeNumber)->required();
   command->add_flag("--flat", o->flat, "scene, State and the next 200 steps' samples as plain bytes, for the matrix");
@@ -106,7 +101,10 @@ void addState(CLI::App& app, Run& run) {
 
 void addDiff(CLI::App& app, Run& run) {
   const auto [command, o] =
-      addCommand(app, run, "diff", "First field, index and both values that differ between two State files.", diff);
+      addCommand(app, run,
+                 {"diff", "First field, index and both values that differ between two State files.",
+                  "calot diff step100.h5 other.h5"},
+                 diff);
   command->add_option("first", o->first, "file of `calot state`")->required();
   command->add_option("second", o->second, "file of `calot state`")->required();
   command->add_flag("--json", o->json, "print the result as JSON");

@@ -27,12 +27,16 @@ void showStation(const StationOptions& o) { printKey(recorder::readStationKey(o.
 }  // namespace
 
 void addStation(CLI::App& app, Run& run) {
-  CLI::App* command = app.add_subcommand("station", "The key that this station signs its recordings with");
-  command->require_subcommand(1);
-  const auto [init, i] = addCommand(*command, run, "init", "Make a key; it is never replaced", initStation);
+  CLI::App& command = addGroup(app, {"station", "The key that this station signs its recordings with",
+                                     "calot station init trainer-1 -o station.json"});
+  const auto [init, i] = addCommand(
+      command, run, {"init", "Make a key; it is never replaced", "calot station init trainer-1 -o station.json"},
+      initStation);
   init->add_option("name", i->name, "Name of the station")->required();
   init->add_option("-o,--output", i->file, "File to write; keep it on this station")->required();
-  const auto [show, s] = addCommand(*command, run, "show", "Print station and public key of a key file", showStation);
+  const auto [show, s] = addCommand(
+      command, run, {"show", "Print station and public key of a key file", "calot station show station.json"},
+      showStation);
   show->add_option("file", s->file, "Key file")->required();
 }
 

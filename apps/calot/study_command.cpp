@@ -199,7 +199,7 @@ void addDesignOptions(CLI::App& command, DesignOptions& o) {
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   command.get_option("--groups")->description("The groups to compare, A,B; three or more for --design groups");
-  command.footer(helpOfDesigns());
+  command.footer(helpOfDesigns() + "\n\n" + command.get_footer());
 }
 
 /// Chosen or implied: three groups, strata. @throws Error (invalid) for options that the design does not take, or
@@ -308,11 +308,7 @@ void runTwoGroups(StudyCommandOptions& options) {
   if (!options.csv.empty()) analytics::writeStudyCsv(study, options.csv, options.force);
   writeReport(analytics::studyDocument(study), options.html, options.pdf, options.force);
   if (isExported(options)) noteExports(options, attemptsIn(study, options.source.database));
-  if (options.json) {
-    printResult("study", analytics::studyTree(study));
-  } else {
-    printStudy(study, options.all);
-  }
+  options.json ? printResult("study", analytics::studyTree(study)) : printStudy(study, options.all);
 }
 
 void runDesign(StudyCommandOptions& options) {
@@ -322,11 +318,7 @@ void runDesign(StudyCommandOptions& options) {
   const analytics::DesignReport report = designReportOf(options.design, options.source);
   writeReport(analytics::designDocument(report), options.html, options.pdf, options.force);
   if (isExported(options)) noteExports(options, report.attempts);
-  if (options.json) {
-    printResult("design", report.json);
-  } else {
-    analytics::printDesign(report, std::cout);
-  }
+  printResult(options.json, "design", report.json, [&](std::ostream& out) { analytics::printDesign(report, out); });
 }
 
 void study(StudyCommandOptions& o) {
@@ -341,8 +333,11 @@ void study(StudyCommandOptions& o) {
 
 void addStudy(CLI::App& app, Run& run) {
   const auto [command, options] =
-      addCommand(app, run, "study",
-                 "Compare groups of a cohort, or of a table from elsewhere, in two groups or another design", study);
+      addCommand(app, run,
+                 {"study", "Compare groups of a cohort, or of a table from elsewhere, in two groups or another design",
+                  "calot study c.db --attempt-rule mean",
+                  "calot study --table f.csv --participant-column person --group-column level --outcome seconds:lower"},
+                 study);
   addStudySource(*command, options->source);
   command->add_flag("--masked", options->source.masked,
                     "Call the protocol's groups \"group 1\" and \"group 2\" until its analysis is locked");

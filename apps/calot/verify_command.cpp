@@ -120,8 +120,11 @@ ExitCode verify(const VerifyOptions& o) {
 }  // namespace
 
 void addVerify(CLI::App& app, Run& run) {
-  const auto [command, o] = addCommand(
-      app, run, "verify", "Verifies and assesses recordings as they come into folders, and stores them.", verify);
+  const auto [command, o] =
+      addCommand(app, run,
+                 {"verify", "Verifies and assesses recordings as they come into folders, and stores them.",
+                  "calot verify --watch incoming --cohort c.db"},
+                 verify);
   command->add_option("--watch", o->folders, "folders that recordings come into, with what is below")->required();
   command->add_option("--cohort", o->cohort, "cohort database; made where there is none")->required();
   command->add_option("--journal", o->journal,

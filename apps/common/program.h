@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// An error at the end of a program: its exit code, its line on stderr, its advice (commands and options).
+// The frame of every program: its command line, its options as data, and an error at its end: exit code, line on
+// stderr, advice (commands and options).
 #pragma once
 
 #include <functional>
@@ -8,6 +9,11 @@
 #include <vector>
 
 #include "recorder/base/errors.h"
+
+namespace CLI {
+class App;
+class ParseError;
+}  // namespace CLI
 
 namespace calot::apps {
 
@@ -34,6 +40,12 @@ int endWith(ExitCode code, const std::string& program, const std::string& messag
 
 /// Body of main(): runs the body; an error that it throws is a line on stderr and an exit code.
 int runProgram(const std::string& program, const std::function<int()>& body);
+
+/// The same after the command line was parsed; a wrong one is an error, too. Adds `--help-json` behind all options and
+/// commands, which prints them as JSON: manual pages and the completion of shells are made of it (scripts/manual.py),
+/// so that they have what the help has. @param describe the line for a wrong command line; null: the parser's own
+int runProgram(CLI::App& app, int argc, char** argv, const std::function<int()>& body,
+               const std::function<std::string(const CLI::ParseError&)>& describe = {});
 
 /// "do this, or that".
 std::string advice(const std::vector<Remedy>& remedies);

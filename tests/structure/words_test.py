@@ -52,7 +52,7 @@ WHOLE_COMMENT = re.compile(r"\s*//[/!]?<?(?: |$)(.*)")
 TRAILING_COMMENT = re.compile(r"///?< ?(.*)|[;{},)\\]\s*// (.*)")
 # A statement that prints, throws or describes an option.
 MESSAGE_SITE = re.compile(r"\b(?:throw|Error|print\w*|cout|cerr|fail\w*|refuse\w*|fault|warn\w*|add_option|add_flag|add_subcommand"
-                          r"|addChoice|addNumber|addList|addThreads|addCommand)\b")
+                          r"|addChoice|addNumber|addList|addThreads|addCommand|addGroup)\b")
 
 
 def prose_faults(text):

@@ -11,7 +11,6 @@
 #include <string>
 #include <vector>
 
-#include "apps/calot-organs/organ_shapes.h"
 #include "recorder/formats/scene_file.h"
 #include "sim/geometry/closest_point.h"
 #include "sim/geometry/closest_point_transform.h"
@@ -74,18 +73,19 @@ TEST(Anatomy, EverySceneThatComesWithItLoadsWithoutAWarning) {
   }
 }
 
-TEST(Anatomy, ScenesHoldThePathsThatTheFatIsShapedAround) {
-  const std::vector<organs::VesselPath> made = organs::vesselPaths();
+TEST(Anatomy, ScenesHoldTheSameVessels) {
+  const std::vector<VesselDescription>& made = whole().vessels;
+  ASSERT_EQ(made.size(), 5U);
   for (const char* name : vesselScenes) {
     const std::vector<VesselDescription>& held = scene(name).description.vessels;
     ASSERT_EQ(held.size(), made.size()) << name;
     for (std::size_t v = 0; v < made.size(); ++v) {
       SCOPED_TRACE(std::string(name) + " " + made[v].name);
       EXPECT_EQ(held[v].name, made[v].name);
-      EXPECT_EQ(held[v].elements, organs::vesselElements);
+      EXPECT_EQ(held[v].elements, made[v].elements);
       EXPECT_EQ(held[v].radius, made[v].radius);
       EXPECT_EQ(held[v].wall, made[v].wall);
-      EXPECT_EQ(held[v].path, made[v].point);
+      EXPECT_EQ(held[v].path, made[v].path);
     }
   }
 }

@@ -30,9 +30,10 @@ const TriangleMesh& gallbladderMesh() {
 }
 
 TEST(Organs, ProgramMakesTheSameBytes) {
-  EXPECT_TRUE(recorder::formatObj(liverMesh(), organs::liverHead) == kept("liver.obj"));
-  EXPECT_TRUE(recorder::formatObj(gallbladderMesh(), organs::gallbladderHead) == kept("gallbladder.obj"));
-  EXPECT_TRUE(recorder::formatObj(organs::makeFat(), organs::fatHead) == kept("fat.obj"));
+  EXPECT_TRUE(recorder::formatObj(liverMesh(), organs::headOf("Liver of an adult")) == kept("liver.obj"));
+  EXPECT_TRUE(recorder::formatObj(gallbladderMesh(), organs::headOf("Gallbladder of an adult")) ==
+              kept("gallbladder.obj"));
+  EXPECT_TRUE(recorder::formatObj(organs::makeFat(), organs::headOf("Fat over Calot's triangle")) == kept("fat.obj"));
 }
 
 TEST(Organs, FatIsAPadOfOnePieceThatDoesNotCrossItself) {
