@@ -13,8 +13,7 @@
 #include <QToolButton>
 #include <utility>
 
-#include "gui/attempt/attempt_recording.h"
-#include "gui/attempt/theme.h"
+#include "gui/attempt/replay_player.h"
 #include "gui/attempt/widget_parts.h"
 
 namespace calot::gui {

@@ -8,7 +8,7 @@
 #include <QMenu>
 
 #include "gui/attempt/figure_text.h"
-#include "gui/dashboard/settings.h"
+#include "gui/dashboard/dialogs.h"
 
 namespace calot::gui {
 

@@ -13,9 +13,9 @@
 
 #include "analytics/assessment/grade.h"
 #include "analytics/checkpoints/checkpoint.h"
-#include "gui/attempt/attempt_recording.h"
 #include "gui/attempt/figure_text.h"
-#include "gui/attempt/theme.h"
+#include "gui/attempt/replay_player.h"
+#include "gui/attempt/widget_parts.h"
 #include "gui/words/event_words.h"
 
 namespace calot::gui {

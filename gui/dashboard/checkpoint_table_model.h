@@ -10,8 +10,8 @@
 #include "analytics/assessment/moments.h"
 #include "analytics/checkpoints/checkpoint.h"
 #include "analytics/uncertainty/value_interval.h"
-#include "gui/attempt/attempt_recording.h"
-#include "gui/attempt/figure_standing.h"
+#include "gui/attempt/figure_text.h"
+#include "gui/attempt/replay_player.h"
 
 namespace calot::gui {
 

@@ -18,7 +18,7 @@
 #include <QUndoStack>
 #include <QUrl>
 
-#include "gui/attempt/attempt_recording.h"
+#include "gui/attempt/replay_player.h"
 #include "gui/dashboard/attempt_page.h"
 #include "gui/dashboard/attempts_page.h"
 #include "gui/dashboard/dialogs.h"
@@ -26,7 +26,6 @@
 #include "gui/dashboard/figures_page.h"
 #include "gui/dashboard/pair_page.h"
 #include "gui/dashboard/ratings_page.h"
-#include "gui/dashboard/settings.h"
 #include "gui/dashboard/study_page.h"
 #include "recorder/base/errors.h"
 

@@ -1,15 +1,28 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "gui/dashboard/dialogs.h"
 
+#include <algorithm>
 #include <QAction>
+#include <QBoxLayout>
+#include <QComboBox>
+#include <QCoreApplication>
 #include <QDialogButtonBox>
+#include <QFileDialog>
+#include <QFileInfo>
 #include <QFormLayout>
+#include <QLabel>
+#include <QLineEdit>
+#include <QListWidget>
 #include <QMenu>
 #include <QMenuBar>
+#include <QPushButton>
+#include <QSettings>
 #include <QSpinBox>
+#include <QStandardPaths>
+#include <utility>
 
 #include "analytics/assessment/create_norm.h"
-#include "gui/dashboard/settings.h"
+#include "gui/attempt/widget_parts.h"
 
 namespace calot::gui {
 
@@ -177,6 +190,148 @@ void NormDialog::make() {
     if (norm.synthetic) lines.prepend("SYNTHETIC: made of performers' attempts, of no person's.");
     return lines.join("\n\n");
   });
+}
+
+}  // namespace calot::gui
+
+namespace calot::gui::settings {
+namespace {
+
+constexpr int maxFolders = 20;
+constexpr const char* foldersKey = "recordings/folders";
+constexpr const char* programKey = "import/program";
+constexpr const char* threadsKey = "import/threads";
+constexpr const char* personKey = "person";
+constexpr const char* coloursKey = "look/colours";
+constexpr const char* typeKey = "look/type";
+constexpr const char* columnsKey = "attempts/hidden-columns";
+
+QSettings store() { return {QSettings::IniFormat, QSettings::UserScope, "calot", "dashboard"}; }
+
+}  // namespace
+
+QStringList recordingFolders() { return store().value(foldersKey).toStringList(); }
+
+std::vector<std::filesystem::path> recordingPlaces() {
+  std::vector<std::filesystem::path> places;
+  for (const QString& folder : recordingFolders()) places.emplace_back(folder.toStdString());
+  return places;
+}
+
+void setRecordingFolders(const QStringList& folders) { store().setValue(foldersKey, folders.mid(0, maxFolders)); }
+
+void rememberRecordingFolder(const QString& folder) {
+  QStringList folders = recordingFolders();
+  folders.removeAll(folder);
+  folders.prepend(folder);
+  setRecordingFolders(folders);
+}
+
+QString chosenCalotProgram() { return store().value(programKey).toString(); }
+
+QString calotProgram() {
+  if (const QString chosen = chosenCalotProgram(); !chosen.isEmpty()) return chosen;
+  const QString beside = QCoreApplication::applicationDirPath() + "/calot";
+  if (QFileInfo(beside).isExecutable()) return beside;
+  return QStandardPaths::findExecutable("calot");
+}
+
+void setCalotProgram(const QString& file) { store().setValue(programKey, file); }
+
+int importThreads() { return std::clamp(store().value(threadsKey, 1).toInt(), 1, 64); }
+void setImportThreads(int threads) { store().setValue(threadsKey, std::clamp(threads, 1, 64)); }
+
+theme::Choice colours() { return theme::choiceOf(store().value(coloursKey).toString()); }
+void setColours(theme::Choice choice) { store().setValue(coloursKey, theme::wordOf(choice)); }
+int type() {
+  return std::clamp(store().value(typeKey, theme::usualType).toInt(), theme::usualType, theme::largestType);
+}
+void setType(int percent) { store().setValue(typeKey, std::clamp(percent, theme::usualType, theme::largestType)); }
+
+QStringList hiddenColumns() { return store().value(columnsKey).toStringList(); }
+void setHiddenColumns(const QStringList& titles) { store().setValue(columnsKey, titles); }
+
+QString person() { return store().value(personKey).toString(); }
+void setPerson(const QString& name) { store().setValue(personKey, name); }
+
+}  // namespace calot::gui::settings
+
+namespace calot::gui {
+
+SettingsDialog::SettingsDialog(QWidget* parent)
+    : QDialog(parent),
+      folders_(parts::named("settings-folders", new QListWidget)),
+      program_(parts::named("settings-program", new QLineEdit)),
+      threads_(parts::named("settings-threads", new QSpinBox)),
+      person_(parts::named("settings-person", new QLineEdit)),
+      colours_(parts::named("settings-colours", new QComboBox)),
+      type_(parts::named("settings-type", new QSpinBox)) {
+  setWindowTitle("Settings");
+  resize(theme::inType(560), theme::inType(400));
+  folders_->addItems(settings::recordingFolders());
+  auto* addFolder = new QPushButton("&Add …");
+  auto* removeFolder = new QPushButton("&Remove");
+  auto* buttons = new QVBoxLayout;
+  buttons->addWidget(addFolder);
+  buttons->addWidget(removeFolder);
+  buttons->addStretch(1);
+  auto* folderRow = new QHBoxLayout;
+  folderRow->addWidget(folders_, 1);
+  folderRow->addLayout(buttons);
+  program_->setText(settings::chosenCalotProgram());
+  const QString found = settings::calotProgram();
+  program_->setPlaceholderText(found.isEmpty() ? "not found: name it here" : "the calot that was found");
+  program_->setToolTip(found);
+  threads_->setRange(1, 64);
+  threads_->setValue(settings::importThreads());
+  person_->setMaxLength(64);
+  person_->setText(settings::person());
+  person_->setPlaceholderText("pseudonym of who rates and excludes");
+  for (const auto& [text, choice] : {std::pair{"as the system has them", theme::Choice::system},
+                                     {"dark letters on light", theme::Choice::light},
+                                     {"light letters on dark", theme::Choice::dark}})
+    colours_->addItem(text, theme::wordOf(choice));
+  colours_->setCurrentIndex(colours_->findData(theme::wordOf(settings::colours())));
+  type_->setRange(theme::usualType, theme::largestType);
+  type_->setSingleStep(25);
+  type_->setSuffix(" %");
+  type_->setValue(settings::type());
+  type_->setToolTip("From the next start on");
+  auto* decision = new QDialogButtonBox(QDialogButtonBox::Ok | QDialogButtonBox::Cancel);
+  auto* form = new QFormLayout(this);
+  // A row of several widgets has no buddy by itself.
+  auto* foldersLabel = new QLabel("&Folders with recordings");
+  foldersLabel->setBuddy(folders_);
+  form->addRow(foldersLabel, folderRow);
+  form->addRow("&Program that imports", program_);
+  form->addRow("&Threads of an import", threads_);
+  form->addRow("&You", person_);
+  form->addRow("Co&lours", colours_);
+  form->addRow("&Size of letters", type_);
+  form->addRow(decision);
+  connect(addFolder, &QPushButton::clicked, this, [this] {
+    const QString folder = QFileDialog::getExistingDirectory(this, "A folder with recordings");
+    if (!folder.isEmpty()) folders_->addItem(folder);
+  });
+  connect(removeFolder, &QPushButton::clicked, this, [this] { delete folders_->currentItem(); });
+  connect(decision, &QDialogButtonBox::accepted, this, &SettingsDialog::accept);
+  connect(decision, &QDialogButtonBox::rejected, this, &SettingsDialog::reject);
+}
+
+void SettingsDialog::accept() {
+  QStringList folders;
+  for (int row = 0; row < folders_->count(); ++row) folders += folders_->item(row)->text();
+  settings::setRecordingFolders(folders);
+  settings::setCalotProgram(program_->text().trimmed());
+  settings::setImportThreads(threads_->value());
+  settings::setPerson(person_->text().trimmed());
+  const theme::Choice before = settings::colours();
+  settings::setColours(theme::choiceOf(colours_->currentData().toString()));
+  const int letters = settings::type();
+  settings::setType(type_->value());
+  // Widths of columns are chosen when the window is made: letters change with the next one.
+  if (settings::colours() != before) theme::apply(settings::colours(), letters);
+  QDialog::accept();
 }
 
 }  // namespace calot::gui

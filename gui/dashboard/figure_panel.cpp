@@ -6,7 +6,6 @@
 #include <QTabWidget>
 
 #include "analytics/assessment/norm_rule.h"
-#include "gui/attempt/figure_standing.h"
 #include "gui/attempt/figure_text.h"
 #include "gui/dashboard/page_parts.h"
 

@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "analytics/assessment/grade.h"
-#include "gui/attempt/figure_standing.h"
 #include "gui/attempt/figure_text.h"
 #include "gui/dashboard/plot_view.h"
 

@@ -17,7 +17,6 @@
 #include <utility>
 
 #include "gui/attempt/long_work.h"
-#include "gui/attempt/theme.h"
 #include "gui/attempt/widget_parts.h"
 #include "gui/view/thread_rank.h"
 

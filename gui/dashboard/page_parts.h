@@ -18,7 +18,6 @@
 #include <vector>
 
 #include "analytics/report/study.h"
-#include "gui/attempt/theme.h"
 #include "gui/attempt/widget_parts.h"
 #include "gui/dashboard/cohort_document.h"
 

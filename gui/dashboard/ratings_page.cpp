@@ -9,7 +9,7 @@
 #include <QScrollArea>
 #include <QSettings>
 
-#include "gui/dashboard/settings.h"
+#include "gui/dashboard/dialogs.h"
 #include "recorder/base/errors.h"
 
 namespace calot::gui {

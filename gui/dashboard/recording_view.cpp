@@ -7,7 +7,7 @@
 #include <QMetaObject>
 
 #include "gui/attempt/widget_parts.h"
-#include "gui/dashboard/settings.h"
+#include "gui/dashboard/dialogs.h"
 #include "gui/view/thread_rank.h"
 #include "gui/words/problem_words.h"
 

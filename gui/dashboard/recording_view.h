@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "analytics/assessment/moments.h"
-#include "gui/attempt/attempt_recording.h"
 #include "gui/attempt/long_work.h"
+#include "gui/attempt/replay_player.h"
 #include "gui/attempt/replay_transport.h"
 #include "gui/dashboard/cohort_document.h"
 #include "gui/dashboard/timeline.h"

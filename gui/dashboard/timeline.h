@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include "gui/attempt/attempt_recording.h"
-#include "gui/attempt/theme.h"
+#include "gui/attempt/replay_player.h"
+#include "gui/attempt/widget_parts.h"
 #include "sim/judgement/judge.h"
 #include "sim/scene/samples.h"
 

@@ -14,7 +14,7 @@
 #include <QUndoCommand>
 #include <QUndoStack>
 
-#include "gui/attempt/attempt_recording.h"
+#include "gui/attempt/replay_player.h"
 #include "gui/dashboard/attempt_page.h"
 #include "gui/dashboard/attempts_page.h"
 #include "gui/dashboard/dashboard_window.h"
@@ -24,7 +24,6 @@
 #include "gui/dashboard/import_queue.h"
 #include "gui/dashboard/pair_page.h"
 #include "gui/dashboard/ratings_page.h"
-#include "gui/dashboard/settings.h"
 #include "gui/dashboard/study_page.h"
 #include "recorder/base/errors.h"
 

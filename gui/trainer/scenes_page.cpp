@@ -11,7 +11,6 @@
 #include <system_error>
 #include <utility>
 
-#include "gui/attempt/figure_standing.h"
 #include "gui/attempt/figure_text.h"
 #include "gui/attempt/widget_parts.h"
 #include "gui/trainer/trainer_texts.h"

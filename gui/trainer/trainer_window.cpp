@@ -19,7 +19,6 @@
 #include "gui/trainer/operation_view.h"
 #include "gui/trainer/run_panel.h"
 #include "gui/trainer/scenes_page.h"
-#include "gui/trainer/voice.h"
 #include "gui/words/problem_words.h"
 #include "recorder/base/errors.h"
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "gui/attempt/theme.h"
+
+#include "gui/attempt/widget_parts.h"
 
 #include <algorithm>
 #include <array>
