@@ -221,7 +221,7 @@ void takePictures(gui::TrainerWindow& window, std::optional<recorder::LoadedScen
     const quint64 shown = window.view()->shown();
     return waitFor([&] { return status().figures.time > 4.0 && window.view()->shown() > shown + 10; }, 240);
   };
-  window.begin(*scene, gui::TrainerWindow::Purpose::controls);
+  window.begin(*scene, gui::Purpose::controls);
   wanted(runs(), "nothing is running");
   save("controls");
   window.begin(std::move(*scene));

@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "gui/attempt/figure_text.h"
 
 #include <fmt/format.h>
-#include <algorithm>
 #include <cmath>
 #include <map>
 #include <QBoxLayout>
 #include <QDateTime>
-#include <QLabel>
 #include <QLocale>
 #include <QTimeZone>
 
@@ -43,6 +40,41 @@ VerdictWords wordsOf(Verdict verdict) {
       break;
   }
   return {"–", "Nobody has simulated this recording again yet."};
+}
+
+std::vector<double> competentValues(const analytics::Norm& norm, std::size_t figure) {
+  std::vector<double> values;
+  for (const analytics::NormMember& member : norm.members) {
+    if (member.competent && figure < member.values.size() && member.values[figure])
+      values.push_back(*member.values[figure]);
+  }
+  std::sort(values.begin(), values.end());
+  return values;
+}
+
+std::optional<FigureStanding::Band> bandOf(const std::vector<double>& sorted, double factor) {
+  if (sorted.size() < analytics::leastForPercentile) return std::nullopt;
+  const auto at = [&](double p) { return factor * analytics::quantileOfSorted(sorted, p); };
+  return FigureStanding::Band{at(0.10), at(0.25), at(0.50), at(0.75), at(0.90)};
+}
+
+void judge(FigureStanding& standing, const analytics::GradedFigure& figure) {
+  standing.passed = figure.passed;
+  standing.open = figure.open;
+  standing.undecided = figure.undecided;
+  if (figure.rank) standing.percentile = *figure.rank;
+  if (figure.passed) {
+    standing.explanation = *figure.passed ? "On the passing side of the norm's cut." : "Falls short of the norm's cut.";
+    if (figure.open) standing.explanation += " Within the cut's interval: another norm might judge otherwise.";
+    if (figure.undecided)
+      standing.explanation += " Not decided by this simulation: the cut lies within the value's interval.";
+  } else if (!figure.missing.empty()) {
+    standing.explanation = "Not judged: " + figure.missing + ".";
+  }
+  if (figure.rank)
+    standing.explanation += fmt::format(" Percentile {:.0f} of {} competent members.", *figure.rank, figure.competent);
+  else if (figure.value)
+    standing.explanation += " No percentile: " + figure.rank.reason() + ".";
 }
 
 }  // namespace
@@ -118,45 +150,6 @@ QString figureTitle(const std::string& name, const std::string& subject) {
   return subject.empty() ? title : title + ", " + QString::fromStdString(subject);
 }
 
-namespace {
-
-std::vector<double> competentValues(const analytics::Norm& norm, std::size_t figure) {
-  std::vector<double> values;
-  for (const analytics::NormMember& member : norm.members) {
-    if (member.competent && figure < member.values.size() && member.values[figure])
-      values.push_back(*member.values[figure]);
-  }
-  std::sort(values.begin(), values.end());
-  return values;
-}
-
-std::optional<FigureStanding::Band> bandOf(const std::vector<double>& sorted, double factor) {
-  if (sorted.size() < analytics::leastForPercentile) return std::nullopt;
-  const auto at = [&](double p) { return factor * analytics::quantileOfSorted(sorted, p); };
-  return FigureStanding::Band{at(0.10), at(0.25), at(0.50), at(0.75), at(0.90)};
-}
-
-void judge(FigureStanding& standing, const analytics::GradedFigure& figure) {
-  standing.passed = figure.passed;
-  standing.open = figure.open;
-  standing.undecided = figure.undecided;
-  if (figure.rank) standing.percentile = *figure.rank;
-  if (figure.passed) {
-    standing.explanation = *figure.passed ? "On the passing side of the norm's cut." : "Falls short of the norm's cut.";
-    if (figure.open) standing.explanation += " Within the cut's interval: another norm might judge otherwise.";
-    if (figure.undecided)
-      standing.explanation += " Not decided by this simulation: the cut lies within the value's interval.";
-  } else if (!figure.missing.empty()) {
-    standing.explanation = "Not judged: " + figure.missing + ".";
-  }
-  if (figure.rank)
-    standing.explanation += fmt::format(" Percentile {:.0f} of {} competent members.", *figure.rank, figure.competent);
-  else if (figure.value)
-    standing.explanation += " No percentile: " + figure.rank.reason() + ".";
-}
-
-}  // namespace
-
 std::vector<const analytics::Norm*> normsFor(const analytics::AttemptRow& attempt,
                                              const std::vector<analytics::Norm>& norms) {
   std::map<std::string, const analytics::Norm*> newest;
@@ -219,27 +212,19 @@ AttemptStanding standingOf(const analytics::AttemptRow& attempt, const std::vect
   return standing;
 }
 
-SummaryPanel::SummaryPanel(QWidget* parent) : QWidget(parent) {
-  auto* layout = parts::bare<QHBoxLayout>(this);
-  layout->setSpacing(16);
-  auto* words = new QVBoxLayout;
-  words->setSpacing(2);
-  const auto label = [](const char* name, QBoxLayout& into, int stretch) {
-    auto* made = parts::named(name, new QLabel);
-    made->setWordWrap(true);
-    made->setTextFormat(Qt::PlainText);
-    made->setTextInteractionFlags(Qt::TextSelectableByMouse);
-    into.addWidget(made, stretch);
-    return made;
-  };
-  verdict_ = label("summary-verdict", *words, 0);
+SummaryPanel::SummaryPanel(QWidget* parent)
+    : QWidget(parent),
+      verdict_(parts::selectableLabel("summary-verdict")),
+      criticalView_(parts::selectableLabel("summary-critical-view")),
+      errors_(parts::selectableLabel("summary-errors")),
+      figures_(parts::selectableLabel("summary-figures")) {
   parts::embolden(verdict_);
-  criticalView_ = label("summary-critical-view", *words, 0);
-  errors_ = label("summary-errors", *words, 0);
-  words->addStretch(1);
-  layout->addLayout(words, 1);
-  figures_ = label("summary-figures", *layout, 1);
   figures_->setAlignment(Qt::AlignTop | Qt::AlignLeft);
+  QBoxLayout* const words = parts::column({verdict_, criticalView_, errors_, parts::spring()});
+  words->setSpacing(2);
+  QBoxLayout* const both = parts::bare(parts::row({{words, 1}, {figures_, 1}}));
+  both->setSpacing(16);
+  setLayout(both);
 }
 
 void SummaryPanel::showSummary(const analytics::AttemptSummary& summary) {

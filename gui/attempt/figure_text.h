@@ -3,6 +3,7 @@
 // nothing is ever read back from such a text. Then: where an attempt's figures stand within a norm, and its summary.
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <QColor>
 #include <QString>
@@ -12,6 +13,8 @@
 
 #include "analytics/assessment/grade.h"
 #include "analytics/cohort/cohort_database.h"
+
+class QLabel;
 
 namespace calot::gui {
 
@@ -64,6 +67,15 @@ struct FigureStanding {
   std::string explanation;  ///< sentences for a person
 };
 
+/// The entry of a list that is of this figure, or null.
+template <class Entry>
+const Entry* entryOf(const std::vector<Entry>& list, const analytics::CheckpointValue& value) {
+  const auto at = std::find_if(list.begin(), list.end(), [&](const Entry& e) {
+    return e.checkpoint == value.name && e.subject == value.subject;
+  });
+  return at == list.end() ? nullptr : &*at;
+}
+
 /// How the whole attempt stands.
 struct AttemptStanding {
   std::string norm;     ///< "residents version 2"
@@ -81,12 +93,6 @@ std::vector<const analytics::Norm*> normsFor(const analytics::AttemptRow& attemp
 /// An attempt that did not verify, or is not whole, is not judged: the verdict then says why, and the bands stand.
 AttemptStanding standingOf(const analytics::AttemptRow& attempt, const std::vector<analytics::CheckpointValue>& values,
                            const analytics::Norm& norm, const std::vector<analytics::ValueInterval>& intervals = {});
-
-}  // namespace calot::gui
-
-class QLabel;
-
-namespace calot::gui {
 
 /// Summary for an instructor, in words: verdict, critical view, errors, and the figures that count.
 class SummaryPanel : public QWidget {

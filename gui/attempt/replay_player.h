@@ -19,6 +19,7 @@
 #include "gui/words/event_words.h"
 #include "recorder/recording/probe.h"
 #include "recorder/recording/reader.h"
+#include "recorder/replay.h"
 #include "sim/scene/scene_view.h"
 
 namespace calot::gui {
@@ -61,8 +62,6 @@ class ReplayPlayer {
   ReplayPlayer(std::filesystem::path file, std::string attempt, Receiver receiver);
   /// Waits for the step that is being computed.
   ~ReplayPlayer();
-  ReplayPlayer(const ReplayPlayer&) = delete;
-  ReplayPlayer& operator=(const ReplayPlayer&) = delete;
 
   /// Any thread; returns at once. What is asked for before the file is open is done then. A newer wish replaces one
   /// that is not reached yet.
@@ -149,6 +148,12 @@ inline constexpr std::uint64_t maxBins = 1500;  ///< of a trace: more than a scr
 /// @throws Error (damaged)
 AttemptTrack readTrack(recorder::Recording& recording,
                        const std::function<void(std::uint64_t, std::uint64_t)>& progress = {});
+
+/// The step that a moment (s since the attempt's start, clamped) lies in. @pre the recording has a step
+[[nodiscard]] std::uint64_t stepAt(const recorder::Recording& recording, double time);
+
+/// Makes a step the seeker's last one. @throws Error (refused) where another operation than the recorded one came
+void seekAsRecorded(recorder::Seeker& seeker, const recorder::Recording& recording, std::uint64_t step);
 
 /// The file of this name beside the database, or in one of the folders, in their order; empty where there is none.
 std::filesystem::path findRecording(const analytics::AttemptRow& attempt, const std::filesystem::path& database,

@@ -78,27 +78,43 @@ inline QComboBox* choice(const char* name, int letters) {
   return made;
 }
 
-/// Puts a label, whose mnemonic leads to the field, and the field into a row.
-template <class Widget>
-Widget* labelled(QBoxLayout& row, const char* text, Widget* field, int stretch = 0) {
-  auto* const label = new QLabel(text);
-  label->setBuddy(field);
-  row.addWidget(label);
-  row.addWidget(field, stretch);
-  return field;
-}
+/// Element of a row or a column: a widget or another layout, or a field behind a label whose mnemonic leads to it;
+/// each with its stretch factor.
+struct Item {
+  Item(QWidget* shown, int share = 0) : widget(shown), stretch(share) {}
+  Item(QLayout* shown, int share = 0) : layout(shown), stretch(share) {}
+  Item(const char* text, QWidget* field, int share = 0) : label(text), widget(field), stretch(share) {}
 
-/// A layout without margins: what is in it lines up with what is around it.
-template <class Layout>
-Layout* bare(QWidget* parent = nullptr) {
-  auto* const made = new Layout(parent);
-  made->setContentsMargins(0, 0, 0, 0);
+  const char* label = nullptr;
+  QWidget* widget = nullptr;
+  QLayout* layout = nullptr;
+  int stretch, pixels = 0;
+};
+/// Room that grows.
+inline Item spring(int share = 1) { return {static_cast<QWidget*>(nullptr), share}; }
+/// Room of a fixed size.
+inline Item space(int pixels) {
+  Item made(static_cast<QWidget*>(nullptr));
+  made.pixels = pixels;
   return made;
 }
 
-/// Puts widgets into a row or column.
-inline void fill(QBoxLayout& layout, std::initializer_list<QWidget*> widgets) {
-  for (QWidget* const widget : widgets) layout.addWidget(widget);
+/// The layout with these items at its end.
+QBoxLayout* fill(QBoxLayout* layout, std::initializer_list<Item> items);
+inline QBoxLayout* row(std::initializer_list<Item> items) { return fill(new QHBoxLayout, items); }
+inline QBoxLayout* column(std::initializer_list<Item> items) { return fill(new QVBoxLayout, items); }
+
+/// The layout without margins: what is in it lines up with what is around it.
+template <class Layout>
+Layout* bare(Layout* layout) {
+  layout->setContentsMargins(0, 0, 0, 0);
+  return layout;
+}
+/// A widget of such a layout.
+inline QWidget* boxed(QLayout* layout) {
+  auto* const made = new QWidget;
+  made->setLayout(bare(layout));
+  return made;
 }
 
 /// Hides a label that has nothing to say.

@@ -120,15 +120,13 @@ class CohortDocument {
 };
 
 /// Writes what people decide into a cohort, one decision after the other, on a thread of its own: a disk may take its
-/// time, and another program may be writing.
+/// time, and another program may be writing. Its destructor waits until all is written.
 class CohortWriter : public QObject {
   Q_OBJECT
  public:
   using Change = std::function<void(analytics::CohortDatabase&)>;
 
-  explicit CohortWriter(QObject* parent = nullptr);
-  /// Waits until all is written.
-  ~CohortWriter() override;
+  explicit CohortWriter(QObject* parent = nullptr) : QObject(parent) { thread_.setMaxThreadCount(1); }
   /// Ends with written() or failed(). @param change throws calot::Error where it cannot be
   /// @param undone called on the writer's thread where nothing was written, before failed()
   void write(const std::string& database, Change change, std::function<void()> undone);
@@ -138,8 +136,7 @@ class CohortWriter : public QObject {
   void failed(const QString& reason);
 
  private:
-  std::shared_ptr<Link<CohortWriter>> back_;
-  QThreadPool thread_;  // last: it uses what is above
+  QThreadPool thread_;
 };
 
 }  // namespace calot::gui

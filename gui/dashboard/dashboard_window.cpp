@@ -69,7 +69,7 @@ DashboardWindow::Opened DashboardWindow::openOrUpgrade(const std::string& path) 
 DashboardWindow::DashboardWindow(const AssessProgram& program, const std::vector<std::filesystem::path>& assetFolders,
                                  QWidget* parent)
     : QMainWindow(parent),
-      problem_(parts::plainLabel("problem")),
+      problem_(parts::selectableLabel("problem")),
       stack_(new QStackedWidget),
       greeting_(new GreetingPage(program)),
       tabs_(new QTabWidget),
@@ -85,7 +85,6 @@ DashboardWindow::DashboardWindow(const AssessProgram& program, const std::vector
   setWindowTitle("Calot");
   resize(theme::windowSizeFor(screen()->availableSize()));
   setAcceptDrops(true);
-  problem_->setTextInteractionFlags(Qt::TextSelectableByMouse | Qt::TextSelectableByKeyboard);
   theme::setGround(*problem_, QColor(0xfb, 0xe3, 0xd6), QColor(0x5a, 0x1e, 0x00));
   problem_->hide();
   for (const auto& [page, title] : std::initializer_list<std::pair<CohortPage*, const char*>>{{attempts_, "Attempts"},
@@ -102,9 +101,7 @@ DashboardWindow::DashboardWindow(const AssessProgram& program, const std::vector
   stack_->addWidget(greeting_);
   stack_->addWidget(tabs_);
   auto* centre = new QWidget;
-  auto* layout = new QVBoxLayout(centre);
-  layout->addWidget(problem_);
-  layout->addWidget(stack_, 1);
+  centre->setLayout(parts::column({problem_, {stack_, 1}}));
   setCentralWidget(centre);
   rating_->readForms(assetFolders);
   buildImport();

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <QAction>
-#include <QBoxLayout>
 #include <QComboBox>
 #include <QCoreApplication>
 #include <QDialogButtonBox>
@@ -22,7 +21,6 @@
 #include <utility>
 
 #include "analytics/assessment/create_norm.h"
-#include "gui/attempt/widget_parts.h"
 
 namespace calot::gui {
 
@@ -59,9 +57,7 @@ void showKeys(const KeyList& keys, QWidget* parent) {
   }
   auto* close = new QDialogButtonBox(QDialogButtonBox::Close);
   QObject::connect(close, &QDialogButtonBox::rejected, &dialog, &QDialog::reject);
-  auto* layout = new QVBoxLayout(&dialog);
-  layout->addWidget(table, 1);
-  layout->addWidget(close);
+  dialog.setLayout(parts::column({{table, 1}, close}));
   dialog.resize(theme::inType(520), theme::inType(420));
   dialog.exec();
 }
@@ -72,6 +68,24 @@ constexpr const char* explanation =
     "A norm is what later attempts are graded against. These figures count: time, path lengths, critical view, clip "
     "errors, perforations and burns, as far as they have a pass mark. Other figures, raters' judgements and marks that "
     "a person sets: calot norm create.";
+
+constexpr int maxFolders = 20;
+constexpr const char* foldersKey = "recordings/folders";
+constexpr const char* programKey = "import/program";
+constexpr const char* threadsKey = "import/threads";
+constexpr const char* personKey = "person";
+constexpr const char* coloursKey = "look/colours";
+constexpr const char* typeKey = "look/type";
+constexpr const char* columnsKey = "attempts/hidden-columns";
+
+/// A row of several widgets, which has no buddy by itself.
+void addRow(QFormLayout& form, const char* text, QWidget* buddy, QLayout* row) {
+  auto* const label = new QLabel(text);
+  label->setBuddy(buddy);
+  form.addRow(label, row);
+}
+
+QSettings store() { return {QSettings::IniFormat, QSettings::UserScope, "calot", "dashboard"}; }
 
 }  // namespace
 
@@ -92,23 +106,17 @@ NormDialog::NormDialog(std::shared_ptr<const CohortDocument> document, std::vect
       rule_(parts::named("norm-rule", new QComboBox)),
       least_(parts::named("norm-least", new QSpinBox)),
       first_(parts::named("norm-first", new QCheckBox("Of a participant's several attempts the &first counts"))),
-      result_(parts::plainLabel("norm-result")),
+      result_(parts::selectableLabel("norm-result")),
       make_(parts::named("norm-make", new QPushButton("&Make the norm"))),
       strip_(new WorkStrip(work_)) {
   setWindowTitle("Make a norm");
   resize(theme::inType(620), theme::inType(460));
-  auto* layout = new QVBoxLayout(this);
   auto* purpose = new QLabel(explanation);
   purpose->setWordWrap(true);
-  layout->addWidget(purpose);
-  layout->addLayout(buildForm());
-  result_->setTextInteractionFlags(Qt::TextSelectableByMouse | Qt::TextSelectableByKeyboard);
-  layout->addWidget(result_, 1);
-  layout->addWidget(strip_);
   auto* buttons = new QDialogButtonBox;
   buttons->addButton(make_, QDialogButtonBox::ActionRole);
   buttons->addButton("&Close", QDialogButtonBox::RejectRole);
-  layout->addWidget(buttons);
+  setLayout(parts::column({purpose, buildForm(), {result_, 1}, strip_, buttons}));
   make_->setDefault(true);
   connect(buttons, &QDialogButtonBox::rejected, this, &QDialog::accept);
   connect(make_, &QPushButton::clicked, this, &NormDialog::make);
@@ -146,11 +154,6 @@ QFormLayout* NormDialog::buildForm() {
   least_->setEnabled(false);
   connect(rule_, &QComboBox::currentIndexChanged, least_, [this](int index) { least_->setEnabled(index == 1); });
   first_->setChecked(true);
-  auto* rule = new QHBoxLayout;
-  rule->addWidget(rule_, 1);
-  rule->addWidget(least_);
-  auto* ruleName = new QLabel("&Rule");  // a row that is a layout has no widget of its own for the letter
-  ruleName->setBuddy(rule_);
   auto* form = new QFormLayout;
   form->addRow("&Name", name_);
   form->addRow("Made &by", by_);
@@ -159,7 +162,7 @@ QFormLayout* NormDialog::buildForm() {
   form->addRow("Comp&etent are", fields_.first);
   form->addRow("&Others are", fields_.second);
   form->addRow("Comparable &within", fields_.key);
-  form->addRow(ruleName, rule);
+  addRow(*form, "&Rule", rule_, parts::row({{rule_, 1}, least_}));
   for (QCheckBox* box : {first_, fields_.practice, fields_.synthetic}) form->addRow(QString(), box);
   allow(true);
   return form;
@@ -195,20 +198,6 @@ void NormDialog::make() {
 }  // namespace calot::gui
 
 namespace calot::gui::settings {
-namespace {
-
-constexpr int maxFolders = 20;
-constexpr const char* foldersKey = "recordings/folders";
-constexpr const char* programKey = "import/program";
-constexpr const char* threadsKey = "import/threads";
-constexpr const char* personKey = "person";
-constexpr const char* coloursKey = "look/colours";
-constexpr const char* typeKey = "look/type";
-constexpr const char* columnsKey = "attempts/hidden-columns";
-
-QSettings store() { return {QSettings::IniFormat, QSettings::UserScope, "calot", "dashboard"}; }
-
-}  // namespace
 
 QStringList recordingFolders() { return store().value(foldersKey).toStringList(); }
 
@@ -271,13 +260,6 @@ SettingsDialog::SettingsDialog(QWidget* parent)
   folders_->addItems(settings::recordingFolders());
   auto* addFolder = new QPushButton("&Add …");
   auto* removeFolder = new QPushButton("&Remove");
-  auto* buttons = new QVBoxLayout;
-  buttons->addWidget(addFolder);
-  buttons->addWidget(removeFolder);
-  buttons->addStretch(1);
-  auto* folderRow = new QHBoxLayout;
-  folderRow->addWidget(folders_, 1);
-  folderRow->addLayout(buttons);
   program_->setText(settings::chosenCalotProgram());
   const QString found = settings::calotProgram();
   program_->setPlaceholderText(found.isEmpty() ? "not found: name it here" : "the calot that was found");
@@ -299,10 +281,8 @@ SettingsDialog::SettingsDialog(QWidget* parent)
   type_->setToolTip("From the next start on");
   auto* decision = new QDialogButtonBox(QDialogButtonBox::Ok | QDialogButtonBox::Cancel);
   auto* form = new QFormLayout(this);
-  // A row of several widgets has no buddy by itself.
-  auto* foldersLabel = new QLabel("&Folders with recordings");
-  foldersLabel->setBuddy(folders_);
-  form->addRow(foldersLabel, folderRow);
+  addRow(*form, "&Folders with recordings", folders_,
+         parts::row({{folders_, 1}, parts::column({addFolder, removeFolder, parts::spring()})}));
   form->addRow("&Program that imports", program_);
   form->addRow("&Threads of an import", threads_);
   form->addRow("&You", person_);

@@ -58,9 +58,8 @@ class RecordingView : public QWidget {
   void hideEvent(QHideEvent* event) override;
 
  private:
-  using Back = std::shared_ptr<Link<RecordingView>>;
-  static void read(const Back& back, const std::filesystem::path& file, const Figures& figures);
-  void stopReading();
+  void startTrack();
+  void startMoments();
   void fail(const QString& timelineText);
 
   std::filesystem::path file_;
@@ -71,7 +70,8 @@ class RecordingView : public QWidget {
   ScenePictureWidget* picture_;
   TimelineBar* timeline_;
   std::unique_ptr<Replay> replay_;
-  Back back_;  ///< from what is being read
+  std::function<void()> take_;  ///< what work_ reads
+  LongWork work_;
 };
 
 }  // namespace calot::gui

@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <optional>
-#include <QColor>
 #include <QPixmap>
 #include <QWidget>
 #include <utility>
@@ -13,7 +11,6 @@
 
 #include "gui/attempt/replay_player.h"
 #include "gui/attempt/widget_parts.h"
-#include "sim/judgement/judge.h"
 #include "sim/scene/samples.h"
 
 namespace calot::gui {

@@ -115,6 +115,29 @@ DecisionCommand* tagCommand(CohortWriter& writer, const Decision& decision, bool
   return new DecisionCommand(writer, decision.database, add ? "tag" : "removal of a tag", change(add), change(!add));
 }
 
+constexpr qint64 maxWaiting = 120000;  // ms for a page to have read what it shows
+constexpr int settleTime = 1500;       // ms for pictures and animations to be on the screen
+
+void waitFor(const std::function<bool()>& condition) {
+  QElapsedTimer clock;
+  clock.start();
+  // Recently requested work may not have begun: the condition must hold for a while.
+  qint64 since = -1;
+  while (clock.elapsed() < maxWaiting && (since < 0 || clock.elapsed() < since + settleTime)) {
+    QCoreApplication::processEvents(QEventLoop::AllEvents, 50);
+    if (!condition())
+      since = -1;
+    else if (since < 0)
+      since = clock.elapsed();
+  }
+}
+
+void savePicture(QWidget& page, const QString& file) {
+  QCoreApplication::processEvents();
+  if (!page.grab().save(file, "PNG"))
+    throw Error(ErrorKind::failure, Where{file.toStdString()}, "cannot write the picture; does the folder exist?");
+}
+
 }  // namespace
 
 std::vector<analytics::AttemptRow> DashboardWindow::chosenAttempts() const {
@@ -237,33 +260,6 @@ void DashboardWindow::askForNorm() {
   connect(&dialog, &NormDialog::made, this, &DashboardWindow::reload);
   dialog.exec();
 }
-
-namespace {
-
-constexpr qint64 maxWaiting = 120000;  // ms for a page to have read what it shows
-constexpr int settleTime = 1500;       // ms for pictures and animations to be on the screen
-
-void waitFor(const std::function<bool()>& condition) {
-  QElapsedTimer clock;
-  clock.start();
-  // Recently requested work may not have begun: the condition must hold for a while.
-  qint64 since = -1;
-  while (clock.elapsed() < maxWaiting && (since < 0 || clock.elapsed() < since + settleTime)) {
-    QCoreApplication::processEvents(QEventLoop::AllEvents, 50);
-    if (!condition())
-      since = -1;
-    else if (since < 0)
-      since = clock.elapsed();
-  }
-}
-
-void savePicture(QWidget& page, const QString& file) {
-  QCoreApplication::processEvents();
-  if (!page.grab().save(file, "PNG"))
-    throw Error(ErrorKind::failure, Where{file.toStdString()}, "cannot write the picture; does the folder exist?");
-}
-
-}  // namespace
 
 void DashboardWindow::savePictures(const QString& folder) {
   const auto save = [&](QWidget* page, const char* name, const std::function<bool()>& ready) {

@@ -8,9 +8,6 @@
 #include <limits>
 #include <numbers>
 #include <utility>
-#include <vector>
-
-#include "gui/render/mesh.h"
 
 namespace calot::gui {
 namespace {
@@ -24,40 +21,6 @@ double unevenness(const Vec3& d) {
          0.020 * std::sin(11.0 * d.z() + 3.0 * d.y()) * std::sin(9.0 * d.x() - 1.1) +
          0.010 * std::sin(23.0 * d.y() + 5.0 * d.x()) * std::sin(19.0 * d.z() + 2.0);
 }
-
-}  // namespace
-
-CavityShape cavityShape(const SceneView& view) {
-  Box box;
-  for (const SurfaceView& surface : view.surface)
-    for (const Vec3& p : surface.rest) box.include(p);
-  const bool empty = (box.lower.array() > box.upper.array()).any();
-  const Vec3 centre = empty ? Vec3(view.camera.position + view.camera.orientation.normalized() * Vec3(0.0, 0.0, 0.08))
-                            : Vec3(0.5 * (box.lower + box.upper));
-  double radius = 0.12;
-  for (const SurfaceView& surface : view.surface)
-    for (const Vec3& p : surface.rest) radius = std::max(radius, (p - centre).norm());
-  for (const InstrumentView& instrument : view.instrument)
-    if (instrument.kind != InstrumentKind::none)
-      radius = std::max(radius, std::min(0.25, (instrument.port - centre).norm()));
-  return {centre, 1.15 * radius};
-}
-
-Mesh makeCavity(const CavityShape& shape) {
-  Mesh mesh;
-  for (int i = 0; i <= rings; ++i) {
-    const double polar = std::numbers::pi * i / rings;
-    for (int j = 0; j < segments; ++j) {
-      const double around = 2.0 * std::numbers::pi * j / segments;
-      const Vec3 d(std::sin(polar) * std::cos(around), std::sin(polar) * std::sin(around), std::cos(polar));
-      mesh.position.push_back(shape.centre + shape.radius * (1.0 + unevenness(d)) * d);
-    }
-  }
-  closeGrid(mesh, rings + 1, segments, true);
-  return mesh;
-}
-
-namespace {
 
 /// A surface over a grid in the horizontal plane. @param height y over (x, z)
 template <class Height>
@@ -164,22 +127,6 @@ void append(Mesh& to, const Mesh& mesh) {
   for (const Index3& t : mesh.triangle) to.triangle.emplace_back(t + first);
 }
 
-}  // namespace
-
-Viscera makeViscera(std::span<const Vec3> vessels, double lowest) {
-  Viscera viscera;
-  if (vessels.empty()) return viscera;
-  Box box;
-  for (const Vec3& p : vessels) box.include(p);
-  const Vec3 hilum = 0.5 * (box.lower + box.upper);
-  const double top = lowest - gap;
-  viscera.omentum = omentum(hilum.x(), hilum.z(), top - buried);
-  for (const Gut& gut : guts) append(viscera.bowel, tubeOf(gut, hilum.x(), hilum.z(), top));
-  return viscera;
-}
-
-namespace {
-
 /// Ligament and viscera are made for scenes whose y is up: their y of `down` is below this. In others they could hide
 /// what is operated on.
 constexpr double yUpBelow = -0.5;
@@ -197,7 +144,60 @@ double lowestOf(const SceneView& view) {
   return lowest;
 }
 
+constexpr double cell = 0.0035;          // m
+constexpr double ligamentReach = 0.050;  // how far it goes to the sides, where it has long left the picture below (m)
+constexpr double behind = 0.0055;  // its crest, below the upper side of a vessel: as deep as the bile duct is thick (m)
+constexpr double crest = 0.015;    // radius of its crest (m)
+// Vessels that can be injured must stay visible: wherever another vessel lies deeper, the fold gives way.
+constexpr double under = 0.001;   // below the lower side of every vessel (m)
+constexpr double trough = 0.005;  // radius of the trough that it lies in (m)
+
+/// Small folds, so that it is no shell.
+double fold(double x, double z) { return 0.0007 * std::sin(310.0 * x + 150.0 * z) * std::sin(240.0 * z - 90.0 * x); }
+
 }  // namespace
+
+CavityShape cavityShape(const SceneView& view) {
+  Box box;
+  for (const SurfaceView& surface : view.surface)
+    for (const Vec3& p : surface.rest) box.include(p);
+  const bool empty = (box.lower.array() > box.upper.array()).any();
+  const Vec3 centre = empty ? Vec3(view.camera.position + view.camera.orientation.normalized() * Vec3(0.0, 0.0, 0.08))
+                            : Vec3(0.5 * (box.lower + box.upper));
+  double radius = 0.12;
+  for (const SurfaceView& surface : view.surface)
+    for (const Vec3& p : surface.rest) radius = std::max(radius, (p - centre).norm());
+  for (const InstrumentView& instrument : view.instrument)
+    if (instrument.kind != InstrumentKind::none)
+      radius = std::max(radius, std::min(0.25, (instrument.port - centre).norm()));
+  return {centre, 1.15 * radius};
+}
+
+Mesh makeCavity(const CavityShape& shape) {
+  Mesh mesh;
+  for (int i = 0; i <= rings; ++i) {
+    const double polar = std::numbers::pi * i / rings;
+    for (int j = 0; j < segments; ++j) {
+      const double around = 2.0 * std::numbers::pi * j / segments;
+      const Vec3 d(std::sin(polar) * std::cos(around), std::sin(polar) * std::sin(around), std::cos(polar));
+      mesh.position.push_back(shape.centre + shape.radius * (1.0 + unevenness(d)) * d);
+    }
+  }
+  closeGrid(mesh, rings + 1, segments, true);
+  return mesh;
+}
+
+Viscera makeViscera(std::span<const Vec3> vessels, double lowest) {
+  Viscera viscera;
+  if (vessels.empty()) return viscera;
+  Box box;
+  for (const Vec3& p : vessels) box.include(p);
+  const Vec3 hilum = 0.5 * (box.lower + box.upper);
+  const double top = lowest - gap;
+  viscera.omentum = omentum(hilum.x(), hilum.z(), top - buried);
+  for (const Gut& gut : guts) append(viscera.bowel, tubeOf(gut, hilum.x(), hilum.z(), top));
+  return viscera;
+}
 
 void Surroundings::update(const SceneView& view) {
   if (const CavityShape shape = cavityShape(view); shape != shape_) {
@@ -213,21 +213,6 @@ void Surroundings::update(const SceneView& view) {
   viscera = makeViscera(vessels, lowestOf(view));
   vessels_ = std::move(vessels);
 }
-
-namespace {
-
-constexpr double cell = 0.0035;          // m
-constexpr double ligamentReach = 0.050;  // how far it goes to the sides, where it has long left the picture below (m)
-constexpr double behind = 0.0055;  // its crest, below the upper side of a vessel: as deep as the bile duct is thick (m)
-constexpr double crest = 0.015;    // radius of its crest (m)
-// Vessels that can be injured must stay visible: wherever another vessel lies deeper, the fold gives way.
-constexpr double under = 0.001;   // below the lower side of every vessel (m)
-constexpr double trough = 0.005;  // radius of the trough that it lies in (m)
-
-/// Small folds, so that it is no shell.
-double fold(double x, double z) { return 0.0007 * std::sin(310.0 * x + 150.0 * z) * std::sin(240.0 * z - 90.0 * x); }
-
-}  // namespace
 
 Mesh makeLigament(std::span<const Vec3> vessels) {
   if (vessels.empty()) return {};

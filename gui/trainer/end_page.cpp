@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "gui/trainer/end_page.h"
 
 #include <algorithm>
 #include <cmath>
-#include <QBoxLayout>
-#include <QLabel>
 #include <QListWidget>
 #include <QPushButton>
 #include <system_error>
@@ -15,8 +12,6 @@
 #include "analytics/checkpoints/checkpoint.h"
 #include "analytics/checkpoints/collector.h"
 #include "gui/attempt/figure_text.h"
-#include "gui/attempt/long_work.h"
-#include "gui/attempt/replay_transport.h"
 #include "gui/attempt/widget_parts.h"
 #include "gui/trainer/run_panel.h"
 #include "gui/view/scene_picture_widget.h"
@@ -74,6 +69,29 @@ QString beforeWords(const analytics::CheckpointValue& now, const analytics::Chec
     return then + (change > 0.0 ? ", now more by " : ", now less by ") + by;
   const bool better = (change < 0.0) == (direction == analytics::Direction::lower);
   return then + (better ? ", better by " : ", worse by ") + by;
+}
+
+QString figureWords(const FigureReport& figure) {
+  QString text = figure.title + ": " + figure.now;
+  if (!figure.norm.isEmpty()) text += QString::fromUtf8("\n    norm: ") + figure.norm;
+  if (!figure.before.isEmpty()) text += QString::fromUtf8("\n    last time: ") + figure.before;
+  return text;
+}
+
+/// Path of the stored recording, or the reason why it is not stored.
+QString putIntoCohort(const std::filesystem::path& file, const std::filesystem::path& cohort, unsigned threads,
+                      LongWork::Control& control) {
+  analytics::AssessSettings settings;
+  settings.threads = threads;
+  settings.progress = [&](std::uint64_t step, std::uint64_t of) {
+    control.progress(of == 0 ? 0.0 : static_cast<double>(step) / static_cast<double>(of), "Verifying");
+  };
+  const analytics::JudgedRecording found = analytics::assessRecording(file.string(), settings);
+  if (!found.record) throw Error(ErrorKind::damaged, Where{file.string()}, found.report.message);
+  control.progress(1.0, "Storing");
+  analytics::CohortDatabase database(cohort.string(), analytics::CohortDatabase::Access::create);
+  database.storeAttempt(*found.record, found.values);
+  return badgeText(found.record->verification.verdict);
 }
 
 }  // namespace
@@ -156,12 +174,8 @@ AttemptReport reportOf(AttemptFacts now, const std::optional<AttemptFacts>& prev
       FigureReport& line = report.figures.emplace_back();
       line.title = figureTitle(value.name, value.subject);
       line.now = value.value ? valueText(value) : QString::fromStdString(value.reason);
-      if (standing) {
-        const auto at = std::find_if(standing->figures.begin(), standing->figures.end(), [&](const FigureStanding& s) {
-          return s.checkpoint == value.name && s.subject == value.subject;
-        });
-        if (at != standing->figures.end()) line.norm = normWords(*at, displayedValue(value).unit);
-      }
+      const FigureStanding* const stands = standing ? entryOf(standing->figures, value) : nullptr;
+      if (stands != nullptr) line.norm = normWords(*stands, displayedValue(value).unit);
       const analytics::CheckpointValue* const then = previous ? sameFigure(previous->values, value) : nullptr;
       if (then != nullptr) line.before = beforeWords(value, *then, judges);
     }
@@ -173,33 +187,6 @@ AttemptReport reportOf(AttemptFacts now, const std::optional<AttemptFacts>& prev
 using parts::button;
 using parts::say;
 using parts::selectableLabel;
-
-namespace {
-
-QString figureWords(const FigureReport& figure) {
-  QString text = figure.title + ": " + figure.now;
-  if (!figure.norm.isEmpty()) text += QString::fromUtf8("\n    norm: ") + figure.norm;
-  if (!figure.before.isEmpty()) text += QString::fromUtf8("\n    last time: ") + figure.before;
-  return text;
-}
-
-/// Path of the stored recording, or the reason why it is not stored.
-QString putIntoCohort(const std::filesystem::path& file, const std::filesystem::path& cohort, unsigned threads,
-                      LongWork::Control& control) {
-  analytics::AssessSettings settings;
-  settings.threads = threads;
-  settings.progress = [&](std::uint64_t step, std::uint64_t of) {
-    control.progress(of == 0 ? 0.0 : static_cast<double>(step) / static_cast<double>(of), "Verifying");
-  };
-  const analytics::JudgedRecording found = analytics::assessRecording(file.string(), settings);
-  if (!found.record) throw Error(ErrorKind::damaged, Where{file.string()}, found.report.message);
-  control.progress(1.0, "Storing");
-  analytics::CohortDatabase database(cohort.string(), analytics::CohortDatabase::Access::create);
-  database.storeAttempt(*found.record, found.values);
-  return badgeText(found.record->verification.verdict);
-}
-
-}  // namespace
 
 EndPage::EndPage(Setup setup, QWidget* parent)
     : QWidget(parent),
@@ -224,13 +211,10 @@ EndPage::EndPage(Setup setup, QWidget* parent)
   replay_ = std::make_unique<Replay>(
       [picture = picture_](std::shared_ptr<const SceneView> view) { picture->showView(std::move(view)); });
   replaySide_ = buildReplay();
-  auto* const row = new QHBoxLayout;
-  row->addWidget(replaySide_, 3);
-  row->addWidget(buildWords(), 2);
-  auto* const layout = parts::bare<QVBoxLayout>(this);
-  layout->addLayout(row, 1);
-  layout->addWidget(strip_);
-  layout->addWidget(buildButtons());
+  store_->setToolTip("Simulates the attempt again, which verifies it, and stores its figures");
+  back_->setToolTip("Simulates the attempt again up to two seconds before the mistake, and goes on from there");
+  QBoxLayout* const buttons = parts::bare(parts::row({store_, parts::spring(), back_, again_, next_, scenes_}));
+  setLayout(parts::bare(parts::column({{parts::row({{replaySide_, 3}, {buildWords(), 2}}), 1}, strip_, buttons})));
   replaySide_->setVisible(setup_.mode == recorder::Mode::practice);
 
   connect(moments_, &QListWidget::itemClicked, this, &EndPage::replayMoment);
@@ -269,12 +253,7 @@ QWidget* EndPage::buildReplay() {
   moments_->setAccessibleName("Moments to see again");
   moments_->setWordWrap(true);
   moments_->setToolTip("A click replays the moment, from two seconds before it");
-  auto* const made = new QWidget;
-  auto* const layout = parts::bare<QVBoxLayout>(made);
-  layout->addWidget(picture_, 3);
-  parts::fill(*layout, {new TransportBar(*replay_), momentsTitle_});
-  layout->addWidget(moments_, 1);
-  return made;
+  return parts::boxed(parts::column({{picture_, 3}, new TransportBar(*replay_), momentsTitle_, {moments_, 1}}));
 }
 
 QWidget* EndPage::buildWords() {
@@ -285,21 +264,9 @@ QWidget* EndPage::buildWords() {
   theme::setGround(*syntheticMark_, QColor(0xf0, 0xe4, 0x42), Qt::black);
   figures_->setAccessibleName("Figures that count");
   auto* const inside = new QWidget;
-  auto* const layout = new QVBoxLayout(inside);
-  parts::fill(*layout, {title_, syntheticMark_, outcome_, verdict_, norm_, previous_, figures_, storeText_});
-  layout->addStretch(1);
+  inside->setLayout(parts::column(
+      {title_, syntheticMark_, outcome_, verdict_, norm_, previous_, figures_, storeText_, parts::spring()}));
   return parts::scrolled(inside);
-}
-
-QWidget* EndPage::buildButtons() {
-  store_->setToolTip("Simulates the attempt again, which verifies it, and stores its figures");
-  back_->setToolTip("Simulates the attempt again up to two seconds before the mistake, and goes on from there");
-  auto* const made = new QWidget;
-  auto* const row = parts::bare<QHBoxLayout>(made);
-  row->addWidget(store_);
-  row->addStretch(1);
-  parts::fill(*row, {back_, again_, next_, scenes_});
-  return made;
 }
 
 void EndPage::showAttempt(const TrainingStatus& status, const QString& result, double stepSeconds, bool next) {
@@ -313,13 +280,10 @@ void EndPage::showAttempt(const TrainingStatus& status, const QString& result, d
   title_->setText("The attempt has ended");
   syntheticMark_->setVisible(synthetic_);
   say(outcome_, result);
-  say(verdict_, {});
+  for (QLabel* const label : {verdict_, previous_, figures_, storeText_}) say(label, {});
   say(norm_, practice ? QString("Reading the figures …")
                       : QString("An assessment shows neither figures nor mistakes here. Whoever instructs finds them "
                                 "in the dashboard, when the attempt is in the cohort."));
-  say(previous_, {});
-  say(figures_, {});
-  say(storeText_, {});
   next_->setVisible(next);
   back_->setVisible(practice && !synthetic_ && !status.figures.mistakes->empty());
   showStoring();

@@ -16,6 +16,10 @@
 #include "gui/attempt/replay_transport.h"
 #include "gui/trainer/training_session.h"
 
+class QLabel;
+class QListWidget;
+class QPushButton;
+
 namespace calot::gui {
 
 /// An attempt and its figures, from the cohort where it is in it, else from what its recording says of itself.
@@ -57,14 +61,6 @@ std::vector<analytics::Norm> normsOf(const std::filesystem::path& cohort);
 AttemptReport reportOf(AttemptFacts now, const std::optional<AttemptFacts>& previous,
                        const std::vector<analytics::Norm>& norms);
 
-}  // namespace calot::gui
-
-class QLabel;
-class QListWidget;
-class QPushButton;
-
-namespace calot::gui {
-
 class ScenePictureWidget;
 class WorkStrip;
 
@@ -103,7 +99,6 @@ class EndPage : public QWidget {
  private:
   QWidget* buildReplay();
   QWidget* buildWords();
-  QWidget* buildButtons();
   void read();
   void showReport(const AttemptReport& report);
   void replayMoment();

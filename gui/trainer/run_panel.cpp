@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "gui/trainer/run_panel.h"
 
 #include <algorithm>
 #include <cmath>
 #include <QAccessible>
 #include <QApplication>
-#include <QBoxLayout>
 #include <QGridLayout>
 #include <QLabel>
 #include <QListWidget>
@@ -35,8 +33,7 @@ constexpr const char* hintStyle =
 constexpr const char* assistantKeys = "assistantKeys";
 
 QWidget* keyPage(bool mouse, bool scope, bool pauses) {
-  auto* const page = new QWidget;
-  auto* const grid = parts::bare<QGridLayout>(page);
+  auto* const grid = new QGridLayout;
   grid->setVerticalSpacing(3);
   grid->setColumnStretch(1, 1);
   int row = 0;
@@ -54,7 +51,7 @@ QWidget* keyPage(bool mouse, bool scope, bool pauses) {
     ++row;
   }
   grid->setRowStretch(row, 1);
-  return page;
+  return parts::boxed(grid);
 }
 
 }  // namespace
@@ -90,10 +87,10 @@ RunPanel::RunPanel(recorder::Mode mode, bool mouse, bool scope, QWidget* parent)
       progress_(parts::named("progress", new QProgressBar)),
       lower_(new QStackedWidget),
       keys_(parts::scrolled(keyPage(mouse, scope, mode == recorder::Mode::practice))),
-      mistakes_(new QWidget),
       mistakesTitle_(plainLabel("mistakesTitle")),
       list_(parts::named("mistakes", new QListWidget)),
       back_(button("Go &back to 2 s before it", "back")),
+      mistakes_(parts::boxed(parts::column({mistakesTitle_, {list_, 1}, back_}))),
       pause_(button("&Pause", "pause")),
       finish_(button("&End the attempt", "finish")),
       restart_(button("Sta&rt again", "restart")),
@@ -109,33 +106,18 @@ RunPanel::RunPanel(recorder::Mode mode, bool mouse, bool scope, QWidget* parent)
   list_->setWordWrap(true);
   back_->setToolTip("Simulates the attempt again up to two seconds before the mistake, and goes on from there");
 
-  auto* const lower = parts::bare<QVBoxLayout>(mistakes_);
   mistakesTitle_->setAlignment(Qt::AlignTop | Qt::AlignLeft);  // also where there is no list below it
-  lower->addWidget(mistakesTitle_);
-  lower->addWidget(list_, 1);
-  lower->addWidget(back_);
   lower_->addWidget(keys_);
   lower_->addWidget(mistakes_);
-
-  auto* const head = new QHBoxLayout;
-  head->addWidget(stage_, 1);
-  head->addWidget(modeLabel_);
   auto* const buttons = new QGridLayout;
   buttons->addWidget(pause_, 0, 0);
   buttons->addWidget(finish_, 0, 1);
   buttons->addWidget(restart_, 1, 0);
   buttons->addWidget(scenes_, 1, 1);
-
-  auto* const layout = new QVBoxLayout(this);
-  layout->addLayout(head);
-  parts::fill(*layout, {progress_, time_, deadlines_});
-  layout->addSpacing(6);
-  parts::fill(*layout, {phase_, score_, hint_, pointer_, result_});
-  layout->addSpacing(6);
-  parts::fill(*layout, {hand_[0], hand_[1], assistant_});
-  layout->addSpacing(10);
-  layout->addWidget(lower_, 1);
-  layout->addLayout(buttons);
+  QBoxLayout* const rows = parts::column({parts::row({{stage_, 1}, modeLabel_}), progress_, time_, deadlines_});
+  parts::fill(rows, {parts::space(6), phase_, score_, hint_, pointer_, result_});
+  parts::fill(rows, {parts::space(6), hand_[0], hand_[1], assistant_, parts::space(10), {lower_, 1}, buttons});
+  setLayout(rows);
 
   connect(pause_, &QPushButton::clicked, this, &RunPanel::pauseRequested);
   connect(finish_, &QPushButton::clicked, this, &RunPanel::finishRequested);

@@ -18,6 +18,7 @@ class QListWidget;
 class QProgressBar;
 class QPushButton;
 class QStackedWidget;
+class QTextToSpeech;
 
 namespace calot::gui {
 
@@ -55,18 +56,14 @@ class RunPanel : public QWidget {
   QLabel* assistant_;
   QProgressBar* progress_;
   QStackedWidget* lower_;
-  QWidget *keys_, *mistakes_;
+  QWidget* keys_;
   QLabel* mistakesTitle_;
   QListWidget* list_;
-  QPushButton *back_, *pause_, *finish_, *restart_, *scenes_;
+  QPushButton* back_;
+  QWidget* mistakes_;
+  QPushButton *pause_, *finish_, *restart_, *scenes_;
   std::shared_ptr<const std::vector<Mistake>> listed_;
 };
-
-}  // namespace calot::gui
-
-class QTextToSpeech;
-
-namespace calot::gui {
 
 /// Reads words aloud by the system's speech synthesis, through whichever of Qt's engines is installed. News waits for
 /// what is being said; of one subject only the latest is worth saying, and cuts off what it replaces.

@@ -3,8 +3,6 @@
 
 #include <fmt/format.h>
 #include <algorithm>
-#include <array>
-#include <chrono>
 #include <iterator>
 #include <utility>
 
@@ -13,9 +11,6 @@
 #include "recorder/base/errors.h"
 #include "recorder/branch.h"
 #include "recorder/live/worker_pool.h"
-#include "recorder/live/wrapped_sources.h"
-#include "recorder/loop.h"
-#include "recorder/sources/devices/device_source.h"
 #include "recorder/sources/devices/mouse_device.h"
 #include "recorder/sources/scope/scope_source.h"
 
@@ -35,6 +30,8 @@ void setPlaces(recorder::MouseInput& mouse, const SceneDescription& scene, const
   mouse.setPorts(ports);
   mouse.setEyes(eyes);
 }
+
+constexpr std::chrono::milliseconds longSilence(500);
 
 }  // namespace
 
@@ -64,12 +61,6 @@ void MouseAttemptInput::setOut(recorder::SampleSource& source, const SceneDescri
 }
 
 using recorder::Outcome;
-
-namespace {
-
-constexpr std::chrono::milliseconds longSilence(500);
-
-}  // namespace
 
 TrainingSession::TrainingSession(TrainingSettings settings, std::shared_ptr<AttemptInput> input, ViewTap::Sink sink)
     : settings_(std::move(settings)), input_(std::move(input)), tap_(std::move(sink)), thread_([this] { work(); }) {}
@@ -278,8 +269,21 @@ void TrainingSession::run(recorder::Session& session, recorder::SampleSource& so
                           const std::filesystem::path& file) {
   tap_.begin(session);
   session.join(tap_);
-  awaitPicture(session);
-  if (!header.parent.empty()) countDown(controlled);
+  // Nobody operates blindly. Meanwhile what the first steps need is worked out.
+  session.precompute();
+  during(settings_.firstPicture, [this](Clock::duration) { return !tap_.isShown(); });
+  // A person who went back looks first and acts then. Motion of the hands meanwhile is discarded.
+  if (!header.parent.empty()) {
+    during(settings_.countdown, [&](Clock::duration left) {
+      {
+        const std::lock_guard lock(mutex_);
+        status_.stage = Stage::countdown;
+        status_.countdown = static_cast<int>(std::chrono::ceil<std::chrono::seconds>(left).count());
+      }
+      controlled.rest();
+      return true;
+    });
+  }
   recorder::RunSettings run;
   run.live = true;
   run.progress = [&](std::uint64_t) {
@@ -317,35 +321,15 @@ void TrainingSession::run(recorder::Session& session, recorder::SampleSource& so
   keepResult(report, source);
 }
 
-/// Nobody operates blindly. Meanwhile what the first steps need is worked out.
-void TrainingSession::awaitPicture(recorder::Session& session) {
-  using Clock = std::chrono::steady_clock;
-  constexpr std::chrono::milliseconds glance(10);
-  const Clock::time_point end = Clock::now() + settings_.firstPicture;
-  session.precompute();
-  while (!tap_.isShown() && Clock::now() < end) {
-    {
-      const std::lock_guard lock(mutex_);
-      if (command_) return;
-    }
-    std::this_thread::sleep_for(glance);
-  }
-}
-
-/// A person who went back looks first and acts then. Motion of the hands meanwhile is discarded.
-void TrainingSession::countDown(recorder::SampleSource& source) {
-  using Clock = std::chrono::steady_clock;
-  constexpr std::chrono::milliseconds glance(10);
-  const Clock::time_point end = Clock::now() + settings_.countdown;
+void TrainingSession::during(Clock::duration time, const std::function<bool(Clock::duration)>& call) {
+  const Clock::time_point end = Clock::now() + time;
   for (Clock::time_point now = Clock::now(); now < end; now = Clock::now()) {
     {
       const std::lock_guard lock(mutex_);
       if (command_) return;
-      status_.stage = Stage::countdown;
-      status_.countdown = static_cast<int>(std::chrono::ceil<std::chrono::seconds>(end - now).count());
     }
-    source.rest();
-    std::this_thread::sleep_for(glance);
+    if (!call(end - now)) return;
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
 }
 
