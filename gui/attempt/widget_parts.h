@@ -90,9 +90,9 @@ struct Item {
   QLayout* layout = nullptr;
   int stretch, pixels = 0;
 };
-/// Room that grows.
+/// Empty space that grows.
 inline Item spring(int share = 1) { return {static_cast<QWidget*>(nullptr), share}; }
-/// Room of a fixed size.
+/// Empty space of a fixed size.
 inline Item space(int pixels) {
   Item made(static_cast<QWidget*>(nullptr));
   made.pixels = pixels;
@@ -124,8 +124,6 @@ inline void say(QLabel* label, const QString& text) {
 }
 
 }  // namespace calot::gui::parts
-
-class QLabel;
 
 namespace calot::gui::theme {
 

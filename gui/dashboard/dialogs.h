@@ -13,6 +13,7 @@
 #include "gui/dashboard/page_parts.h"
 
 class QFormLayout;
+class QListWidget;
 class QMenuBar;
 class QSpinBox;
 
@@ -56,6 +57,23 @@ class NormDialog : public QDialog {
   WorkStrip* strip_;
 };
 
+/// Folders of recordings, the program that imports them and its number of threads, the person at the desk,
+/// and how the dashboard looks.
+class SettingsDialog : public QDialog {
+  Q_OBJECT
+ public:
+  explicit SettingsDialog(QWidget* parent = nullptr);
+  void accept() override;  ///< stores what is shown
+
+ private:
+  QListWidget* folders_;
+  QLineEdit* program_;
+  QSpinBox* threads_;
+  QLineEdit* person_;
+  QComboBox* colours_;
+  QSpinBox* type_;
+};
+
 }  // namespace calot::gui
 
 namespace calot::gui::settings {
@@ -91,29 +109,3 @@ void setHiddenColumns(const QStringList& titles);
 void setPerson(const QString& name);
 
 }  // namespace calot::gui::settings
-
-class QComboBox;
-class QLineEdit;
-class QListWidget;
-class QSpinBox;
-
-namespace calot::gui {
-
-/// Folders of recordings, the program that imports them and its number of threads, the person at the desk,
-/// and how the dashboard looks.
-class SettingsDialog : public QDialog {
-  Q_OBJECT
- public:
-  explicit SettingsDialog(QWidget* parent = nullptr);
-  void accept() override;  ///< stores what is shown
-
- private:
-  QListWidget* folders_;
-  QLineEdit* program_;
-  QSpinBox* threads_;
-  QLineEdit* person_;
-  QComboBox* colours_;
-  QSpinBox* type_;
-};
-
-}  // namespace calot::gui

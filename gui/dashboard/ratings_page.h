@@ -10,7 +10,6 @@
 #include "gui/dashboard/recording_view.h"
 
 class QButtonGroup;
-class QScrollArea;
 
 namespace calot::gui {
 

@@ -32,6 +32,9 @@ constexpr const char* hintStyle =
 
 constexpr const char* assistantKeys = "assistantKeys";
 
+/// Remedy where nothing can be read aloud.
+constexpr const char* remedy = "; install qt6-speech-speechd-plugin and speech-dispatcher, or qt6-speech-flite-plugin";
+
 QWidget* keyPage(bool mouse, bool scope, bool pauses) {
   auto* const grid = new QGridLayout;
   grid->setVerticalSpacing(3);
@@ -185,10 +188,6 @@ void RunPanel::showMistakes(const TrainingStatus& status, double stepSeconds) {
 
 void RunPanel::goBack() {
   if (const auto time = chosenBranch(*list_)) emit backRequested(*time);
-}
-
-namespace {
-constexpr const char* remedy = "; install qt6-speech-speechd-plugin and speech-dispatcher, or qt6-speech-flite-plugin";
 }
 
 Voice::Voice(QObject* parent) : QObject(parent) {
