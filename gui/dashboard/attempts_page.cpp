@@ -272,8 +272,8 @@ void AttemptsPage::showSelected() {
   } else {
     banner_->showAttempt(*row);
     tryTo([&] {
-      values = document_->values(row->uuid);
-      intervals = document_->intervals(row->uuid);
+      values = document_->database().values(row->uuid);
+      intervals = document_->database().intervals(row->uuid);
     });
   }
   details_->setColumnHidden(CheckpointTableModel::intervalColumn, intervals.empty());

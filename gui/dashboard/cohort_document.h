@@ -92,14 +92,8 @@ class CohortDocument {
   [[nodiscard]] const std::vector<analytics::AttemptRow>& attempts() const { return lines_->attempts(); }
   /// The same, ready to be shown in a table.
   [[nodiscard]] const std::shared_ptr<const AttemptLines>& lines() const { return lines_; }
-  /// @throws calot::Error
-  [[nodiscard]] std::vector<analytics::CheckpointValue> values(const std::string& uuid) const {
-    return database_.values(uuid);
-  }
-  /// @throws calot::Error
-  [[nodiscard]] std::vector<analytics::ValueInterval> intervals(const std::string& uuid) const {
-    return database_.intervals(uuid);
-  }
+  /// For what is read attempt by attempt, on the interface's thread.
+  [[nodiscard]] const analytics::CohortDatabase& database() const { return database_; }
   /// All values, by figure; any thread, the first that asks reads them. @throws calot::Error
   [[nodiscard]] std::shared_ptr<const FigureValues> figureValues() const;
   [[nodiscard]] const analytics::AttemptRow* attempt(const std::string& uuid) const;  ///< or null
@@ -109,7 +103,6 @@ class CohortDocument {
   [[nodiscard]] analytics::AssessmentDatabase assessment() const {
     return {path(), analytics::CohortDatabase::Access::read};
   }
-  [[nodiscard]] std::vector<analytics::Participant> participants() const { return database_.participants(); }
 
  private:
   analytics::CohortDatabase database_;

@@ -109,8 +109,8 @@ void FigurePanel::setAttempt(std::shared_ptr<const CohortDocument> document, con
   document_ = std::move(document);
   attempt_ = attempt;
   const QString fault = faultOf([&] {
-    intervals_ = document_->intervals(attempt.uuid);
-    values_ = document_->values(attempt.uuid);
+    intervals_ = document_->database().intervals(attempt.uuid);
+    values_ = document_->database().values(attempt.uuid);
   });
   if (!fault.isEmpty()) emit problem(fault);
   figures_.setValues(values_, intervals_);

@@ -89,7 +89,7 @@ class FigurePanel : public QWidget {
   std::optional<std::pair<std::string, std::string>> wanted_;  ///< figure to go to when its moments are known
   CheckpointTableModel figures_;
   FamilyTreeModel families_{figures_};
-  QStandardItemModel events_;
+  QStandardItemModel events_{0, 2};
   std::vector<TrackEvent> trackEvents_;
   MomentCycle cycle_;
   QComboBox* norm_;

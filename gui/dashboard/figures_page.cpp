@@ -215,7 +215,7 @@ void TraineePage::showGoal(const TraineeHistory& history, const std::vector<anal
   const std::vector<const analytics::Norm*> fitting = normsFor(newest, norms);
   if (fitting.empty()) return;
   std::vector<analytics::CheckpointValue> own;
-  tryTo([&] { own = document_->values(newest.uuid); });
+  tryTo([&] { own = document_->database().values(newest.uuid); });
   const AttemptStanding standing = standingOf(newest, own, *fitting.front());
   goal_->setText(standing.grade ? "Next goal: " + QString::fromStdString(analytics::nextGoal(*standing.grade).text)
                                 : "No goal: " + QString::fromStdString(standing.verdict));

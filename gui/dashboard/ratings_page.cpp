@@ -192,7 +192,7 @@ void RatingPage::read() {
   if (rater_->text().isEmpty()) rater_->setText(settings::person());
   QStringList people;
   tryTo([&] {
-    for (const analytics::Participant& person : document_->participants())
+    for (const analytics::Participant& person : document_->database().participants())
       people += QString::fromStdString(person.pseudonym);
   });
   refill(*participant_, people);

@@ -270,8 +270,9 @@ void TrainingSession::run(recorder::Session& session, recorder::SampleSource& so
   tap_.begin(session);
   session.join(tap_);
   // Nobody operates blindly. Meanwhile what the first steps need is worked out.
+  const Clock::time_point begin = Clock::now();
   session.precompute();
-  during(settings_.firstPicture, [this](Clock::duration) { return !tap_.isShown(); });
+  during(settings_.firstPicture - (Clock::now() - begin), [this](Clock::duration) { return !tap_.isShown(); });
   // A person who went back looks first and acts then. Motion of the hands meanwhile is discarded.
   if (!header.parent.empty()) {
     during(settings_.countdown, [&](Clock::duration left) {

@@ -137,16 +137,16 @@ TEST_F(Instructor, FoldsCheckpointsByFamilyAndSortsThem) {
 
 TEST_F(Instructor, FindsEventsInGroupsThatSayWhich) {
   test::startApplication();
-  EventTreeModel model;
-  model.setEvents({{1.0, EventKind::clipSet, "cystic duct: clip set (right hand)", false},
-                   {2.0, EventKind::clipDropped, "clip dropped (right hand)", true},
-                   {3.0, EventKind::clipSet, "cystic artery: clip set (right hand)", false}});
+  QStandardItemModel model;
+  listEvents(model, {{1.0, EventKind::clipSet, "cystic duct: clip set (right hand)", false},
+                     {2.0, EventKind::clipDropped, "clip dropped (right hand)", true},
+                     {3.0, EventKind::clipSet, "cystic artery: clip set (right hand)", false}});
   ASSERT_EQ(model.rowCount(), 2);
   EXPECT_EQ(model.index(0, 0).data().toString(), QString::fromUtf8("▲ Clip dropped (1)")) << "errors first";
   const QModelIndex set = model.index(1, 0);
   EXPECT_EQ(set.data().toString(), "Clip set (2)");
   EXPECT_EQ(model.index(1, 0, set).data().toString(), "cystic artery: clip set (right hand)");
-  EXPECT_EQ(model.index(1, 0, set).data(EventTreeModel::secondsRole).toDouble(), 3.0);
+  EXPECT_EQ(model.index(1, 0, set).data(eventSecondsRole).toDouble(), 3.0);
 }
 
 TEST_F(Instructor, WritesAnAttemptOnOnePageWithPicturesOffTheWindowsThread) {
