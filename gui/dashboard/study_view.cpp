@@ -2,7 +2,6 @@
 #include "gui/dashboard/study_view.h"
 
 #include <algorithm>
-#include <exception>
 #include <set>
 #include <span>
 
@@ -70,29 +69,25 @@ std::string noteExport(const analytics::Study& study, const std::string& databas
 
 }  // namespace
 
-StudyAnswer studyOf(const std::string& database, const StudyRequest& request,
-                    const analytics::StudyProgress& progress) {
-  try {
-    if (request.check) {
-      if (progress) progress(0.0, "checking the cohort");
-      analytics::refuseUnsound(database);
-    }
-    analytics::StudyOptions options = request.options;
-    const bool chosen = std::count(options.groups.begin(), options.groups.end(), "") == 0;
-    if (!request.protocol.empty() || !chosen) options.groups.clear();
-    const analytics::CohortDatabase cohort(database, Access::read);
-    for (const analytics::RegisteredProtocol& p : cohort.protocols()) {
-      if (p.sha256 != request.protocol) continue;
-      options.protocol = analytics::ProtocolInUse{
-          analytics::parseProtocol(std::as_bytes(std::span(p.text)), p.name), cohort.protocols(p.name), {}};
-    }
-    if (options.protocol) return {analytics::makeProtocolStudy(cohort, options, false, progress), {}};
-    analytics::Study study = analytics::makeStudy(cohort, options, progress);
-    analytics::addRatings(study, cohort);
-    return {std::move(study), {}};
-  } catch (const std::exception& error) {
-    return {std::nullopt, problemText(error)};
+analytics::Study studyOf(const std::string& database, const StudyRequest& request,
+                         const analytics::StudyProgress& progress) {
+  if (request.check) {
+    if (progress) progress(0.0, "checking the cohort");
+    analytics::refuseUnsound(database);
   }
+  analytics::StudyOptions options = request.options;
+  const bool chosen = std::count(options.groups.begin(), options.groups.end(), "") == 0;
+  if (!request.protocol.empty() || !chosen) options.groups.clear();
+  const analytics::CohortDatabase cohort(database, Access::read);
+  for (const analytics::RegisteredProtocol& p : cohort.protocols()) {
+    if (p.sha256 != request.protocol) continue;
+    options.protocol = analytics::ProtocolInUse{
+        analytics::parseProtocol(std::as_bytes(std::span(p.text)), p.name), cohort.protocols(p.name), {}};
+  }
+  if (options.protocol) return analytics::makeProtocolStudy(cohort, options, false, progress);
+  analytics::Study study = analytics::makeStudy(cohort, options, progress);
+  analytics::addRatings(study, cohort);
+  return study;
 }
 
 std::vector<std::string> groupsOf(const std::vector<analytics::AttemptRow>& attempts, analytics::Grouping grouping) {

@@ -3,8 +3,6 @@
 
 #include <fmt/format.h>
 #include <algorithm>
-#include <array>
-#include <chrono>
 #include <iterator>
 #include <utility>
 
@@ -36,6 +34,8 @@ void setPlaces(recorder::MouseInput& mouse, const SceneDescription& scene, const
   mouse.setEyes(eyes);
 }
 
+constexpr std::chrono::milliseconds longSilence(500);
+
 }  // namespace
 
 void AttemptInput::setOut(recorder::SampleSource& source, const SceneDescription& /*scene*/, const TickSamples& start) {
@@ -64,12 +64,6 @@ void MouseAttemptInput::setOut(recorder::SampleSource& source, const SceneDescri
 }
 
 using recorder::Outcome;
-
-namespace {
-
-constexpr std::chrono::milliseconds longSilence(500);
-
-}  // namespace
 
 TrainingSession::TrainingSession(TrainingSettings settings, std::shared_ptr<AttemptInput> input, ViewTap::Sink sink)
     : settings_(std::move(settings)), input_(std::move(input)), tap_(std::move(sink)), thread_([this] { work(); }) {}
@@ -279,8 +273,22 @@ void TrainingSession::run(recorder::Session& session, recorder::SampleSource& so
                           const std::filesystem::path& file) {
   tap_.begin(session);
   session.join(tap_);
-  awaitPicture(session);
-  if (!header.parent.empty()) countDown(controlled);
+  // Nobody operates blindly. Meanwhile what the first steps need is worked out.
+  const Clock::time_point begin = Clock::now();
+  session.precompute();
+  during(settings_.firstPicture - (Clock::now() - begin), [this](Clock::duration) { return !tap_.isShown(); });
+  // A person who went back looks first and acts then. Motion of the hands meanwhile is discarded.
+  if (!header.parent.empty()) {
+    during(settings_.countdown, [&](Clock::duration left) {
+      {
+        const std::lock_guard lock(mutex_);
+        status_.stage = Stage::countdown;
+        status_.countdown = static_cast<int>(std::chrono::ceil<std::chrono::seconds>(left).count());
+      }
+      controlled.rest();
+      return true;
+    });
+  }
   recorder::RunSettings run;
   run.live = true;
   run.progress = [&](std::uint64_t) {
@@ -318,35 +326,15 @@ void TrainingSession::run(recorder::Session& session, recorder::SampleSource& so
   keepResult(report, source);
 }
 
-/// Nobody operates blindly. Meanwhile what the first steps need is worked out.
-void TrainingSession::awaitPicture(recorder::Session& session) {
-  using Clock = std::chrono::steady_clock;
-  constexpr std::chrono::milliseconds glance(10);
-  const Clock::time_point end = Clock::now() + settings_.firstPicture;
-  session.precompute();
-  while (!tap_.isShown() && Clock::now() < end) {
-    {
-      const std::lock_guard lock(mutex_);
-      if (command_) return;
-    }
-    std::this_thread::sleep_for(glance);
-  }
-}
-
-/// A person who went back looks first and acts then. Motion of the hands meanwhile is discarded.
-void TrainingSession::countDown(recorder::SampleSource& source) {
-  using Clock = std::chrono::steady_clock;
-  constexpr std::chrono::milliseconds glance(10);
-  const Clock::time_point end = Clock::now() + settings_.countdown;
+void TrainingSession::during(Clock::duration time, const std::function<bool(Clock::duration)>& call) {
+  const Clock::time_point end = Clock::now() + time;
   for (Clock::time_point now = Clock::now(); now < end; now = Clock::now()) {
     {
       const std::lock_guard lock(mutex_);
       if (command_) return;
-      status_.stage = Stage::countdown;
-      status_.countdown = static_cast<int>(std::chrono::ceil<std::chrono::seconds>(end - now).count());
     }
-    source.rest();
-    std::this_thread::sleep_for(glance);
+    if (!call(end - now)) return;
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "gui/attempt/figure_standing.h"
+#include "gui/attempt/figure_text.h"
 
 #include <gtest/gtest.h>
 

@@ -28,16 +28,16 @@
 #include "analytics/cohort/cohort_database.h"
 #include "apps/calot-dashboard/assess_program.h"
 #include "gui/attempt/long_work.h"
-#include "gui/attempt/theme.h"
+#include "gui/attempt/widget_parts.h"
 #include "gui/dashboard/attempt_page.h"
 #include "gui/dashboard/attempts_page.h"
 #include "gui/dashboard/checkpoint_table_model.h"
 #include "gui/dashboard/dashboard_window.h"
+#include "gui/dashboard/dialogs.h"
 #include "gui/dashboard/figure_panel.h"
 #include "gui/dashboard/pair_page.h"
 #include "gui/dashboard/plot_view.h"
 #include "gui/dashboard/ratings_page.h"
-#include "gui/dashboard/settings.h"
 #include "gui/dashboard/timeline.h"
 #include "gui/report/pdf_report.h"
 #include "recorder/base/errors.h"
@@ -137,16 +137,16 @@ TEST_F(Instructor, FoldsCheckpointsByFamilyAndSortsThem) {
 
 TEST_F(Instructor, FindsEventsInGroupsThatSayWhich) {
   test::startApplication();
-  EventTreeModel model;
-  model.setEvents({{1.0, EventKind::clipSet, "cystic duct: clip set (right hand)", false},
-                   {2.0, EventKind::clipDropped, "clip dropped (right hand)", true},
-                   {3.0, EventKind::clipSet, "cystic artery: clip set (right hand)", false}});
+  QStandardItemModel model;
+  listEvents(model, {{1.0, EventKind::clipSet, "cystic duct: clip set (right hand)", false},
+                     {2.0, EventKind::clipDropped, "clip dropped (right hand)", true},
+                     {3.0, EventKind::clipSet, "cystic artery: clip set (right hand)", false}});
   ASSERT_EQ(model.rowCount(), 2);
   EXPECT_EQ(model.index(0, 0).data().toString(), QString::fromUtf8("▲ Clip dropped (1)")) << "errors first";
   const QModelIndex set = model.index(1, 0);
   EXPECT_EQ(set.data().toString(), "Clip set (2)");
   EXPECT_EQ(model.index(1, 0, set).data().toString(), "cystic artery: clip set (right hand)");
-  EXPECT_EQ(model.index(1, 0, set).data(EventTreeModel::secondsRole).toDouble(), 3.0);
+  EXPECT_EQ(model.index(1, 0, set).data(eventSecondsRole).toDouble(), 3.0);
 }
 
 TEST_F(Instructor, WritesAnAttemptOnOnePageWithPicturesOffTheWindowsThread) {

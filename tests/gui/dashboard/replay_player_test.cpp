@@ -8,7 +8,6 @@
 #include <random>
 #include <vector>
 
-#include "gui/attempt/attempt_recording.h"
 #include "recorder/base/errors.h"
 #include "recorder/replay.h"
 #include "tests/gui/dashboard/support/recorded.h"

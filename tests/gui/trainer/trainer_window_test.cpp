@@ -398,7 +398,7 @@ TEST_F(Trainer, AskForOneControlAfterTheOtherAndSaysWhenItWasUsed) {
   QStringList alerts;
   QObject::connect(window.findChild<RunPanel*>(), &RunPanel::announced, &window,
                    [&](const QString&, const QString& words) { alerts += words; });
-  window.begin(trainertest::smallLoadedScene(), TrainerWindow::Purpose::controls);
+  window.begin(trainertest::smallLoadedScene(), Purpose::controls);
   ASSERT_TRUE(runs(0.1));
   window.refresh();
   EXPECT_TRUE(text("hint").startsWith("Control 1 of 10")) << text("hint").toStdString();
@@ -422,7 +422,7 @@ TEST_F(Trainer, ReadsAloudWhatItAsksForUntilItIsToldNotTo) {
     engine.finish();
     return !engine.begun.filter(words).isEmpty();
   };
-  window.begin(trainertest::smallLoadedScene(), TrainerWindow::Purpose::controls);
+  window.begin(trainertest::smallLoadedScene(), Purpose::controls);
   ASSERT_TRUE(QTest::qWaitFor([&] { return said("Control 1 of 10"); }, patience));
   QTest::keyClick(window.view(), Qt::Key_K, Qt::ControlModifier);
   ASSERT_TRUE(QTest::qWaitFor([&] { return said("Control 2 of 10"); }, patience));
@@ -455,7 +455,7 @@ TEST_F(Trainer, ADemonstrationIsWatchedAndIsNoAttemptOfTheTrainee) {
   participant_ = "P7";
   TrainerWindow& window = open();
   window.chooseScene();
-  window.begin(trainertest::smallLoadedScene(), TrainerWindow::Purpose::demonstration);
+  window.begin(trainertest::smallLoadedScene(), Purpose::demonstration);
   ASSERT_TRUE(runs(0.3));
   window.refresh();
   EXPECT_FALSE(window.view()->holdsPointer()) << "nothing is to be driven";

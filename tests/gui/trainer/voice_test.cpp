@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // In which order news is read aloud, through an engine of Qt's that a test listens to.
-#include "gui/trainer/voice.h"
+#include "gui/trainer/run_panel.h"
 
 #include <gtest/gtest.h>
 

@@ -1,19 +1,38 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "gui/attempt/theme.h"
+#include "gui/attempt/widget_parts.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <QApplication>
 #include <QFontMetricsF>
-#include <QLabel>
 #include <QPainter>
 #include <QPixmap>
-#include <QStyle>
 #include <QStyleFactory>
 #include <utility>
 
-namespace calot::gui::theme {
+namespace calot::gui {
+
+QBoxLayout* parts::fill(QBoxLayout* layout, std::initializer_list<Item> items) {
+  for (const Item& item : items) {
+    if (item.label != nullptr) {
+      auto* const label = new QLabel(item.label);
+      label->setBuddy(item.widget);
+      layout->addWidget(label);
+    }
+    if (item.widget != nullptr)
+      layout->addWidget(item.widget, item.stretch);
+    else if (item.layout != nullptr)
+      layout->addLayout(item.layout, item.stretch);
+    else if (item.stretch > 0)
+      layout->addStretch(item.stretch);
+    else
+      layout->addSpacing(item.pixels);
+  }
+  return layout;
+}
+
+namespace theme {
 namespace {
 
 using analytics::Verdict;
@@ -204,4 +223,5 @@ QSize windowSizeFor(const QSize& available) {
   return (available * 0.9).boundedTo(usual).expandedTo(small);
 }
 
-}  // namespace calot::gui::theme
+}  // namespace theme
+}  // namespace calot::gui
