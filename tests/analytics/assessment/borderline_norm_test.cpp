@@ -7,12 +7,11 @@
 #include <cmath>
 
 #include "tests/analytics/cohort/support/cohort_support.h"
-#include "tests/analytics/support/refusal.h"
+#include "tests/support/fault.h"
 
 namespace calot::analytics {
 namespace {
 
-using support::expectRefusal;
 using support::humanAttempt;
 using support::uuidOf;
 
@@ -85,9 +84,9 @@ TEST_F(BorderlineNorm, theFirstRatedAttemptOfAParticipantCounts) {
 
 TEST_F(BorderlineNorm, isRefusedWhereRatingsDoNotSay) {
   request_.borderline->mark = 6.0;
-  expectRefusal(ErrorKind::refused, "", [&] { (void)made(); });
+  expectFault(ErrorKind::refused, "", {}, [&] { (void)made(); });
   request_.borderline = BorderlineMark{"another", 3.0};
-  expectRefusal(ErrorKind::refused, "no attempt was rated with form another", [&] { (void)made(); });
+  expectFault(ErrorKind::refused, "", {"another"}, [&] { (void)made(); });
 }
 
 }  // namespace

@@ -10,12 +10,11 @@
 #include "analytics/assessment/norm.h"
 #include "analytics/report/grade_sheet.h"
 #include "tests/analytics/cohort/support/cohort_support.h"
-#include "tests/analytics/support/refusal.h"
+#include "tests/support/fault.h"
 
 namespace calot::analytics {
 namespace {
 
-using support::expectRefusal;
 using support::humanAttempt;
 using support::uuidOf;
 
@@ -127,11 +126,11 @@ TEST_F(NormRule, aNormThatItsOwnMembersFailIsSaidToBeOne) {
 TEST_F(NormRule, whatCannotBeFixedIsRefused) {
   for (const char* text :
        {"", "clip-errors", "clip-errors=0", "clip-errors<0", "clip-errors<=", "<=0", "clip-errors<=nan"})
-    expectRefusal(ErrorKind::invalid, "a figure, <= or >=, and a number", [&] { parseFixedCut(text); });
+    expectFault(ErrorKind::invalid, "", {"norm", text}, [&] { parseFixedCut(text); });
   request_.fixed = {parseFixedCut("clip-errors>=0")};
-  expectRefusal(ErrorKind::invalid, "of it less is better", [&] { made(); });
+  expectFault(ErrorKind::invalid, "", {"norm", "clip-errors"}, [&] { made(); });
   request_.fixed = {parseFixedCut("sparc left>=0")};
-  expectRefusal(ErrorKind::invalid, "have no figure \"", [&] { made(); }, {{Remedy::nameCheckpoints}});
+  expectFault(ErrorKind::invalid, "", {"\"sparc left\""}, [&] { made(); }, {{Remedy::nameCheckpoints}});
 }
 
 }  // namespace

@@ -18,14 +18,13 @@
 #include "analytics/cohort/withdraw.h"
 #include "analytics/regrade.h"
 #include "tests/analytics/cohort/support/cohort_support.h"
-#include "tests/analytics/support/refusal.h"
+#include "tests/support/fault.h"
 
 namespace calot::analytics {
 namespace {
 
 using Access = CohortDatabase::Access;
 using support::attemptOf;
-using support::expectRefusal;
 using support::Folder;
 using support::humanAttempt;
 using support::uuidOf;
@@ -116,7 +115,7 @@ TEST(Merge, reportsEveryConflictAndChangesNothing) {
   const CohortMerge merge = mergeCohorts(a, b);
   EXPECT_EQ(merge.conflicts.size(), 4U);  // group, site, level, content
   EXPECT_EQ(meaning(a), before);
-  expectRefusal(ErrorKind::invalid, "name two databases", [&] { mergeCohorts(a, a); });
+  expectFault(ErrorKind::invalid, a, {}, [&] { mergeCohorts(a, a); });
 }
 
 TEST(Withdrawal, reachesTablesThatItDoesNotKnow) {
@@ -149,10 +148,10 @@ TEST(Withdrawal, reachesTablesThatItDoesNotKnow) {
   EXPECT_EQ(bytesOf(path).find(uuidOf(1)), std::string::npos);
   EXPECT_TRUE(wasWithdrawn(path, uuidOf(1)));
   CohortDatabase database(path, Access::write);
-  expectRefusal(ErrorKind::refused, "withdrawn", [&] { database.upsertAttempt(humanAttempt(1, "Gone-1")); });
+  expectFault(ErrorKind::refused, "", {"withdrawn"}, [&] { database.upsertAttempt(humanAttempt(1, "Gone-1")); });
   AttemptRecord branch = attemptOf(3, "skilled");
   branch.parent = uuidOf(1);
-  expectRefusal(ErrorKind::refused, "branches from was withdrawn", [&] { database.upsertAttempt(branch); });
+  expectFault(ErrorKind::refused, "", {"withdrawn"}, [&] { database.upsertAttempt(branch); });
 }
 
 TEST(Withdrawal, aPseudonymWithinALongerOneIsAnother) {
@@ -189,7 +188,7 @@ TEST(Registers, aStationsKeyStaysWhatItIs) {
   key[3] = std::byte{3};
   setStation(path, "S1", "north", key, {});
   setStation(path, "S1", {}, key, "by the window");
-  expectRefusal(ErrorKind::refused, "another key", [&] { setStation(path, "S1", {}, other, {}); });
+  expectFault(ErrorKind::refused, "", {"\"S1\""}, [&] { setStation(path, "S1", {}, other, {}); });
   const Registers r = readRegisters(path);
   ASSERT_EQ(r.stations.size(), 1U);
   EXPECT_EQ(r.stations[0].note, "by the window");
@@ -211,7 +210,7 @@ TEST(Signatures, areKeptAsSeenAtImport) {
   EXPECT_EQ(database.upsertAttempt(one), Imported::extended) << "signed after it came in";
   EXPECT_EQ(database.upsertAttempt(bare), Imported::unchanged) << "a copy without it takes nothing away";
   EXPECT_EQ(database.attempt(uuidOf(1))->signature, one.signature);
-  expectRefusal(ErrorKind::refused, "another signer", [&] { database.upsertAttempt(two); });
+  expectFault(ErrorKind::refused, "", {"signer"}, [&] { database.upsertAttempt(two); });
   EXPECT_TRUE(checkCohort(folder.file("c.db")).faults.empty());
 }
 

@@ -6,12 +6,11 @@
 
 #include "analytics/design/design_data.h"
 #include "tests/analytics/cohort/support/cohort_support.h"
-#include "tests/analytics/support/refusal.h"
+#include "tests/support/fault.h"
 
 namespace calot::analytics {
 namespace {
 
-using support::expectRefusal;
 using support::humanAttempt;
 
 DesignChoices choicesOf(Design design) {
@@ -85,8 +84,7 @@ TEST_F(CohortDesign, occasionsAreNumberedByStart) {
 
 TEST_F(CohortDesign, oneEachWantsARule) {
   DesignChoices choices = choicesOf(Design::severalGroups);
-  expectRefusal(ErrorKind::refused, "participant \"P0\" has 3 attempts", [&] { (void)read(choices); },
-                {{Remedy::chooseAttemptRule}});
+  expectFault(ErrorKind::refused, "", {"\"P0\"", "3"}, [&] { (void)read(choices); }, {{Remedy::chooseAttemptRule}});
   choices.attemptRule = AttemptRule::first;
   const DesignData data = read(choices);
   EXPECT_EQ(data.groups.size(), 3U);
@@ -138,7 +136,7 @@ TEST_F(CohortDesign, valuesOfTwoVersionsAreNotMixedUnasked) {
   cohort_.storeValues(support::uuidOf(1), values);
   DesignChoices choices = choicesOf(Design::severalGroups);
   choices.attemptRule = AttemptRule::first;
-  expectRefusal(ErrorKind::refused, "values of 2 versions", [&] { (void)read(choices); });
+  expectFault(ErrorKind::refused, "", {"2"}, [&] { (void)read(choices); });
   options_.mixKeys = true;
   EXPECT_FALSE(read(choices).remarks.empty());
 }

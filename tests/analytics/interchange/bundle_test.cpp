@@ -23,7 +23,7 @@
 #include "recorder/base/csv.h"
 #include "recorder/base/file_bytes.h"
 #include "tests/analytics/cohort/support/cohort_support.h"
-#include "tests/analytics/support/refusal.h"
+#include "tests/support/fault.h"
 
 namespace calot::analytics {
 namespace {
@@ -32,7 +32,6 @@ namespace fs = std::filesystem;
 using Access = CohortDatabase::Access;
 using nlohmann::json;
 using support::attemptOf;
-using support::expectRefusal;
 using support::Folder;
 using support::humanAttempt;
 using support::uuidOf;
@@ -248,12 +247,12 @@ TEST_F(Bundles, areNotedForWithdrawalsAndForSyntheticOnesMarked) {
 TEST_F(Bundles, areRefusedWhereTheyWouldTell) {
   BundleOptions teaching;
   teaching.scope = "filming";
-  expectRefusal(ErrorKind::refused, "none of 16 attempts can be handed out", [&] { write("out", teaching); });
-  expectRefusal(ErrorKind::invalid, "already exists", [&] { write(""); });
+  expectFault(ErrorKind::refused, "", {"16"}, [&] { write("out", teaching); });
+  expectFault(ErrorKind::invalid, "", {}, [&] { write(""); });
   ParticipantChange change;
   change.arm = "with SITE-7302";
   database_.setParticipant("SITE-7301", change);
-  expectRefusal(ErrorKind::refused, "participants.csv would hold a pseudonym", [&] { write("out"); });
+  expectFault(ErrorKind::refused, "", {"participants.csv"}, [&] { write("out"); });
   EXPECT_FALSE(fs::exists(folder_.file("out")));
   for (const auto& entry : fs::directory_iterator(fs::path(path_).parent_path()))
     EXPECT_EQ(entry.path().string().find(".part"), std::string::npos) << entry.path();

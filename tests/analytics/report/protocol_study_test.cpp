@@ -10,7 +10,7 @@
 #include "recorder/base/file_bytes.h"
 #include "tests/analytics/assessment/support/texts.h"
 #include "tests/analytics/cohort/support/cohort_support.h"
-#include "tests/analytics/support/refusal.h"
+#include "tests/support/fault.h"
 
 namespace calot::analytics {
 namespace {
@@ -18,7 +18,6 @@ namespace {
 using Access = CohortDatabase::Access;
 using nlohmann::json;
 using support::bytesOf;
-using support::expectRefusal;
 using support::Folder;
 using support::humanAttempt;
 using support::uuidOf;
@@ -134,10 +133,10 @@ TEST_F(ProtocolStudy, versionsAreKeptAndChangesListed) {
   const RegisteredProtocol again = put(document());
   EXPECT_EQ(again.version, 1U);
   changed["level"] = 0.01;
-  expectRefusal(ErrorKind::refused, "a changed protocol has a higher version", [&] { put(changed); });
+  expectFault(ErrorKind::refused, "", {}, [&] { put(changed); });
   changed["version"] = 2;
   put(changed);
-  expectRefusal(ErrorKind::refused, "was registered on", [&] {
+  expectFault(ErrorKind::refused, "", {}, [&] {
     json between = changed;
     between["title"] = "other";
     put(between);
@@ -149,7 +148,7 @@ TEST_F(ProtocolStudy, versionsAreKeptAndChangesListed) {
   printStudy(second, text);
   EXPECT_NE(text.str().find("Study (confirmatory): expert against novice"), std::string::npos);
   EXPECT_NE(text.str().find("changed from the version before: /level"), std::string::npos);
-  expectRefusal(ErrorKind::invalid, "name who registers it", [&] {
+  expectFault(ErrorKind::invalid, "", {"protocol"}, [&] {
     bool added = false;
     AssessmentDatabase(path_, Access::write).registerProtocol(stored(protocolOf(document())), "", added);
   });
@@ -223,7 +222,7 @@ TEST_F(ProtocolStudy, populationsOutcomesAndScenesStayOutAndAreCounted) {
   EXPECT_EQ(count("outside of the protocol's population"), 1U);
   EXPECT_EQ(count("ended in a way that the protocol excludes"), 1U);
   text["scene"] = "cholecystectomy/2";
-  expectRefusal(ErrorKind::refused, "another scene than the protocol's", [&] { (void)study(text); });
+  expectFault(ErrorKind::refused, "", {"scene"}, [&] { (void)study(text); });
 }
 
 TEST_F(ProtocolStudy, whoDoesNotFinishRanksBehindAll) {

@@ -24,9 +24,9 @@
 #include "gui/attempt/figure_text.h"
 #include "gui/dashboard/attempts_page.h"
 #include "gui/dashboard/checkpoint_table_model.h"
-#include "recorder/base/errors.h"
 #include "tests/gui/dashboard/support/cohort.h"
 #include "tests/gui/dashboard/support/recorded.h"
+#include "tests/support/fault.h"
 
 namespace calot::gui {
 namespace {
@@ -240,12 +240,7 @@ TEST_F(Dashboard, ADamagedFileIsOneLineAndKeepsWhatWasOpen) {
     EXPECT_TRUE(problem->text().contains(name)) << problem->text().toStdString();
     EXPECT_FALSE(problem->text().contains('\n'));
     EXPECT_EQ(child<QTableView>(window, "attempts")->model()->rowCount(), 9);
-    try {
-      const CohortDocument document(file(name).toStdString());
-      FAIL() << name << " opened";
-    } catch (const Error& error) {
-      EXPECT_EQ(error.kind(), ErrorKind::damaged) << name;
-    }
+    expectFault(ErrorKind::damaged, "", {}, [&] { const CohortDocument document(file(name).toStdString()); });
   }
   ASSERT_TRUE(window.openDatabase(file("cohort.db")));
   EXPECT_FALSE(shows(window, *child<QLabel>(window, "problem"))) << "gone with the next success";
