@@ -26,12 +26,16 @@ inline bool holdsToken(const std::string& text, const std::string& value) {
   return false;
 }
 
+/// A text of any number of lines holds the values.
+inline void expectHolds(const std::string& text, const std::vector<std::string>& values) {
+  for (const std::string& value : values) EXPECT_TRUE(holdsToken(text, value)) << value << " is not in: " << text;
+}
+
 /// A message is one line and names the values.
 inline void expectNames(const std::string& message, const std::vector<std::string>& values) {
   EXPECT_FALSE(message.empty());
   EXPECT_EQ(message.find('\n'), std::string::npos) << message;
-  for (const std::string& value : values)
-    EXPECT_TRUE(holdsToken(message, value)) << value << " is not named: " << message;
+  expectHolds(message, values);
 }
 
 /// Different faults have different messages.

@@ -159,7 +159,6 @@ TEST(TableDesign, agreementOfTwoDevices) {
   EXPECT_NEAR(row["deming"]["slope"].get<double>(), 0.970880819764939, 1e-12);
   EXPECT_EQ(report.drawings.size(), 1U);
   const std::string page = pageHtml(designDocument(report));
-  EXPECT_NE(page.find("Limits of agreement"), std::string::npos);
   EXPECT_NE(page.find("<svg"), std::string::npos);
   // A third reading is a second pair of the same person.
   expectFault(ErrorKind::refused, "", {"line 36"}, [&] { (void)reportOf(meters() + "P0,mini,500\n", a); });

@@ -63,7 +63,7 @@ TEST(SceneFile, everyValueArrives) {
   const LoadedScene loaded = load(validScene().dump());
   const SceneDescription& s = loaded.description;
   EXPECT_EQ(s.name, "small");
-  EXPECT_EQ(loaded.summary, "A test.");
+  EXPECT_EQ(loaded.summary, validScene()["summary"]);
   EXPECT_EQ(s.majorVersion, 3U);
   EXPECT_EQ(s.minorVersion, 4U);
   EXPECT_EQ(s.ticksPerStep, 5U);
