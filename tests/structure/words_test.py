@@ -63,7 +63,16 @@ SENTENCE = re.compile(rf"(?<![\w-])(?:(?:{PROSE}),? [a-z]{{2,}}|[a-z]{{2,}},? (?
 SQL = re.compile(r"\s*(?:SELECT|INSERT|UPDATE|DELETE|PRAGMA|CREATE|DROP|ALTER)\b")
 ASSERTION = re.compile(r"\b(?:EXPECT|ASSERT)_\w+\(|\bexpect\w+\(|\bfault\(|\brefused\(|[.>](?:find|rfind|contains|startsWith|starts_with)\($")
 # Files whose subject is the text itself.
-TEXTS = {}
+TEXTS = {
+    "tests/analytics/assessment/attempt_summary_test.cpp",  # sentences of a summary
+    "tests/analytics/report/page_test.cpp",  # layout of text
+    "tests/analytics/report/study_report_test.cpp",  # sections of the report
+    "tests/apps/common/errors_test.cpp",  # advice of the programs
+    "tests/recorder/sources/devices/camera/tracker_accuracy_test.cpp",  # names of conditions
+    "tests/cluster/snakemake_test.py",  # Snakemake's own words
+    "tests/gui/trainer/attempt_report_test.cpp", "tests/gui/trainer/controls_tutorial_test.cpp",
+    "tests/gui/trainer/trainer_texts_test.cpp", "tests/gui/words/event_words_test.cpp", "tests/gui/words/problem_words_test.cpp",
+}
 
 
 def pins_of_cpp(text):
@@ -72,7 +81,7 @@ def pins_of_cpp(text):
     asserted, data = [], set()
     for start, literal in cpp_text.strings(text):
         prose = literal.strip('"')
-        statement = code[max(code.rfind(c, 0, start) for c in ";{}") + 1:start]
+        statement = re.split(r";|[{}]\s*\n", code[max(0, start - 600):start])[-1]
         if "<<" in statement or not SENTENCE.search(prose) or SQL.match(prose) or literal.startswith("R"):
             continue
         if ASSERTION.search(statement.strip()):

@@ -117,12 +117,13 @@ TEST_F(Bundles, takeWhoConsentedAndCountTheOthers) {
   EXPECT_EQ(b.attempts, 11U);
   EXPECT_EQ(b.recruited, 16U);
   EXPECT_EQ(b.smallest, 3U);
-  std::map<std::string, std::uint64_t> left;
-  for (const FlowRow& row : b.leftOut) left[row.reason] = row.attempts;
-  EXPECT_EQ(left, (std::map<std::string, std::uint64_t>{{"made by a performer", 1},
-                                                        {"no consent to the scope", 2},
-                                                        {"excluded by hand", 1},
-                                                        {"recording diverged or damaged", 1}}));
+  const std::map<std::string, std::uint64_t> left{{"performer", 1}, {"consent", 2}, {"excluded", 1}, {"diverged", 1}};
+  EXPECT_EQ(b.leftOut.size(), left.size());
+  for (const auto& [reason, attempts] : left) {
+    std::uint64_t found = 0;
+    for (const FlowRow& row : b.leftOut) found += holdsToken(row.reason, reason) ? row.attempts : 0;
+    EXPECT_EQ(found, attempts) << reason;
+  }
   EXPECT_EQ(table("out", "participants").rows.size(), 6U);
   EXPECT_EQ(table("out", "attempts").rows.size(), 11U);
   EXPECT_EQ(table("out", "values").rows.size(), 33U);

@@ -65,7 +65,7 @@ TEST(StudyCoverage, warnsWhereTheGroupsDiffer) {
             (std::vector<std::string>{"left hand", "expert", "5", "93.0", "80.0", "1", pText(left.test->p)}));
   EXPECT_EQ(table.rows[1][4], "100.0");
   const std::string notes = notesOf(study);
-  expectHolds(notes, {"Warning: coverage", "left hand", "93.0 % in expert", "100.0 % in novice"});
+  expectHolds(notes, {"Warning: coverage", "left hand", "93.0 %", "100.0 %"});
   const auto json = nlohmann::json(studyTree(study));
   EXPECT_TRUE(json["coverage"][0]["differs"].get<bool>());
   EXPECT_EQ(json["coverage"][0]["shares"][0].size(), 5U);

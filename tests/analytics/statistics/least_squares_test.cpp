@@ -62,8 +62,7 @@ TEST(LeastSquares, degenerate) {
                   leastSquares({{1, 1, 1}, {2, 2, 2}}, Values{1, 2, 3}).reason(),
                   leastSquares({{1, 1, NAN}}, Values{1, 2, 3}).reason()});
   const std::vector<Values> alone{{1, 1, 1, 1}, {0, 0, 0, 1}};
-  EXPECT_EQ(hc3Errors(*leastSquares(alone, Values{1, 2, 3, 9}), alone).reason(),
-            "one value alone determines a coefficient");
+  expectNames(hc3Errors(*leastSquares(alone, Values{1, 2, 3, 9}), alone).reason(), {});
 }
 
 TEST(CovarianceAnalysis, anorexia) {
@@ -92,8 +91,7 @@ TEST(CovarianceAnalysis, degenerate) {
   EXPECT_EQ(reason({5, 5}, {1, 2}, {6, 6}, {2, 3}), reason({5, 5}, {1, 2}, {5, 5}, {2, 3}));
   expectDistinct({reason({}, {}, base, out), reason(base, {1}, base, out), reason({5, 5}, {1, 2}, {5, 5}, {2, 3}),
                   reason({1}, {1}, {2}, {3}), reason({1}, {1}, base, out), reason({1, 2, NAN}, out, base, out)});
-  EXPECT_EQ(reason({0.1, 0.2, 0.7}, {3.2, 3.4, 4.4}, {0.1, 0.3, 0.5}, {1.2, 1.6, 2.0}),
-            "the outcomes have no scatter about the lines");
+  expectNames(reason({0.1, 0.2, 0.7}, {3.2, 3.4, 4.4}, {0.1, 0.3, 0.5}, {1.2, 1.6, 2.0}), {});
 }
 
 }  // namespace

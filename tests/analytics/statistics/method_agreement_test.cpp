@@ -63,8 +63,7 @@ TEST(DemingRegression, isSymmetricInTheMethods) {
   const data::Values falling{5, 4, 3.5, 2, 1}, x{1, 2, 3, 4, 5};
   EXPECT_LT(demingRegression(x, falling)->slope, 0.0);
   expectNames(demingRegression(data::Values{1, 2, 3}, data::Values{1, 2, 3}).reason(), {});
-  EXPECT_EQ(demingRegression(data::Values{1, 1, 1, 1}, data::Values{1, 2, 3, 4}).reason(),
-            "the slope is not determined");
+  expectNames(demingRegression(data::Values{1, 1, 1, 1}, data::Values{1, 2, 3, 4}).reason(), {});
 }
 
 TEST(SpearmanInterval, ofR) {

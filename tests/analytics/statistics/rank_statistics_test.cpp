@@ -158,8 +158,7 @@ TEST(StratifiedRankSum, seesThroughASiteThatIsSlowerAltogether) {
   const auto more = stratifiedRankSum(strata);
   EXPECT_DOUBLE_EQ(more->z, s->z);
   EXPECT_EQ(more->left, 2U);
-  EXPECT_EQ(stratifiedRankSum(std::vector<Stratum>{{{1, 2}, {}}}).reason(),
-            "no stratum holds both groups and values that differ");
+  expectNames(stratifiedRankSum(std::vector<Stratum>{{{1, 2}, {}}}).reason(), {});
 }
 
 }  // namespace

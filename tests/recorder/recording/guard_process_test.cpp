@@ -43,14 +43,14 @@ std::string outcome(GuardProcesses& processes, const std::string& file) {
 
 TEST(GuardProcesses, AnswerAsRunGuardedDoes) {
   GuardProcesses processes(doAsNamed, 1);
-  EXPECT_EQ(outcome(processes, "a.h5"), "read a.h5");
+  EXPECT_EQ(outcome(processes, "one.h5"), "read one.h5");
   expectNames(outcome(processes, "crash"), {"crash: ", "signal 9"});
   expectNames(outcome(processes, "hang"), {"hang: ", "1 s"});
 #ifndef CALOT_SANITIZED  // a sanitizer's allocator has its memory beforehand
   expectNames(outcome(processes, "swell"), {"swell: ", "256 MiB"});
 #endif
   EXPECT_EQ(outcome(processes, "large"), std::string(1000000, 'a'));
-  EXPECT_EQ(outcome(processes, "b.h5"), "read b.h5");
+  EXPECT_EQ(outcome(processes, "two.h5"), "read two.h5");
   expectFault(
       ErrorKind::damaged, "r.h5: /ticks", {"cut"}, [&] { processes.run("damaged", short_); },
       std::vector{Remedy::recover});
@@ -66,7 +66,7 @@ TEST(GuardProcesses, AreChildrenOfAProcessOfTheirOwn) {
 TEST(GuardProcesses, OneThatWasKilledIsNotMissed) {
   GuardProcesses processes(doAsNamed, 1);
   ASSERT_EQ(::kill(std::stoi(outcome(processes, "parent")), SIGKILL), 0);
-  EXPECT_EQ(outcome(processes, "a.h5"), "read a.h5");
+  EXPECT_EQ(outcome(processes, "one.h5"), "read one.h5");
   EXPECT_EQ(outcome(processes, "parent"), std::to_string(::getpid()));
 }
 
@@ -91,7 +91,7 @@ TEST(GuardProcesses, HoldNothingOpen) {
   std::array<int, 2> pipe{};
   ASSERT_EQ(::pipe(pipe.data()), 0);
   GuardProcesses processes(doAsNamed, 1);
-  EXPECT_EQ(outcome(processes, "a.h5"), "read a.h5");
+  EXPECT_EQ(outcome(processes, "one.h5"), "read one.h5");
   ::close(pipe[1]);
   ASSERT_EQ(::fcntl(pipe[0], F_SETFL, O_NONBLOCK), 0);
   char none = 0;
