@@ -202,6 +202,9 @@ def self_test():
                            "// so many steps", "// nobody is told", "// takes up the topology", 'throw Error(kind, "What was written is lost");',
                            'throw Error(kind, fmt::format("{} is none", name));', 'command->add_option("--by", by, "Who decides");'],
         "docs/c.md": ["the room to its left", "a lean recording", "`forceRest` decays"],
+        "tests/f.cpp": ['EXPECT_EQ(e.what(), "a.csv: the file is empty");', 'expectFault(kind, "a", {"is not a number"}, call);',
+                        'EXPECT_NE(text.find("was not found"), npos);'],
+        "tests/g.py": ['self.refused(2, "x", names=("no such file",))', 'self.assertIn("is empty", answer.err)', 'assert "not there" in done.stderr'],
     }
     allowed = {
         "sim/contact/a.h": ["double maxSwept = 0.0;", 'visit("largestDisplacement", self.largestDisplacement);', "// at most, at least, the rest of it",
@@ -212,6 +215,9 @@ def self_test():
         "analytics/cohort/d.cpp": ["withdraw(participant);"],
         "docs/c.md": ["a classroom of trainees, `room()`", "the operating-room lights"],
         "docs/glossary.md": ["room: not used"],
+        "tests/f.cpp": ['EXPECT_EQ(name, "path-length left");', 'EXPECT_TRUE(closed) << "it is closed";',
+                        'put("by the window");\nEXPECT_EQ(note, "by the window");', 'EXPECT_EQ(db.exec("SELECT a FROM b"), 1);'],
+        "tests/g.py": ['self.refused(2, "x", names=("a.h5", "--force"))', 'self.assertIn("is empty", answer.out)'],
     }
     wrong = 0
     with tempfile.TemporaryDirectory() as folder:

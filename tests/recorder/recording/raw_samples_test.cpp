@@ -11,6 +11,7 @@
 #include <deque>
 #include <fstream>
 #include <limits>
+#include <set>
 #include <thread>
 
 #include "recorder/recording/probe.h"
