@@ -88,7 +88,7 @@ class Protocols(Assessment):
         self.refused(2, "protocol", "check", "none", names=("cholecystectomy-2014-table2",))
         self.well("protocol", "register", protocol, self.database, "--by", "test")
         self.refused(3, "protocol", "register", self.write("p2.json", {**PROTOCOL, "level": 0.01}), self.database, "--by", "test",
-                     names=(PROTOCOL["name"], f"version {PROTOCOL['version']}",))
+                     names=(PROTOCOL["name"], f"version {PROTOCOL['version']}"))
         self.assertEqual(len(json.loads(self.well("protocol", "list", self.database, "--json").out)["protocols"]), 1)
         said = " ".join(self.well("protocol", "check", "cholecystectomy-2014-table2").out.split())
         # .05 over eight; 2 / C(10, 5) is .0079, 2 / C(12, 6) is .0022.

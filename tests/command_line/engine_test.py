@@ -132,7 +132,7 @@ class Engine(program.ProgramTest):
         run = subprocess.run([sys.executable, SOURCE / "scripts/engine.py", "build", "3", "-o", self.path("e")], capture_output=True,
                              text=True, check=False)
         self.assertEqual(run.returncode, 1)
-        self.assertIn("3", run.stderr)
+        self.assertRegex(run.stderr, r"\bengine 3\b")
         subprocess.run([sys.executable, SOURCE / "scripts/engine.py", "self-test"], check=True, capture_output=True)
 
     def test_the_sources_of_kept_versions_are_there(self):

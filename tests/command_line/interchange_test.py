@@ -83,12 +83,12 @@ class Interchange(program.ProgramTest):
             self.well("participant", "add", person, "--cohort", self.database, "--group", ("expert", "novice")[n % 2])
         self.well("cohort", "name", "pilot", "--cohort", self.database, "--add", "P1", "--add", "P2")
         self.refused(2, *self.study, "--cohort-name", "pilots", names=("pilots", "pilot)"))
-        self.refused(3, *self.study, "--cohort-name", "pilot", names=("8", "pilot",))
+        self.refused(3, *self.study, "--cohort-name", "pilot", names=("8", "pilot"))
 
     def test_tables_and_bundle(self):
         self.assertIn("checkpoint_value", self.well("cohort", "export", self.database, "-o", self.path("tables")).out)
         self.refused(2, "cohort", "export", self.database, "-o", self.path("tables"), names=(self.path("tables"),))
-        self.refused(3, "cohort", "bundle", self.database, "-o", self.path("b"), names=("8", "performer",))
+        self.refused(3, "cohort", "bundle", self.database, "-o", self.path("b"), names=("8", "performer"))
         self.assertFalse(self.path("b").exists())
         said = json.loads(self.well("cohort", "bundle", self.database, "-o", self.path("b"), "--include-synthetic", "--json").out)
         self.assertEqual((said["attempts"], said["participants"]), (8, 0))
