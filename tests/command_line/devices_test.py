@@ -216,7 +216,7 @@ class Calibrating(ProgramTest):
         self.assertEqual((found["device"], found["passed"], found["declaredPixel"]), ("mouse", True, 5e-5))
         for pixel in (0, -1, 100, "nan"):
             self.refused(2, "devices", "calibrate", "mouse", "--pixel", pixel, "-o", self.path("d.json"), names=("pixel",))
-        self.refused(2, "devices", "calibrate", self.device, "--pixel", 0.05, "-o", self.path("d.json"), names=(self.device,))
+        self.refused(2, "devices", "calibrate", self.device, "--pixel", 0.05, "-o", self.path("d.json"), names=("scripted:",))
 
     def test_failed_is_written_and_exits_3(self):
         answer = self.refused(3, "devices", "calibrate", self.device, "--from", self.path("noisy.json"), "-o", self.path("c.json"),
