@@ -11,6 +11,7 @@
 #include "recorder/engine/session.h"
 #include "recorder/engine/state_fields.h"
 #include "tests/recorder/support/lying_recording.h"
+#include "tests/support/fault.h"
 
 namespace calot::recorder {
 namespace {
@@ -51,7 +52,8 @@ TEST_F(Replay, SaysWhatIsWrongWithADamagedRecordingAndWhatSavesIt) {
   const ReplayReport report = replayRecording(file, {});
   EXPECT_EQ(report.verdict, ReplayVerdict::damaged);
   EXPECT_EQ(report.fault(), ErrorKind::damaged);
-  EXPECT_TRUE(report.error.starts_with("is cut off: ")) << report.error << ": the report names the file itself";
+  EXPECT_EQ(report.error.find(file.string()), std::string::npos)
+      << report.error << ": the report names the file itself";
   EXPECT_EQ(report.remedies, std::vector{Remedy::recover});
 }
 
@@ -64,7 +66,7 @@ TEST_F(Replay, NamesStepTickComponentAndBothValues) {
   EXPECT_EQ(force.divergence->tick, 1504U);
   EXPECT_EQ(force.divergence->component, "force.right");
   EXPECT_EQ(force.divergence->field, "force[2]");
-  EXPECT_NE(force.divergence->detail.find("recorded"), std::string::npos);
+  expectNames(force.divergence->detail, {"recorded"});
   EXPECT_EQ(force.reproducible, true);
   EXPECT_EQ(force.fault(), ErrorKind::refused);
 
@@ -73,7 +75,7 @@ TEST_F(Replay, NamesStepTickComponentAndBothValues) {
   ASSERT_TRUE(torque.divergence) << torque.error;
   EXPECT_EQ(torque.divergence->step, 150U);
   EXPECT_EQ(torque.divergence->component, "force");
-  EXPECT_EQ(torque.divergence->field, "digest of the step's forces");
+  EXPECT_TRUE(holdsToken(torque.divergence->field, "digest"));
 
   const ReplayReport digest = replayRecording(record("d.h5", test::Lie{test::Lie::About::digest, 151}), {});
   ASSERT_TRUE(digest.divergence) << digest.error;

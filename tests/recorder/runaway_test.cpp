@@ -8,6 +8,7 @@
 #include "recorder/recording/writer.h"
 #include "recorder/replay.h"
 #include "tests/recorder/support/small_scene.h"
+#include "tests/support/fault.h"
 
 namespace calot::recorder {
 namespace {

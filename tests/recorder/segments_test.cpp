@@ -16,6 +16,7 @@
 #include "recorder/base/errors.h"
 #include "recorder/replay.h"
 #include "tests/recorder/support/lying_recording.h"
+#include "tests/support/fault.h"
 
 namespace calot::recorder {
 namespace {
