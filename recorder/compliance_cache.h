@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "recorder/base/identity.h"
-#include "sim/solid/compliance_store.h"
+#include "sim/solid/rest_compliance.h"
 
 namespace calot::recorder {
 

@@ -8,7 +8,6 @@
 #include "recorder/base/files.h"
 #include "recorder/formats/mesh_file.h"
 #include "sim/geometry/isosurface_stuffing.h"
-#include "sim/geometry/mesh_to_count.h"
 #include "sim/geometry/triangle_mesh.h"
 
 namespace calot::apps {

@@ -7,7 +7,7 @@
 
 #include "apps/calot/command.h"
 #include "sim/geometry/hole_filling.h"
-#include "sim/geometry/mesh_to_count.h"
+#include "sim/geometry/isosurface_stuffing.h"
 #include "sim/geometry/surface_report.h"
 
 namespace calot::apps {

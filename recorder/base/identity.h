@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "sim/scene/description.h"
-#include "sim/scene/digests.h"
+#include "sim/scene/model.h"
 #include "sim/tissue/tissues.h"
 
 namespace calot::recorder {

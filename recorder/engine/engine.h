@@ -12,7 +12,7 @@
 
 #include "recorder/engine/observer.h"
 #include "sim/judgement/judge.h"
-#include "sim/scene/digests.h"
+#include "sim/scene/model.h"
 #include "sim/scene/scene_view.h"
 #include "sim/scene/step_result.h"
 

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "sim/scene/description.h"
-#include "sim/scene/digests.h"
+#include "sim/scene/model.h"
 #include "sim/scene/samples.h"
 #include "sim/scene/scene_view.h"
 #include "sim/scene/step_result.h"

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "sim/math/fields.h"
-#include "sim/solid/polar.h"
+#include "sim/solid/elements.h"
 
 namespace calot::recorder {
 

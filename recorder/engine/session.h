@@ -19,7 +19,6 @@
 #include "sim/scene/model.h"
 #include "sim/scene/scene_viewer.h"
 #include "sim/scene/state.h"
-#include "sim/step/hand_haptics.h"
 #include "sim/step/stepper.h"
 
 namespace calot::recorder {

@@ -13,7 +13,7 @@
 #include "sim/math/elementary.h"
 #include "sim/math/floating_point.h"
 #include "sim/scene/scene_view.h"
-#include "sim/tissue/description_fields.h"
+#include "sim/tissue/structure.h"
 
 namespace calot::recorder {
 

@@ -10,7 +10,7 @@
 #include <cerrno>
 
 #include "recorder/engine/observer.h"
-#include "sim/step/hand_haptics.h"
+#include "sim/haptics/haptic_tick.h"
 
 namespace calot::recorder {
 

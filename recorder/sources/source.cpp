@@ -3,7 +3,7 @@
 
 #include "recorder/sources/pointing.h"
 #include "sim/math/floating_point.h"
-#include "sim/scene/measurement.h"
+#include "sim/scene/description.h"
 
 namespace calot::recorder {
 

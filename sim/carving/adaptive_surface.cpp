@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim/math/no_fused_pairs.h"  // first
 
-#include "sim/carving/adaptive_surface.h"
+#include "sim/carving/carved_surface.h"
 
 #include <algorithm>
 #include <array>
 #include <bit>
 
-#include "sim/carving/carved_surface.h"
 #include "sim/math/linear.h"
 
 namespace calot {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim/math/no_fused_pairs.h"  // first
 
-#include "sim/carving/carve.h"
+#include "sim/carving/carved_field.h"
 
 #include <algorithm>
 #include <cassert>

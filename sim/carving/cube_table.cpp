@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
-#include "sim/carving/cube_table.h"
+#include "sim/carving/carved_surface.h"
 
 #include <algorithm>
 #include <cassert>

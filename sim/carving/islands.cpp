@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sim/carving/islands.h"
+#include "sim/carving/carved_field.h"
 
 #include <algorithm>
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/contact/surface_normal.h"
+#include "sim/contact/surface_patches.h"
 #include "sim/contact/triangle_lanes.h"
 #include "sim/geometry/closest_point.h"
 #include "sim/math/linear.h"

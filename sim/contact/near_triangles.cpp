@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
-#include "sim/contact/near_triangles.h"
+#include "sim/contact/surface_surface.h"
 
 #include <algorithm>
 #include <array>

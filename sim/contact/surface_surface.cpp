@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "sim/contact/surface_surface.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
-#include "sim/contact/near_triangles.h"
-#include "sim/contact/surface_normal.h"
+#include "sim/contact/surface_patches.h"
 #include "sim/geometry/closest_point.h"
 #include "sim/math/linear.h"
 #include "sim/math/vectors.h"

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sim/math/no_fused_pairs.h"
 //
-#include "sim/fat/cube_motion.h"
+#include "sim/math/no_fused_pairs.h"  // first
+
+#include "sim/fat/fat_body.h"
 
 #include <algorithm>
 #include <cmath>

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/carving/islands.h"
+#include "sim/carving/carved_field.h"
 #include "sim/geometry/closest_point_transform.h"
 #include "sim/math/floating_point.h"
 

@@ -2,6 +2,9 @@
 // Signed distance of lattice nodes to a triangle surface, exact in a band around it.
 #pragma once
 
+#include <array>
+#include <cstddef>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -44,5 +47,76 @@ struct DistanceTransform {
 /// @pre indices are in range
 [[nodiscard]] DistanceTransform closestPointTransform(const TriangleMesh& mesh, const BrickLattice& lattice,
                                                       double band);
+
+// Faces, edges and vertices of a surface with the normals that distances need.
+
+/// Features of a mesh whose coordinates are given (any unit). Linear in its size.
+class SurfaceFeatures {
+ public:
+  struct Face {
+    Vec3 normal = Vec3::Zero();    ///< unit, outward; zero for a sliver (sine of its angle below 1e-10)
+    std::array<Vec3, 3> inward{};  ///< unit, in the plane, across edge k to the inside; zero for a sliver
+    [[nodiscard]] bool flat() const { return normal.squaredNorm() > 0.5; }
+  };
+  struct Edge {
+    int low = 0;  ///< vertices, low < high
+    int high = 0;
+    int first = 0;  ///< sides [first, last)
+    int last = 0;
+    Vec3 normal = Vec3::Zero();  ///< sum of its faces' normals
+  };
+  struct Side {
+    int triangle = 0;
+    int side = 0;
+    int low = 0;
+    int high = 0;
+    bool forward = false;  ///< runs from low to high
+  };
+
+  SurfaceFeatures(std::span<const Vec3> vertex, std::span<const Index3> triangle);
+
+  [[nodiscard]] const std::vector<Face>& faces() const { return face_; }
+  [[nodiscard]] const std::vector<Edge>& edges() const { return edge_; }
+  [[nodiscard]] std::span<const Side> sides(const Edge& edge) const {
+    return std::span(side_).subspan(slot(edge.first), slot(edge.last - edge.first));
+  }
+  /// Edges that end at a vertex.
+  [[nodiscard]] std::span<const int> edgesAt(int vertex) const {
+    return std::span(around_).subspan(slot(aroundStart_[slot(vertex)]),
+                                      slot(aroundStart_[slot(vertex) + 1] - aroundStart_[slot(vertex)]));
+  }
+  /// Angle-weighted sums of the faces' normals, one a vertex.
+  [[nodiscard]] const std::vector<Vec3>& vertexNormals() const { return vertexNormal_; }
+  /// Edges whose sides do not balance in both directions.
+  [[nodiscard]] int openEdges() const { return openEdges_; }
+  /// Every edge has exactly two sides, in opposite directions.
+  [[nodiscard]] bool manifoldEdges() const { return manifold_; }
+
+ private:
+  void makeEdges(std::size_t vertices, std::span<const Index3> triangle);
+
+  std::vector<Face> face_;
+  std::vector<Edge> edge_;
+  std::vector<Side> side_;
+  std::vector<int> aroundStart_;
+  std::vector<int> around_;
+  std::vector<Vec3> vertexNormal_;
+  int openEdges_ = 0;
+  bool manifold_ = true;
+};
+
+// Signs of a distance field.
+
+/// Gives nodes beyond the band (value = band, sign unknown) the sign of their surroundings; the
+/// lattice's border is outside.
+/// @param value in cells, distances within the band with their signs
+/// @return false when signs contradict each other: two neighbours of unlike sign have a surface between them, so their
+/// distances are at most one cell together. Only the magnitudes of values are then valid.
+[[nodiscard]] bool spreadSigns(const BrickLattice& lattice, double band, std::vector<double>& value);
+
+/// Recomputes all signs: neighbours whose distances add up to more than one cell have no surface between them and lie
+/// in one region; one winding number per region decides, inside above one half.
+/// @param mesh closed, m @param value in cells; only its magnitude is read
+void signByRegions(const TriangleMesh& mesh, const BrickLattice& lattice, double band, std::vector<double>& value);
 
 }  // namespace calot

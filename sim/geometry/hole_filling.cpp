@@ -28,13 +28,9 @@ class OpenEdges {
  public:
   explicit OpenEdges(const TriangleMesh& mesh)
       : mesh_(mesh), neighbour_(triangleNeighbours(mesh)), open_(mesh.triangle.size(), {0, 0, 0}) {
-    const std::vector<TriangleSide> sides = sortedSides(mesh);
-    for (std::size_t i = 0; i < sides.size();) {
-      std::size_t end = i + 1;
-      while (end < sides.size() && sides[end].low == sides[i].low && sides[end].high == sides[i].high) ++end;
-      if (end - i == 1) open_[slot(sides[i].triangle)][sides[i].side] = 1;
-      i = end;
-    }
+    forEachEdge(mesh, [&](std::span<const TriangleSide> sides) {
+      if (sides.size() == 1) open_[slot(sides[0].triangle)][sides[0].side] = 1;
+    });
   }
 
   [[nodiscard]] bool isOpen(int triangle, int side) const { return open_[slot(triangle)][side] == 1; }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim/math/no_fused_pairs.h"  // first
 
-#include "sim/geometry/surface_features.h"
+#include "sim/geometry/closest_point_transform.h"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "sim/geometry/surface_report.h"
 
 #include <algorithm>
@@ -105,14 +104,10 @@ std::vector<Component> components(const TriangleMesh& mesh) {
     c.triangle.push_back(t);
     for (int k = 0; k < 3; ++k) c.box.include(mesh.corner(t, k));
   }
-  const std::vector<TriangleSide> sides = sortedSides(mesh);
-  for (std::size_t i = 0; i < sides.size();) {
-    std::size_t end = i + 1;
-    while (end < sides.size() && sides[end].low == sides[i].low && sides[end].high == sides[i].high) ++end;
-    const bool good = end - i == 2 && sides[i].forward != sides[i + 1].forward;
-    if (!good) result[slot(of[slot(sides[i].triangle)])].clean = false;
-    i = end;
-  }
+  forEachEdge(mesh, [&](std::span<const TriangleSide> sides) {
+    const bool good = sides.size() == 2 && sides[0].forward != sides[1].forward;
+    if (!good) result[slot(of[slot(sides[0].triangle)])].clean = false;
+  });
   for (Component& c : result) {
     const Vec3 middle = 0.5 * (c.box.lower + c.box.upper);
     for (const int t : c.triangle) {
@@ -199,25 +194,21 @@ SurfaceReport inspectSurface(const TriangleMesh& mesh) {
     while (parent[slot(v)] != v) v = parent[slot(v)] = parent[slot(parent[slot(v)])];
     return v;
   };
-  const std::vector<TriangleSide> sides = sortedSides(mesh);
-  for (std::size_t i = 0; i < sides.size();) {
-    std::size_t end = i + 1;
-    while (end < sides.size() && sides[end].low == sides[i].low && sides[end].high == sides[i].high) ++end;
-    if (end - i == 1) {
+  forEachEdge(mesh, [&](std::span<const TriangleSide> sides) {
+    if (sides.size() == 1) {
       ++report.openEdges;
-      for (const int v : {sides[i].low, sides[i].high}) {
+      for (const int v : {sides[0].low, sides[0].high}) {
         if (parent[slot(v)] < 0) parent[slot(v)] = v;
       }
-      const int x = root(sides[i].low);
-      const int y = root(sides[i].high);
+      const int x = root(sides[0].low);
+      const int y = root(sides[0].high);
       parent[slot(std::max(x, y))] = std::min(x, y);
-    } else if (end - i > 2) {
+    } else if (sides.size() > 2) {
       ++report.nonManifoldEdges;
-    } else if (sides[i].forward == sides[i + 1].forward) {
+    } else if (sides[0].forward == sides[1].forward) {
       ++report.flippedEdges;
     }
-    i = end;
-  }
+  });
   for (int v = 0; v < mesh.vertices(); ++v) report.holes += parent[slot(v)] == v ? 1 : 0;
 
   const std::vector<Component> parts = components(mesh);

@@ -54,18 +54,11 @@ std::vector<TriangleSide> sortedSides(const TriangleMesh& mesh) {
 
 std::vector<Index3> triangleNeighbours(const TriangleMesh& mesh) {
   std::vector<Index3> neighbour(mesh.triangle.size(), Index3::Constant(-1));
-  const std::vector<TriangleSide> sides = sortedSides(mesh);
-  for (std::size_t i = 0; i < sides.size();) {
-    std::size_t end = i + 1;
-    while (end < sides.size() && sides[end].low == sides[i].low && sides[end].high == sides[i].high) ++end;
-    if (end - i == 2) {
-      const TriangleSide& x = sides[i];
-      const TriangleSide& y = sides[i + 1];
-      neighbour[slot(x.triangle)][x.side] = y.triangle;
-      neighbour[slot(y.triangle)][y.side] = x.triangle;
-    }
-    i = end;
-  }
+  forEachEdge(mesh, [&](std::span<const TriangleSide> sides) {
+    if (sides.size() != 2) return;
+    neighbour[slot(sides[0].triangle)][sides[0].side] = sides[1].triangle;
+    neighbour[slot(sides[1].triangle)][sides[1].side] = sides[0].triangle;
+  });
   return neighbour;
 }
 

@@ -2,7 +2,11 @@
 // Triangle surfaces and their measures.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <span>
 #include <vector>
 
 #include "sim/math/linear.h"
@@ -46,11 +50,47 @@ struct TriangleSide {
 /// All sides, ordered by (low, high, triangle, side): sides of one edge are adjacent.
 [[nodiscard]] std::vector<TriangleSide> sortedSides(const TriangleMesh& mesh);
 
+/// Calls visit(sides) for each edge, in the order of sortedSides().
+template <class Visit>
+void forEachEdge(const TriangleMesh& mesh, Visit&& visit) {
+  const std::vector<TriangleSide> sides = sortedSides(mesh);
+  for (std::size_t i = 0, end = 0; i < sides.size(); i = end) {
+    while (end < sides.size() && sides[end].low == sides[i].low && sides[end].high == sides[i].high) ++end;
+    visit(std::span(sides).subspan(i, end - i));
+  }
+}
+
 /// neighbour[t][k]: the triangle across side k of t; -1 if the edge does not have exactly two sides.
 [[nodiscard]] std::vector<Index3> triangleNeighbours(const TriangleMesh& mesh);
 
 /// Component of each triangle (connected across edges, manifold or not), numbered from 0 in order of each component's
 /// first triangle. @param[out] count number of components
 [[nodiscard]] std::vector<int> triangleComponents(const TriangleMesh& mesh, int& count);
+
+/// The smallest n such that no side of a cell is longer than `longest` (m), at most `most`.
+inline std::uint32_t cellsAlongSide(const Vec3& a, const Vec3& b, const Vec3& c, double longest, std::uint32_t most) {
+  const double side2 = std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
+  std::uint32_t n = 1;
+  while (n < most && longest * longest * (n * n) < side2) ++n;
+  return n;
+}
+
+/// Calls visit(cell, weights) for each of the n^2 cells in order: barycentric weights of its centroid, of the corners.
+template <class Visit>
+void forEachTriangleCell(std::uint32_t n, Visit&& visit) {
+  const double size = 1.0 / n;
+  std::uint32_t cell = 0;
+  for (std::uint32_t i = 0; i < n; ++i) {
+    for (std::uint32_t j = 0; i + j < n; ++j) {
+      const auto at = [&](double third) {
+        const double u = (i + third) * size;
+        const double v = (j + third) * size;
+        visit(cell++, Vec3(1.0 - (u + v), u, v));
+      };
+      at(1.0 / 3.0);
+      if (i + j + 1 < n) at(2.0 / 3.0);
+    }
+  }
+}
 
 }  // namespace calot

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "sim/math/floating_point.h"
+#include "sim/scene/description.h"
 
 namespace calot {
 
@@ -114,6 +115,31 @@ HapticForce hapticTick(const HapticModel& model, HapticState& state, const Conta
   const double total = shown.norm();
   if (total > model.maxForce) shown *= model.maxForce / total;
   return {shown, state.torque * axis};
+}
+
+HapticState initialHaptics(const State& state, std::size_t hand) {
+  HapticState haptics;
+  haptics.tip = state.hand[hand].realPosition;
+  haptics.orientation = state.hand[hand].realOrientation;
+  return haptics;
+}
+
+void takeSample(const Model& model, std::size_t hand, const InstrumentSample& sample, HapticState& haptics) {
+  if (!isMeasurement(sample)) return;
+  const Pose pose = realPose(model.scene(), hand, sample, haptics.tip);
+  haptics.tip = pose.position;
+  haptics.orientation = pose.orientation;
+}
+
+HapticModel hapticModel(const Model& model, std::size_t hand) {
+  const HandDescription& description = model.scene().hands[hand];
+  HapticModel haptics;
+  haptics.maxForce = description.maxForce;
+  haptics.maxStretch = description.maxForce / description.couplingStiffness;
+  haptics.ticksPerStep = model.scene().ticksPerStep;
+  haptics.port = {description.port, axisOf(description.port, description.home), description.trocarFriction,
+                  description.wallStiffness, description.couplingStiffness};
+  return haptics;
 }
 
 }  // namespace calot

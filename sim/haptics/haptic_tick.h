@@ -3,13 +3,16 @@
 // step (Saupin, Duriez and Cotin 2008, "Contact model for haptic medical simulations") at the hand's newest pose.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
 #include "sim/contact/contact_solver.h"
-#include "sim/instruments/port.h"
+#include "sim/instruments/instrument_shape.h"
 #include "sim/math/fields.h"
 #include "sim/math/linear.h"
+#include "sim/scene/model.h"
+#include "sim/scene/state.h"
 
 namespace calot {
 
@@ -128,5 +131,15 @@ struct HapticForce {
 /// following ticks, so that the force does not jump. Allocates only when a contact set has more rows than any before.
 /// @pre takeSample() took this tick's sample
 HapticForce hapticTick(const HapticModel& model, HapticState& state, const ContactSet& set);
+
+/// Haptic state of a hand before the first tick.
+HapticState initialHaptics(const State& state, std::size_t hand);
+
+/// Takes one tick's sample: the real pose is the sample through workspace and port; held where the sample is no
+/// measurement.
+void takeSample(const Model& model, std::size_t hand, const InstrumentSample& sample, HapticState& haptics);
+
+/// Limits of a hand's virtual coupling and device, and its port: the wall is at rest where the shaft is at the start.
+HapticModel hapticModel(const Model& model, std::size_t hand);
 
 }  // namespace calot

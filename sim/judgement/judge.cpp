@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "sim/judgement/judge.h"
 
 #include <algorithm>
@@ -10,13 +9,6 @@
 namespace calot {
 
 namespace {
-
-template <class Description>
-std::optional<std::size_t> indexNamed(const std::vector<Description>& list, const std::string& name) {
-  const auto found = std::find_if(list.begin(), list.end(), [&](const Description& d) { return d.name == name; });
-  if (found == list.end()) return std::nullopt;
-  return static_cast<std::size_t>(found - list.begin());
-}
 
 bool contains(const std::vector<std::size_t>& structures, std::size_t structure) {
   return std::find(structures.begin(), structures.end(), structure) != structures.end();
@@ -42,26 +34,23 @@ Judge::Judge(const SceneDescription& scene, const JudgementRules& rules) : rules
   const ProcedureDescription& procedure = scene.procedure;
   present_ = !procedure.specimen.empty();
   if (!present_) return;
-  if (const auto fat = indexNamed(scene.fat, procedure.fat)) {
-    hasFat_ = true;
-    fat_ = *fat;
-  }
-  if (const auto bed = indexNamed(scene.connective, procedure.bed)) {
-    hasBed_ = true;
-    bed_ = *bed;
-  }
+  fat_ = indexNamed(scene.fat, procedure.fat);
+  hasFat_ = fat_ < scene.fat.size();
+  bed_ = indexNamed(scene.connective, procedure.bed);
+  hasBed_ = bed_ < scene.connective.size();
   const std::size_t firstVessel = scene.organs.size();
   for (const DivideDescription& d : procedure.divide) {
-    const auto vessel = indexNamed(scene.vessels, d.vessel);
-    if (!vessel) continue;
+    const std::size_t vessel = indexNamed(scene.vessels, d.vessel);
+    if (vessel == scene.vessels.size()) continue;
     Divide& divide = divide_.emplace_back();
-    divide.vessel = *vessel;
-    divide.structure = firstVessel + *vessel;
+    divide.vessel = vessel;
+    divide.structure = firstVessel + vessel;
     divide.clips = {d.patient, d.specimen};
     if (!d.patientAtStart) std::swap(divide.clips[0], divide.clips[1]);
   }
   for (const std::string& name : procedure.spare) {
-    if (const auto vessel = indexNamed(scene.vessels, name)) spare_.push_back(firstVessel + *vessel);
+    const std::size_t vessel = indexNamed(scene.vessels, name);
+    if (vessel < scene.vessels.size()) spare_.push_back(firstVessel + vessel);
   }
   now_.phase = hasFat_ ? Phase::identification : !divide_.empty() ? Phase::clipping : Phase::dissection;
 }

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "sim/math/fields.h"
 
 #define XXH_INLINE_ALL

@@ -106,7 +106,7 @@ struct SolverDescription {
   double gapTolerance = 2e-6;            ///< not any more where these are this small (m)
   std::uint32_t contactIterations = 25;  ///< sweeps, before Newton's method takes over
   bool sleeping = true;                  ///< untouched organs at rest are not solved
-  /// Organs give way within their cells, too (sim/step/contact_dimples.h). No field: scenes cannot do without; tests of
+  /// Organs give way within their cells, too (sim/step/contact_block.h). No field: scenes cannot do without; tests of
   /// the mesh alone can.
   bool dimples = true;
 
@@ -134,5 +134,21 @@ struct SceneDescription : Tissues::Descriptions {
 };
 
 inline constexpr double tickLength = 0.001;  ///< s
+
+// Validity of a hand's measurement, and the real pose that it gives, for the step and the haptic tick alike.
+
+/// Valid, finite, and with an orientation that can be normalised.
+bool isMeasurement(const InstrumentSample& sample);
+bool isMeasurement(const CameraSample& sample);
+
+/// A tip held inside the scene's workspace (m, W).
+Vec3 clampedToWorkspace(const SceneDescription& scene, const Vec3& tip);
+
+/// Direction from the port to a tip, unit; straight down where they coincide.
+Vec3 axisOf(const Vec3& port, const Vec3& tip);
+
+/// The real instrument of a measurement: orientation normalised, tip held inside the workspace, through the port.
+/// @param previousTip gives the axis where the tip is at the port. @pre isMeasurement(sample)
+Pose realPose(const SceneDescription& scene, std::size_t hand, const InstrumentSample& sample, const Vec3& previousTip);
 
 }  // namespace calot

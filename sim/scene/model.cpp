@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "sim/scene/model.h"
 
 #include <algorithm>
@@ -50,21 +49,12 @@ std::size_t Model::bodies() const {
 }
 
 std::size_t Model::structureNamed(const std::string& name) const {
-  std::size_t s = 0;
-  while (s < structure_.size() && structure_[s].name != name) ++s;
-  return s;
+  return indexNamed(structure_, name);
 }
 
 // A Model's procedure and retractions.
 
 namespace {
-
-template <class Description>
-std::size_t indexNamed(const std::vector<Description>& list, const std::string& name) {
-  std::size_t i = 0;
-  while (i < list.size() && list[i].name != name) ++i;
-  return i;
-}
 
 /// Strands of a bed in three parts of a third of its area each, by how far they are from a point on the specimen.
 std::array<std::vector<std::uint32_t>, 3> thirdsOf(const ConnectiveTissue& tissue, bool specimenIsA,
@@ -138,7 +128,7 @@ std::string Model::addProcedure(const SceneDescription& scene) {
 std::string Model::addRetractions(const SceneDescription& scene) {
   for (const RetractionDescription& d : scene.retraction) {
     RetractionModel& out = retraction_.emplace_back();
-    while (out.organ < organs().size() && organs()[out.organ].name != d.organ) ++out.organ;
+    out.organ = indexNamed(organs(), d.organ);
     if (out.organ == organs().size()) return "retraction: the scene has no organ '" + d.organ + "'";
     const std::vector<Vec3>& rest = organs()[out.organ].solid.rest();
     for (std::size_t n = 0; n < rest.size(); ++n) {

@@ -9,11 +9,27 @@
 #include <vector>
 
 #include "sim/scene/description.h"
-#include "sim/scene/digests.h"
 #include "sim/tissue/structure.h"
 #include "sim/tissue/tissues.h"
 
 namespace calot {
+
+/// Names of what is digested, fixed by the Model: components in order, and their fields in order.
+struct DigestLayout {
+  struct Field {
+    std::uint32_t component = 0;
+    std::string name;  ///< "organ.liver/position"
+  };
+  std::vector<std::string> components;  ///< "clock", "camera", "hand.left", "organ.liver", ...
+  std::vector<Field> fields;
+};
+
+/// Digests of one State: XXH3-64 of each component's field bytes, and the low 32 bits of each field's own XXH3-64.
+struct StateDigest {
+  std::vector<std::uint64_t> component;
+  std::vector<std::uint32_t> field;
+  bool operator==(const StateDigest&) const = default;
+};
 
 /// Fat close around a vessel that the scene's procedure divides.
 struct VesselCover {

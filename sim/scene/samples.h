@@ -4,8 +4,17 @@
 #include <array>
 #include <cstdint>
 
-#include "sim/instruments/instrument_list.h"
 #include "sim/math/linear.h"
+
+// The one list of instruments. Each has a definition of this name in namespace instrument (sim/instruments) and a
+// drawing of this name (gui/render): a missing one does not link. docs/extending/index.md says how to add one.
+/// Name in code, and the number that recordings store, which is never reused. In the order of the trainer's keys.
+#define CALOT_INSTRUMENTS(ENTRY) \
+  ENTRY(grasper, 1)              \
+  ENTRY(hook, 2)                 \
+  ENTRY(clipApplier, 3)          \
+  ENTRY(scissors, 4)             \
+  ENTRY(probe, 5)
 
 namespace calot {
 
@@ -13,7 +22,7 @@ enum class Hand : std::uint8_t { left = 0, right = 1 };
 inline constexpr int handCount = 2;
 inline constexpr std::array<const char*, handCount> handNames{"left", "right"};
 
-/// Instrument mounted on a hand's shaft: none, or one of the list in sim/instruments/instrument_list.h.
+/// Instrument mounted on a hand's shaft: none, or one of the list above.
 /// `instrumentOf` (sim/instruments/instruments.h) gives all that is known of a kind.
 #define CALOT_INSTRUMENT_NUMBER(name, number) name = (number),
 enum class InstrumentKind : std::uint8_t { none = 0, CALOT_INSTRUMENTS(CALOT_INSTRUMENT_NUMBER) };

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "sim/scene/scene_view.h"
 
 #include "sim/scene/scene_viewer.h"

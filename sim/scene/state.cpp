@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "sim/scene/state.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "sim/instruments/port.h"
+#include "sim/instruments/instrument_shape.h"
 #include "sim/math/fields.h"
 #include "sim/math/linear.h"
 #include "sim/vessel/tube_surface.h"
@@ -169,8 +168,7 @@ State initialState(const Model& model, std::uint64_t seed) {
 }
 
 DigestLayout digestLayout(const Model& model) {
-  State state;
-  Tissues::forEach([&]<class Kind>(std::type_identity<Kind>, TissueId) { Kind::resize(model, state); });
+  const State state = initialState(model, 0);
   DigestLayout layout;
   const auto add = [&](std::string name, const auto& part) {
     NameVisitor visitor{layout, static_cast<std::uint32_t>(layout.components.size())};
@@ -226,8 +224,7 @@ bool isDimpleOf(const Model& model, std::uint64_t key) {
 }  // namespace
 
 bool restoreState(const Model& model, std::span<const std::byte> bytes, State& state) {
-  State read;
-  Tissues::forEach([&]<class Kind>(std::type_identity<Kind>, TissueId) { Kind::resize(model, read); });
+  State read = initialState(model, 0);
   ByteReader reader(bytes);
   State::components(read, [&](auto& part) { reader.read(part); });
   if (!reader.complete()) return false;

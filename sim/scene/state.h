@@ -12,7 +12,6 @@
 
 #include "sim/math/random.h"
 #include "sim/scene/description.h"
-#include "sim/scene/digests.h"
 #include "sim/scene/model.h"
 #include "sim/scene/samples.h"
 #include "sim/scene/step_result.h"

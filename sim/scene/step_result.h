@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "sim/math/linear.h"
+#include "sim/math/record.h"
 #include "sim/scene/samples.h"
-#include "sim/tissue/result_field.h"
 #include "sim/tissue/tissues.h"
 
 namespace calot {

@@ -18,9 +18,12 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "sim/math/linear.h"
+#include "sim/math/symmetric_blocks.h"
+#include "sim/solid/solid.h"
 
 namespace calot {
 
@@ -37,5 +40,23 @@ struct WeightMotion {
 
 /// Solves for x, each group of bodies that ties and strands join as a system of its own.
 WeightMotion motionUnderWeight(const Model& model);
+
+// The stiffness of solids and of springs in the reference configuration, in double.
+
+/// Adds a solid's stiffness K (N/m) at rest.
+/// @param fill remaining share of each cube; empty: all full
+/// @param factor of all of it
+/// @param row per node: its row of the matrix; -1: fixed
+void addStiffness(const SolidModel& model, std::span<const double> fill, double factor, std::span<const int> row,
+                  SymmetricBlocks& matrix);
+
+/// A material point and the rows of its solid's nodes.
+struct PlacedPoint {
+  const MaterialPoint& point;
+  std::span<const int> row;
+};
+
+/// Adds a spring between two points that has the same stiffness in all directions (N/m).
+void addSpring(const PlacedPoint& a, const PlacedPoint& b, double stiffness, SymmetricBlocks& matrix);
 
 }  // namespace calot

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "sim/solid/coarse_lattice.h"
 
 #include <algorithm>
@@ -8,8 +7,8 @@
 #include <map>
 
 #include "sim/math/symmetric_blocks.h"
+#include "sim/solid/block_matrix.h"
 #include "sim/solid/conjugate_gradient.h"
-#include "sim/solid/row_lanes.h"
 #include "sim/solid/sweeps.h"
 
 namespace calot {

@@ -12,8 +12,9 @@
 #include <span>
 #include <vector>
 
-#include "sim/solid/row_lanes.h"
+#include "sim/solid/block_matrix.h"
 #include "sim/solid/solid_model.h"
+#include "sim/solid/sweeps.h"
 
 namespace calot {
 

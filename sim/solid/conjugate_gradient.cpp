@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "sim/solid/conjugate_gradient.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "sim/solid/row_lanes.h"
+#include "sim/solid/block_matrix.h"
 #include "sim/solid/sweeps.h"
 
 namespace calot {

@@ -16,7 +16,6 @@
 
 #include "sim/math/vectors.h"
 #include "sim/solid/block_matrix.h"
-#include "sim/solid/row_lanes.h"
 
 namespace calot {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sim/solid/hexahedral_elements.h"
+#include "sim/solid/elements.h"
 
 #include <algorithm>
 #include <cmath>

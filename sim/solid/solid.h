@@ -124,6 +124,9 @@ class SolidSolver {
     std::array<double, maxNodes> weight{};  ///< share of each node
     std::size_t count = 0;                  ///< number of nodes used
     Vec3 impulse = Vec3::Zero();            ///< N s
+
+    /// A nodal quantity there.
+    [[nodiscard]] Vec3 of(std::span<const Vec3> values) const;
   };
   SolveReport responses(const SolidModel& model, std::span<const Impulse> impulses, const Settings& settings,
                         std::vector<std::vector<Vec3>>& response);

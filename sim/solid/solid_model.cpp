@@ -10,7 +10,7 @@
 
 #include "sim/math/floating_point.h"
 #include "sim/math/vectors.h"
-#include "sim/solid/row_lanes.h"
+#include "sim/solid/block_matrix.h"
 
 namespace calot {
 

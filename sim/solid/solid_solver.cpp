@@ -28,11 +28,21 @@ StiffnessAssembly::Scale scaleOf(const SolidModel& model, double step) {
 
 }  // namespace
 
-Vec3 MaterialPoint::of(std::span<const Vec3> values) const {
+namespace {
+
+Vec3 weighted(const auto& place, std::span<const Vec3> values) {
   Vec3 sum = Vec3::Zero();
-  for (std::size_t k = 0; k < count; ++k) sum += weight[k] * values[static_cast<std::size_t>(node[k])];
+  for (std::size_t k = 0; k < place.count; ++k) {
+    sum += place.weight[k] * values[static_cast<std::size_t>(place.node[k])];
+  }
   return sum;
 }
+
+}  // namespace
+
+Vec3 MaterialPoint::of(std::span<const Vec3> values) const { return weighted(*this, values); }
+
+Vec3 SolidSolver::Impulse::of(std::span<const Vec3> values) const { return weighted(*this, values); }
 
 Mat3 JointAttachment::block(std::size_t i, std::size_t j) const {
   Mat3 m;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sim/solid/solid_system.h"
+#include "sim/solid/solid_model.h"
 
 #include <algorithm>
 #include <array>

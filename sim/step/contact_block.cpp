@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim/step/contact_block.h"
 
+#include <algorithm>
+#include <cmath>
+
+#include "sim/contact/sphere_indentation.h"
+#include "sim/math/linear.h"
+
 namespace calot {
 
 void ContactSystem::numberRows() {
@@ -30,6 +36,204 @@ void addNodalForces(std::span<const ContactBlock> blocks, std::size_t body, std:
         nodal[static_cast<std::size_t>(place.node[k])] += sign * place.weight[k] * force;
       }
     }
+  }
+}
+
+namespace {
+
+/// Size of the patch over which a node of the lattice spreads a force, in edges of its cells. 0.225 gives the
+/// compliance of the meshes of a block of 1,100 to 20,000 tetrahedra, less that of the half-space outside the cells, at
+/// vertices, edges and faces within 5 %; this is best down to 6 mm (docs/explanation/accuracy.md). Larger: softer
+/// contact on coarse meshes.
+constexpr double nodeSpread = 0.235;
+/// Down to here a dimple follows the half-space; deeper, tissue counts as pressed together, and the dimple goes at most
+/// `lastDepth` further (m). Larger: thin instruments sink through organs; smaller: deep presses are too firm. Assumed.
+constexpr double elasticDepth = 0.006;
+constexpr double lastDepth = 0.002;
+constexpr double forgottenDepth = 1e-7;  ///< dimples that faded below are dropped (m)
+constexpr double smallForce = 1e-12;     ///< N; below, a force has no direction
+
+std::uint64_t dimpleKey(std::size_t structure, std::size_t piece) {
+  return static_cast<std::uint64_t>(structure) << 8U | piece;
+}
+
+/// w = h / (h + beta): share of the elastic dimple in that of a step.
+double newShare(const Model& model, std::size_t structure, double step) {
+  const OrganModel& organ = model.organs()[model.structures()[structure].index];
+  return step / (step + organ.solid.material().stiffnessDamping);
+}
+
+/// E* = E / (1 - nu^2) (Pa).
+double contactModulus(const OrganModel& organ) {
+  const LameConstants& lame = organ.solid.material().lame;
+  return 4.0 * lame.mu * (lame.lambda + lame.mu) / (lame.lambda + 2.0 * lame.mu);
+}
+
+/// A half-space's dimple as it is in tissue of finite thickness, with its derivative.
+Indentation bounded(double depth) {
+  if (depth <= elasticDepth) return {depth, 1.0};
+  const double beyond = (depth - elasticDepth) / lastDepth;
+  return {elasticDepth + lastDepth * beyond / (1.0 + beyond), 1.0 / ((1.0 + beyond) * (1.0 + beyond))};
+}
+
+/// Writes the gaps, and the derivative where it is asked for.
+void evaluate(std::span<const double> lambda, bool derivative, ContactSystem& contact) {
+  const std::size_t n = contact.pressed.size();
+  contact.dimpleGap.assign(contact.rows, 0.0);
+  if (derivative) contact.dimpleCompliance.assign(n * n, 1.0);
+  for (Dimple& dimple : contact.dimples) dimple.force = 0.0;
+  for (const std::size_t b : contact.pressed) {
+    const ContactBlock& block = contact.blocks[b];
+    contact.dimples[block.dimple].force += block.share * lambda[block.row];
+  }
+  for (Dimple& dimple : contact.dimples) {
+    dimple.end = roundEnd(notNegative(dimple.force), dimple.radius, dimple.modulus);
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    const ContactBlock& a = contact.blocks[contact.pressed[i]];
+    const Dimple& dimple = contact.dimples[a.dimple];
+    double elastic = a.share * dimple.end.depth;
+    for (std::size_t j = 0; j < n; ++j) {
+      const ContactBlock& b = contact.blocks[contact.pressed[j]];
+      double slope = contact.sharedDimple[i * n + j];
+      elastic += slope * lambda[b.row];
+      if (!derivative) continue;
+      if (a.dimple == b.dimple) slope += a.share * b.share * dimple.end.slope;
+      contact.dimpleCompliance[i * n + j] *= dimple.newShare * slope;
+    }
+    const Indentation finite = bounded(elastic);
+    contact.dimpleGap[a.row] = dimple.newShare * (finite.depth - a.direction[0].dot(dimple.before));
+    if (!derivative || finite.slope == 1.0) continue;
+    // Symmetric: the rows of one dimple are about equally deep.
+    const double share = std::sqrt(finite.slope);
+    for (std::size_t j = 0; j < n; ++j) {
+      contact.dimpleCompliance[i * n + j] *= share;
+      contact.dimpleCompliance[j * n + i] *= share;
+    }
+  }
+}
+
+/// The direction in which a dimple gives way: mean of the smooth normals where the last step's forces act; where there
+/// were none, at the nearest point.
+void findWays(ContactSystem& contact) {
+  for (std::size_t d = 0; d < contact.dimples.size(); ++d) {
+    Vec3 sum = Vec3::Zero();
+    const ContactBlock* nearest = nullptr;
+    for (const std::size_t b : contact.pressed) {
+      const ContactBlock& block = contact.blocks[b];
+      if (block.dimple != d) continue;
+      sum += contact.carried[block.row] * block.smooth;
+      if (nearest == nullptr || block.gap[0] < nearest->gap[0]) nearest = &block;
+    }
+    if (!(sum.norm() > smallForce)) sum = nearest->smooth;
+    contact.dimples[d].way = sum.normalized();
+  }
+  for (const std::size_t b : contact.pressed) {
+    ContactBlock& block = contact.blocks[b];
+    block.share = block.direction[0].dot(contact.dimples[block.dimple].way);
+  }
+}
+
+}  // namespace
+
+Vec3 dimpleOf(const HandState& hand, std::size_t structure, std::size_t piece) {
+  const std::uint64_t key = dimpleKey(structure, piece);
+  for (std::size_t k = 0; k < hand.dimpleKey.size(); ++k) {
+    if (hand.dimpleKey[k] == key) return hand.dimple[k];
+  }
+  return Vec3::Zero();
+}
+
+double meshSpread(const OrganModel& organ, const SolidSolver::Impulse& place, const SolidSolver::Impulse& force) {
+  const double spread = nodeSpread * organ.cellSize;
+  const std::vector<Vec3>& rest = organ.solid.rest();
+  double inverse = 0.0;
+  for (std::size_t a = 0; a < place.count; ++a) {
+    const Vec3& at = rest[static_cast<std::size_t>(place.node[a])];
+    for (std::size_t b = 0; b < force.count; ++b) {
+      const double squared = (rest[static_cast<std::size_t>(force.node[b])] - at).squaredNorm();
+      inverse += place.weight[a] * force.weight[b] / std::sqrt(squared + spread * spread);
+    }
+  }
+  return 1.0 / inverse;
+}
+
+void findDimples(const Model& model, const State& state, double step, ContactSystem& contact) {
+  contact.dimples.clear();
+  contact.pressed.clear();
+  for (std::size_t b = 0; b < contact.blocks.size(); ++b) {
+    ContactBlock& block = contact.blocks[b];
+    if (!(block.radius > 0.0)) continue;
+    const std::uint64_t key = dimpleKey(block.structure, block.piece);
+    block.dimple = 0;
+    while (block.dimple < contact.dimples.size() &&
+           (contact.dimples[block.dimple].hand != block.hand || contact.dimples[block.dimple].key != key)) {
+      ++block.dimple;
+    }
+    contact.pressed.push_back(b);
+    if (block.dimple < contact.dimples.size()) continue;
+    Dimple dimple;
+    dimple.hand = block.hand;
+    dimple.key = key;
+    dimple.radius = block.radius;
+    dimple.modulus = contactModulus(model.organs()[model.structures()[block.structure].index]);
+    dimple.newShare = newShare(model, block.structure, step);
+    dimple.before = dimpleOf(state.hand[block.hand], block.structure, block.piece);
+    contact.dimples.push_back(dimple);
+  }
+  findWays(contact);
+  const std::size_t n = contact.pressed.size();
+  contact.sharedDimple.assign(n * n, 0.0);
+  for (std::size_t i = 0; i < n; ++i) {
+    const ContactBlock& a = contact.blocks[contact.pressed[i]];
+    for (std::size_t j = 0; j <= i; ++j) {
+      const ContactBlock& b = contact.blocks[contact.pressed[j]];
+      if (a.hand != b.hand || a.structure != b.structure) continue;
+      const double modulus = contact.dimples[a.dimple].modulus;
+      const double squared = (a.foot - b.foot).squaredNorm();
+      const double tool = 0.5 * (flatEndSpread(a.radius) + flatEndSpread(b.radius));
+      const double mesh = std::max(tool, 0.5 * (a.spread + b.spread));
+      const double k = a.share * b.share * contact.dimples[a.dimple].way.dot(contact.dimples[b.dimple].way) *
+                       (spreadCompliance(squared, tool, modulus) - spreadCompliance(squared, mesh, modulus));
+      contact.sharedDimple[i * n + j] = contact.sharedDimple[j * n + i] = k;
+    }
+  }
+}
+
+void evaluateDimples(std::span<const double> lambda, ContactSystem& contact) { evaluate(lambda, true, contact); }
+
+void evaluateDimpleGaps(std::span<const double> lambda, ContactSystem& contact) { evaluate(lambda, false, contact); }
+
+void storeDimples(const Model& model, double step, const ContactSystem& contact, State& state) {
+  for (std::size_t h = 0; h < handCount; ++h) {
+    HandState& hand = state.hand[h];
+    // An unloaded dimple fades.
+    std::size_t kept = 0;
+    for (std::size_t k = 0; k < hand.dimpleKey.size(); ++k) {
+      const std::uint64_t key = hand.dimpleKey[k];
+      const bool pressed = std::any_of(contact.dimples.begin(), contact.dimples.end(),
+                                       [&](const Dimple& d) { return d.hand == h && d.key == key; });
+      const Vec3 left = (1.0 - newShare(model, key >> 8U, step)) * hand.dimple[k];
+      if (pressed || left.norm() < forgottenDepth) continue;
+      hand.dimpleKey[kept] = key;
+      hand.dimple[kept++] = left;
+    }
+    hand.dimpleKey.resize(kept);
+    hand.dimple.resize(kept);
+  }
+  for (std::size_t d = 0; d < contact.dimples.size(); ++d) {
+    const Dimple& dimple = contact.dimples[d];
+    double work = 0.0;
+    for (const std::size_t b : contact.pressed) {
+      const ContactBlock& block = contact.blocks[b];
+      if (block.dimple != d) continue;
+      work += contact.lambda[block.row] * (contact.dimpleGap[block.row] + block.direction[0].dot(dimple.before));
+    }
+    const Vec3 now = dimple.force > smallForce ? Vec3(work / dimple.force * dimple.way)
+                                               : Vec3((1.0 - dimple.newShare) * dimple.before);
+    if (now.norm() < forgottenDepth) continue;
+    state.hand[dimple.hand].dimpleKey.push_back(dimple.key);
+    state.hand[dimple.hand].dimple.push_back(now);
   }
 }
 

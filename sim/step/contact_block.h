@@ -3,14 +3,18 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "sim/contact/contact_solver.h"
 #include "sim/contact/sphere_indentation.h"
-#include "sim/instruments/port.h"
+#include "sim/instruments/instrument_shape.h"
+#include "sim/scene/model.h"
 #include "sim/scene/samples.h"
+#include "sim/scene/state.h"
+#include "sim/scene/step_result.h"
 #include "sim/solid/solid.h"
 
 namespace calot {
@@ -36,7 +40,7 @@ struct ContactBlock {
   std::array<double, 3> gap{};  ///< now; slip counts from the step's beginning (m)
   Vec3 where = Vec3::Zero();    ///< of instruments on each other: the place (m, W)
   std::uint64_t key = 0;        ///< names the contact point: equal in two steps means the same one
-  /// For an instrument on an organ (contact_dimples.h): the capsule's radius, its number, the place on the skin, the
+  /// For an instrument on an organ (findDimples()): the capsule's radius, its number, the place on the skin, the
   /// size of the patch over which the mesh spreads a force there (m), and the dimple that it presses.
   double radius = 0.0;
   std::size_t piece = 0;
@@ -68,7 +72,7 @@ struct InstrumentTravel {
 };
 using InstrumentTravels = std::array<InstrumentTravel, handCount>;
 
-/// Pressure of one capsule of an instrument on an organ (contact_dimples.h).
+/// Pressure of one capsule of an instrument on an organ (findDimples()).
 struct Dimple {
   std::size_t hand = 0;
   std::uint64_t key = 0;       ///< structure and capsule
@@ -110,5 +114,71 @@ struct ContactSystem {
 /// @param forces a value per row @param nodes of the body
 void addNodalForces(std::span<const ContactBlock> blocks, std::size_t body, std::size_t nodes,
                     std::span<const double> forces, double scale, std::vector<Vec3>& nodal);
+
+/// The events and missed tolerances of the step at hand, in the order in which the stages report them.
+class StepLog {
+ public:
+  /// Event::hand of an event that no instrument causes.
+  static constexpr std::size_t noHand = 255;
+
+  /// @param result outlives the log; its events and misses start empty.
+  explicit StepLog(StepResult& result) : result_(result) {
+    result_.events.clear();
+    result_.misses = 0;
+  }
+
+  /// @param subject a structure, or what EventKind names. @param position p_W (m)
+  void emit(EventKind kind, std::size_t hand, std::size_t subject, const Vec3& position, double value) {
+    result_.events.push_back(
+        {result_.step, kind, static_cast<std::uint8_t>(hand), static_cast<std::uint16_t>(subject), position, value});
+  }
+  /// @param tolerance a bit of calot::miss
+  void miss(std::uint32_t tolerance) { result_.misses |= tolerance; }
+  [[nodiscard]] bool hasMissed(std::uint32_t tolerance) const { return (result_.misses & tolerance) != 0; }
+
+ private:
+  StepResult& result_;
+};
+
+// The dimple under an instrument that presses on an organ, which the mesh is too coarse to resolve.
+//
+// A force on a mesh of cells of size h acts as if it were spread over a patch of size e: the mesh is stiffer to an
+// instrument than tissue is, the more so the coarser it is. What is missing is known of the half-space that tissue is
+// near the surface (sim/contact/sphere_indentation.h). It gives way along its smooth normal N, of which the rows'
+// normals n_i have the shares p_i = n_i . N. Normal rows i of a hand on an organ, with forces l at the places x of the
+// skin, open by
+//   p_i u_i(l),  u_i = sum_j K_ij p_j l_j + g(F),
+//   K_ij = k(|x_i - x_j|; s) - k(|x_i - x_j|; e),  F = sum of p_j l_j over the rows of one capsule of the instrument,
+// k the Green's function of a load that is spread (by the instrument, s; by the mesh, e), and g by how much deeper a
+// round end sinks in than a flat one. So the rows of a capsule share one dimple, however many the mesh makes, and
+// capsules side by side press on each other's.
+//
+// Tissue is viscous: u + beta du/dt takes the place of u, beta the organ's stiffness damping, as in its mesh. By
+// implicit Euler, u = w u(l) + (1 - w) u_before with w = h / (h + beta), which dissipates at any step. u_before is
+// State.
+
+/// Depth by which a structure's skin gives way to a hand's capsule beyond what the mesh resolves (m): detection takes
+/// the capsule as much farther out.
+Vec3 dimpleOf(const HandState& hand, std::size_t structure, std::size_t piece);
+
+/// Size of the patch over which an organ's mesh spreads a force that its nodes take, as seen from a place on its skin
+/// (m).
+double meshSpread(const OrganModel& organ, const SolidSolver::Impulse& place, const SolidSolver::Impulse& force);
+
+/// Collects the dimples of the blocks and what does not change within a step: `contact.dimples`,
+/// `contact.sharedDimple`.
+/// @pre rows are numbered
+void findDimples(const Model& model, const State& state, double step, ContactSystem& contact);
+
+/// By how much the dimples open the rows' gaps under these forces, and the derivative of that: `contact.dimpleGap`,
+/// `contact.dimpleCompliance`. @pre findDimples()
+void evaluateDimples(std::span<const double> lambda, ContactSystem& contact);
+
+/// The same without the derivative.
+void evaluateDimpleGaps(std::span<const double> lambda, ContactSystem& contact);
+
+/// Keeps the dimples for the next step; those that nothing presses fade. @pre `contact.dimpleGap` is that of
+/// `contact.lambda`
+void storeDimples(const Model& model, double step, const ContactSystem& contact, State& state);
 
 }  // namespace calot

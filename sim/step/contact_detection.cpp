@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim/math/no_fused_pairs.h"  // first
 
-#include "sim/step/contact_detection.h"
+#include "sim/step/stages.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "sim/math/linear.h"
-#include "sim/step/contact_dimples.h"
-#include "sim/step/instrument_motion.h"
-#include "sim/step/sleeping.h"
+#include "sim/step/contact_block.h"
 
 namespace calot {
 
@@ -70,18 +68,7 @@ void ContactDetection::findInstrumentContacts(Surfaces& surfaces, const Bodies& 
       for (const Vec3& v : bodies[model_.structures()[s].body].velocity(state))
         speed = std::max(speed, v.squaredNorm());
       const double far = travels[h].reach + std::min(std::sqrt(speed) * bodies.step(), maxSlide);
-      found_.clear();
-      for (const Capsule& c : instrument_[h].capsule) {
-        const double allowed = allowedDepth(model_, state, h, c, s);
-        const std::size_t before = found_.size();
-        // In its dimple the skin has given way: the capsule meets the mesh that much farther out.
-        const Vec3 dimple = dimpleOf(hand, s, c.piece);
-        const Vec3 p0 = c.p0 + dimple;
-        const Vec3 p1 = c.p1 + dimple;
-        const std::span<const std::uint32_t> near = surfaces.patchesNear(s, p0, p1, capsuleSearch(c.radius, far));
-        capsuleContacts(surfaces.mesh(s), surfaces.points(s), near, p0, p1, c.radius, far, c.piece, found_);
-        if (allowed > 0.0) allowDepth(allowed, far, before, found_);
-      }
+      instrumentContacts(model_, surfaces, state, h, instrument_[h], s, far, found_);
       for (const SurfaceContact& contact : found_) addInstrumentBlock(surfaces, state, h, s, contact, blocks);
     }
   }

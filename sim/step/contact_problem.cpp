@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
-#include "sim/step/contact_problem.h"
+#include "sim/step/stages.h"
 
 #include <algorithm>
 #include <array>
 
-#include "sim/step/contact_dimples.h"
+#include "sim/step/contact_block.h"
 
 namespace calot {
 
@@ -14,14 +13,6 @@ namespace {
 /// Relative weight of a skin more compliant than the mesh can show; keeps rows that repeat each other apart. Larger
 /// softens contact; smaller costs Newton steps. Measured.
 constexpr double skinShare = 1e-4;
-
-/// A nodal quantity at a contact point.
-Vec3 at(const SolidSolver::Impulse& place, std::span<const Vec3> values) {
-  Vec3 sum = Vec3::Zero();
-  for (std::size_t k = 0; k < place.count; ++k)
-    sum += place.weight[k] * values[static_cast<std::size_t>(place.node[k])];
-  return sum;
-}
 
 }  // namespace
 
@@ -46,9 +37,9 @@ void measureGaps(const Model& model, const Bodies& bodies, const Activity& activ
   for (const ContactBlock& block : contact.blocks) {
     Vec3 apart = Vec3::Zero();
     if (block.body != ContactBlock::none && activity.awake[block.body])
-      apart -= h * at(block.place, bodies[block.body].freeVelocity());
+      apart -= h * block.place.of(bodies[block.body].freeVelocity());
     if (block.other != ContactBlock::none && activity.awake[block.other]) {
-      apart += h * at(block.otherPlace, bodies[block.other].freeVelocity());
+      apart += h * block.otherPlace.of(bodies[block.other].freeVelocity());
     }
     const ToolRow q = block.isTissueOnTissue() ? ToolRow(ToolRow::Zero()) : stretch[block.hand];
     for (std::size_t k = 0; k < block.rows(); ++k) {

@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
-#include "sim/step/contact_solution.h"
+#include "sim/step/stages.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "sim/step/contact_dimples.h"
-#include "sim/step/contact_problem.h"
-#include "sim/step/instrument_motion.h"
+#include "sim/step/contact_block.h"
 
 namespace calot {
 
@@ -204,20 +201,6 @@ void ContactSolution::run(Bodies& bodies, const Activity& activity, const Instru
   }
 }
 
-namespace {
-
-/// Velocity of a body at a contact point (m/s); zero without a body.
-Vec3 velocityAt(const Bodies& bodies, const State& state, const ContactBlock& block) {
-  Vec3 v = Vec3::Zero();
-  if (block.body == ContactBlock::none) return v;
-  const std::span<const Vec3> velocity = bodies[block.body].velocity(state);
-  for (std::size_t k = 0; k < block.place.count; ++k)
-    v += block.place.weight[k] * velocity[static_cast<std::size_t>(block.place.node[k])];
-  return v;
-}
-
-}  // namespace
-
 void reduceToHand(const Bodies& bodies, const State& state, const InstrumentTravels& travels,
                   const ContactSystem& contact, std::size_t hand, std::uint64_t step, ContactSet& set) {
   set.step = static_cast<std::int64_t>(step);
@@ -234,7 +217,8 @@ void reduceToHand(const Bodies& bodies, const State& state, const InstrumentTrav
     if (tool == nullptr) continue;
     set.kind.push_back(block.kind);
     set.limit.push_back(block.limit);
-    const Vec3 velocity = velocityAt(bodies, state, block);
+    Vec3 velocity = Vec3::Zero();
+    if (block.body != ContactBlock::none) velocity = block.place.of(bodies[block.body].velocity(state));
     for (std::size_t k = 0; k < block.rows(); ++k) {
       const std::size_t i = block.row + k;
       double free = contact.freeGap[i] - (*tool)[k].dot(travels[hand].stretch);

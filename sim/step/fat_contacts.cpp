@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim/math/no_fused_pairs.h"  // first
 
-#include "sim/step/fat_contacts.h"
+#include "sim/step/tissue_contacts.h"
 
 #include <algorithm>
 #include <array>
@@ -11,13 +11,11 @@
 #include <numeric>
 
 #include "sim/contact/capsule_contact.h"
-#include "sim/contact/surface_normal.h"
+#include "sim/contact/surface_patches.h"
 #include "sim/geometry/closest_point.h"
 #include "sim/math/elementary.h"
 #include "sim/math/linear.h"
-#include "sim/step/contact_problem.h"
-#include "sim/step/tissue_contacts.h"
-#include "sim/step/vessel_contacts.h"
+#include "sim/step/stages.h"
 
 namespace calot {
 

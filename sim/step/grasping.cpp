@@ -4,8 +4,8 @@
 #include <algorithm>
 
 #include "sim/geometry/closest_point.h"
-#include "sim/instruments/jaw_space.h"
-#include "sim/step/tissue_damage.h"
+#include "sim/instruments/instrument_shape.h"
+#include "sim/step/tissue_effects.h"
 
 namespace calot {
 

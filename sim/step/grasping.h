@@ -7,8 +7,7 @@
 #include <vector>
 
 #include "sim/step/contact_block.h"
-#include "sim/step/penetration_resolver.h"
-#include "sim/step/step_log.h"
+#include "sim/step/placed_instrument.h"
 
 namespace calot {
 

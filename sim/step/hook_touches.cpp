@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim/math/no_fused_pairs.h"  // first
 
-#include "sim/step/hook_touches.h"
+#include "sim/step/tissue_effects.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "sim/geometry/closest_point.h"
-#include "sim/geometry/triangle_cells.h"
-#include "sim/step/contact_dimples.h"
-#include "sim/step/instrument_clash.h"
+#include "sim/geometry/triangle_mesh.h"
+#include "sim/step/contact_block.h"
+#include "sim/step/placed_instrument.h"
 
 namespace calot {
 
@@ -74,11 +74,7 @@ double shareOf(const HookSweep& sweep, const MovingPoint& point, double reach) {
 }
 
 Vec3 velocityOf(const Skin& skin, std::span<const Vec3> velocity, const Index3& corner, const Vec3& weight) {
-  const SolidSolver::Impulse place = skin.influence({corner[0], corner[1], corner[2]}, weight);
-  Vec3 sum = Vec3::Zero();
-  for (std::size_t k = 0; k < place.count; ++k)
-    sum += place.weight[k] * velocity[static_cast<std::size_t>(place.node[k])];
-  return sum;
+  return skin.influence({corner[0], corner[1], corner[2]}, weight).of(velocity);
 }
 
 }  // namespace

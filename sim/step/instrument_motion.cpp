@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
-#include "sim/step/instrument_motion.h"
+#include "sim/step/stages.h"
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "sim/contact/capsule_contact.h"
+#include "sim/haptics/haptic_tick.h"
 #include "sim/math/fields.h"
 #include "sim/math/linear.h"
-#include "sim/scene/measurement.h"
-#include "sim/step/contact_dimples.h"
-#include "sim/step/hand_haptics.h"
-#include "sim/step/instrument_clash.h"
+#include "sim/scene/description.h"
+#include "sim/step/contact_block.h"
+#include "sim/step/placed_instrument.h"
 
 namespace calot {
 

@@ -4,13 +4,8 @@
 #include <cassert>
 
 #include "sim/math/floating_point.h"
-#include "sim/step/contact_detection.h"
-#include "sim/step/contact_problem.h"
-#include "sim/step/contact_solution.h"
-#include "sim/step/instrument_motion.h"
-#include "sim/step/publication.h"
+#include "sim/step/stages.h"
 #include "sim/step/tissue_effects.h"
-#include "sim/step/unconstrained_motion.h"
 
 namespace calot {
 

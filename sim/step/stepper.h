@@ -12,7 +12,7 @@
 #include "sim/scene/samples.h"
 #include "sim/scene/state.h"
 #include "sim/scene/step_result.h"
-#include "sim/solid/compliance_store.h"
+#include "sim/solid/rest_compliance.h"
 
 namespace calot {
 

@@ -2,7 +2,7 @@
 #include "sim/step/surfaces.h"
 
 #include "sim/geometry/closest_point.h"
-#include "sim/step/solid_body.h"
+#include "sim/step/body.h"
 
 namespace calot {
 

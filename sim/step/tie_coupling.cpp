@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim/math/no_fused_pairs.h"  // first
 
-#include "sim/step/tie_coupling.h"
+#include "sim/step/bodies.h"
 
 #include <algorithm>
 #include <array>

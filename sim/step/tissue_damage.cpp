@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim/math/no_fused_pairs.h"  // first
 
-#include "sim/step/tissue_damage.h"
+#include "sim/step/tissue_effects.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "sim/geometry/closest_point.h"
-#include "sim/instruments/jaw_space.h"
+#include "sim/instruments/instrument_shape.h"
 #include "sim/math/elementary.h"
 #include "sim/math/linear.h"
-#include "sim/vessel/centre_line.h"
-#include "sim/vessel/clips.h"
+#include "sim/vessel/beam_state.h"
 
 namespace calot {
 

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/vessel/centre_line.h"
+#include "sim/vessel/beam_state.h"
 
 namespace calot {
 

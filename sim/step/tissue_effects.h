@@ -2,14 +2,136 @@
 // Stage 8 of a step: what instruments and tension did to the tissue.
 #pragma once
 
+#include <array>
+#include <cstdint>
+#include <span>
 #include <vector>
 
+#include "sim/connective/connective_tissue.h"
+#include "sim/scene/model.h"
+#include "sim/scene/state.h"
 #include "sim/step/bodies.h"
-#include "sim/step/hook_touches.h"
-#include "sim/step/step_log.h"
-#include "sim/step/tissue_damage.h"
+#include "sim/step/contact_block.h"
+#include "sim/step/placed_instrument.h"
+#include "sim/step/surfaces.h"
+#include "sim/vessel/beam_state.h"
 
 namespace calot {
+
+// The way of an energised hook through a step. Internal to this folder.
+
+/// An energised hook's way through a step.
+struct HookSweep {
+  std::vector<MovingCapsule> electrode;  ///< what carries current; empty: no current
+  double pace = 1.0;                     ///< at which it divides tissue, of that of the cutting current
+  double charring = 1.0;                 ///< char in the same time, of that by the coagulating current
+  std::vector<std::uint8_t> piece;       ///< number of each capsule of the electrode
+  std::size_t hand = 0;                  ///< that holds it
+
+  [[nodiscard]] bool energised() const { return !electrode.empty(); }
+};
+
+/// Per hand. With both pedals pressed the current is the cutting one.
+using HookSweeps = std::array<HookSweep, handCount>;
+
+void sweepHooks(const Model& model, const InstrumentTravels& travels, const State& state, HookSweeps& sweeps);
+
+/// Touched is what is no farther from the electrode than the scene's `reach`: strands, cells of organs' skins, stations
+/// of vessels' walls, the surface of fat. Every share of the step is exact for straight motion (sim/geometry/dwell.h),
+/// so that a sweep gives the same dose in steps of any length.
+struct HookTouches {
+  struct Cell {
+    std::uint32_t structure = 0;  ///< an organ's
+    std::uint32_t triangle = 0;
+    std::uint32_t cell = 0;  ///< of the triangle
+    double share = 0.0;      ///< of the step
+  };
+  struct Station {
+    std::uint32_t structure = 0;  ///< a vessel's
+    std::uint32_t station = 0;    ///< of its branch
+    double share = 0.0;           ///< of the step
+  };
+
+  std::vector<std::vector<StrandTouch>> strand;  ///< per connective tissue
+  std::vector<Cell> cell;
+  std::vector<Station> station;
+  std::vector<double> fat;  ///< per body of fat: area touched (m^2)
+  double area = 0.0;        ///< of everything touched, in the mean over the step (m^2)
+
+  [[nodiscard]] bool any() const { return area > 0.0; }
+  /// Share of the power that each contact point gets: all of it as long as no more than `spot` is touched (m^2).
+  [[nodiscard]] double intensity(double spot) const { return area > spot ? spot / area : 1.0; }
+};
+
+class HookTouchSearch {
+ public:
+  explicit HookTouchSearch(const Model& model) : model_(model) {}
+
+  /// @pre surfaces are current, organs and instruments are where the step led them
+  void run(const HookSweep& sweep, Bodies& bodies, Surfaces& surfaces, const State& state, HookTouches& out);
+
+ private:
+  void touchConnective(const HookSweep& sweep, double step, const State& state, HookTouches& out) const;
+  void touchOrgan(const HookSweep& sweep, std::size_t structure, const Bodies& bodies, Surfaces& surfaces,
+                  const State& state, HookTouches& out);
+  void touchVessel(const HookSweep& sweep, std::size_t structure, const Bodies& bodies, const State& state,
+                   HookTouches& out) const;
+  void touchFat(const HookSweep& sweep, std::size_t structure, const Bodies& bodies, Surfaces& surfaces,
+                const State& state, HookTouches& out);
+  /// Triangles of a skin that the sweep may touch, ascending.
+  void findTriangles(const HookSweep& sweep, std::size_t structure, const Bodies& bodies, Surfaces& surfaces,
+                     const State& state);
+
+  /// The electrode as an organ's mesh meets it: out of the dimples that it presses (dimpleOf()).
+  void takeOutOfDimples(const HookSweep& sweep, std::size_t structure, const State& state);
+
+  const Model& model_;
+  HookSweep met_;
+  std::vector<std::uint32_t> triangle_;
+};
+
+// Damage that more than one stage does: organs opened, vessels parted.
+
+/// Opens an organ that has a wall to be opened, once. @param exposure cautery there (s); 0: torn
+void perforateOrgan(const Model& model, std::size_t organ, const Vec3& where, double exposure, State& state,
+                    Activity& activity, StepLog& log);
+
+/// Parts a vessel; reports it, what that leaves open, and the clips on either side of a cut.
+/// @param kind vesselCut or vesselBurned
+void partVessel(const Model& model, std::size_t structure, const BeamPoint& where, EventKind kind, std::size_t hand,
+                Bodies& bodies, Surfaces& surfaces, State& state, Activity& activity, StepLog& log);
+
+/// Reports what a vessel that tore in this step leaves open. @param element that tore
+void reportTear(const Model& model, std::size_t tree, std::size_t element, State& state, StepLog& log);
+
+// Clip appliers and scissors on vessels. Internal to this folder.
+
+/// Effects of the jaws of clip appliers and scissors when they close after having been opened. Whatever a hand can do
+/// is done and reported; nothing is refused.
+class VesselTools {
+ public:
+  explicit VesselTools(const Model& model) : model_(model) {}
+  void run(Bodies& bodies, Surfaces& surfaces, State& state, Activity& activity, StepLog& log);
+
+ private:
+  /// Part of a vessel that runs between jaws.
+  struct Crossing {
+    std::size_t structure = ContactBlock::none;
+    BeamPoint place;
+    double depth = 0.0;  ///< of its centre line from the jaws' crotch (m)
+    double sine = 1.0;   ///< of the angle between vessel and jaws
+    Pose frame;          ///< centre line there
+  };
+
+  [[nodiscard]] Crossing vesselBetween(const State& state, std::size_t hand, double length) const;
+  bool isGripped(const State& state, std::size_t hand, const Crossing& crossing);
+  void closeOne(std::size_t hand, Bodies& bodies, Surfaces& surfaces, State& state, Activity& activity, StepLog& log);
+  void setClipOn(std::size_t hand, const Crossing& crossing, Bodies& bodies, State& state, Activity& activity,
+                 StepLog& log) const;
+
+  const Model& model_;
+  PlacedInstrument instrument_;
+};
 
 // Effects of the energised hook on fat, organs and vessels. Internal to this folder.
 //

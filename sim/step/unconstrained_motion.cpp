@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sim/step/unconstrained_motion.h"
+#include "sim/step/stages.h"
 
 #include <algorithm>
 

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sim/step/vessel_contacts.h"
+#include "sim/step/tissue_contacts.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
-#include "sim/contact/surface_normal.h"
+#include "sim/contact/surface_patches.h"
 #include "sim/geometry/closest_point.h"
 #include "sim/math/linear.h"
-#include "sim/step/tissue_contacts.h"
 
 namespace calot {
 

@@ -3,8 +3,6 @@
 
 #include <utility>
 
-#include "sim/tissue/description_fields.h"
-
 namespace calot {
 
 Field roleField(const Access& access, std::initializer_list<StructureRole> roles) {

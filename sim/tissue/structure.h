@@ -1,22 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Contributions of all kinds of tissue to a Model: structures that can be touched, and ties between bodies.
+// Contributions of all kinds of tissue to a Model: structures that can be touched, ties between bodies, and fields
+// that several parts of a scene have.
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <initializer_list>
 #include <string>
 #include <vector>
 
 #include "sim/geometry/triangle_mesh.h"
 #include "sim/math/fields.h"
 #include "sim/math/linear.h"
+#include "sim/math/record.h"
 #include "sim/solid/solid.h"
 #include "sim/tissue/structure_role.h"
 
 namespace calot {
-
-struct Field;
 
 /// Position of a kind of tissue in the list of kinds (sim/tissue/tissues.h).
 using TissueId = std::uint8_t;
@@ -49,6 +50,14 @@ struct Tie {
   double damping = 0.0;        ///< N s/m
 };
 
+/// Index of the first of this name, or list.size().
+template <class Named>
+std::size_t indexNamed(const std::vector<Named>& list, const std::string& name) {
+  std::size_t i = 0;
+  while (i < list.size() && list[i].name != name) ++i;
+  return i;
+}
+
 // Common parts of the descriptions of several kinds of tissue.
 
 /// Closed triangle surface of an organ in W, in the reference configuration (m).
@@ -76,6 +85,8 @@ inline SolidModel::Material solidMaterial(const MaterialDescription& m) {
   return {lameConstants(m.youngModulus, m.poissonRatio), m.density, m.massDamping, m.stiffnessDamping};
 }
 
+class Model;
+struct SceneDescription;
 struct SceneView;
 struct State;
 
@@ -86,5 +97,15 @@ class TissueViewer {
   /// @pre the state is one of the model's
   virtual void addTo(SceneView& view, const State& state) = 0;
 };
+
+/// A name that goes into columns and file names.
+inline constexpr TextRule sceneName{64, "^[a-z0-9][a-z0-9-]*$",
+                                    "small letters, digits and hyphens are allowed, the first no hyphen"};
+
+/// A coordinate (m): a scene is a part of one abdomen, so nothing lies farther from the origin.
+inline constexpr Range sceneCoordinate = within(-1, 1);
+
+/// The key "role" of a tissue, which has one of these roles, or `other`.
+Field roleField(const Access& access, std::initializer_list<StructureRole> roles);
 
 }  // namespace calot

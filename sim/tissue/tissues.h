@@ -6,7 +6,7 @@
 // A kind is a struct with
 //   Descriptions, Models, States, Results, Names   what it adds to SceneDescription, Model, State, StepResult, and to
 //                                                  the names that a recording stores: plain structs, inherited by those
-//   Result              what a step reports of one of them, with its list of fields (sim/tissue/result_field.h)
+//   Result              what a step reports of one of them, with its list of fields (sim/math/record.h)
 //   results             the group of the recording that holds them
 //   sceneKey()          its list in SceneDescription, as a field of scene files (sim/math/record.h)
 //   componentPrefix     of its digests' names
@@ -17,8 +17,9 @@
 //   listStructures()    what of it can be touched
 //   bodies()            how many linear systems it is solved as
 //   nameOf()            of the i-th of its components
-//   resize(), start(), fits()  of its part of State: sizes; the state before the first step; whether bytes from outside
-//                       could be a State of this model
+//   start(), fits()     of its part of State: the state before the first step; whether bytes from outside could be a
+//                       State of this model
+//   resize()            of its part of StepResult
 //   makeViewer()        its surfaces in a scene view
 #pragma once
 

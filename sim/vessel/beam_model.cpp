@@ -9,8 +9,8 @@
 #include <numbers>
 #include <vector>
 
-#include "sim/vessel/beam_element.h"
-#include "sim/vessel/centre_line.h"
+#include "sim/math/linear.h"
+#include "sim/vessel/beam_state.h"
 
 namespace calot {
 

@@ -148,7 +148,7 @@ class BeamModel {
 // Loads of vessels in the reference configuration: their stiffness in the reference configuration, and the loads of
 // their elements there.
 
-/// Adds the stiffness of sim/vessel/beam_element.h in the reference configuration.
+/// Adds the stiffness of sim/vessel/beam_model.h in the reference configuration.
 /// @param factor of all of it
 /// @param row per node: the row of its place (N/m), followed by that of its rotation about W's axes (N m); -1: fixed
 void addStiffness(const BeamModel& model, double factor, std::span<const int> row, SymmetricBlocks& matrix);

@@ -7,8 +7,8 @@
 #include <cassert>
 #include <cmath>
 
-#include "sim/vessel/beam_element.h"
-#include "sim/vessel/centre_line.h"
+#include "sim/vessel/beam_model.h"
+#include "sim/vessel/beam_state.h"
 
 namespace calot {
 

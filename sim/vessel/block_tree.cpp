@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim/math/no_fused_pairs.h"  // first
 
-#include "sim/vessel/block_tree.h"
+#include "sim/vessel/beam_solver.h"
 
 #include <cassert>
 #include <cmath>

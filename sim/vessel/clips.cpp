@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim/math/no_fused_pairs.h"  // first
 
-#include "sim/vessel/clips.h"
+#include "sim/vessel/beam_state.h"
 
 #include <algorithm>
 #include <cassert>
@@ -9,7 +9,6 @@
 #include <numbers>
 
 #include "sim/math/linear.h"
-#include "sim/vessel/centre_line.h"
 
 namespace calot {
 

@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "sim/math/elementary.h"
-#include "sim/vessel/clips.h"
+#include "sim/vessel/beam_state.h"
 
 namespace calot {
 

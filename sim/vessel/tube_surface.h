@@ -16,7 +16,6 @@
 
 #include "sim/math/linear.h"
 #include "sim/vessel/beam_state.h"
-#include "sim/vessel/centre_line.h"
 
 namespace calot {
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/step/hand_haptics.h"
+#include "sim/haptics/haptic_tick.h"
 #include "sim/step/stepper.h"
 #include "tests/sim/scene/support/scenes.h"
 

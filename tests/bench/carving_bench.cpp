@@ -8,10 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "sim/carving/adaptive_surface.h"
-#include "sim/carving/carve.h"
+#include "sim/carving/carved_field.h"
 #include "sim/carving/carved_surface.h"
-#include "sim/carving/islands.h"
 #include "sim/geometry/closest_point_transform.h"
 #include "sim/math/random.h"
 #include "tests/bench/benchmarks.h"

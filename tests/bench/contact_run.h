@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "sim/step/hand_haptics.h"
+#include "sim/haptics/haptic_tick.h"
 #include "sim/step/stepper.h"
 #include "tests/bench/touch_motion.h"
 

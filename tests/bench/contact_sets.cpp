@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "sim/step/hand_haptics.h"
+#include "sim/haptics/haptic_tick.h"
 #include "sim/step/stepper.h"
 #include "tests/bench/touch_motion.h"
 

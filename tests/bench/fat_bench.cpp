@@ -10,7 +10,7 @@
 
 #include "sim/contact/broad_phase.h"
 #include "sim/fat/fat_body.h"
-#include "sim/fat/fat_picture.h"
+#include "sim/fat/fat_model.h"
 #include "sim/math/executor.h"
 #include "sim/math/random.h"
 #include "tests/bench/benchmarks.h"

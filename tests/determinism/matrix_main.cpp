@@ -11,7 +11,6 @@
 #include "sim/haptics/haptic_tick.h"
 #include "sim/scene/flat.h"
 #include "sim/scene/version.h"
-#include "sim/step/hand_haptics.h"
 #include "sim/step/stepper.h"
 #include "tests/determinism/large_solid.h"
 #include "tests/determinism/thread_executor.h"

@@ -79,7 +79,7 @@ TEST(Extending, AKindOfTissueJoinsTheList) {
   ASSERT_EQ(example::CordKind::build(scene, model), "");
   WithCords::States states;
   EXPECT_FALSE(example::CordKind::fits(model, states));
-  example::CordKind::resize(model, states);
+  example::CordKind::start(model, states);
   EXPECT_TRUE(example::CordKind::fits(model, states));
   std::string seen;
   example::CordKind::components(

@@ -7,7 +7,7 @@
 #include <memory>
 #include <vector>
 
-#include "sim/vessel/beam_element.h"
+#include "sim/vessel/beam_model.h"
 #include "tests/sim/scene/support/scenes.h"
 
 namespace calot {

@@ -9,10 +9,9 @@
 #include <vector>
 
 #include "sim/math/random.h"
-#include "sim/solid/solid_weight.h"
-#include "sim/vessel/beam_element.h"
+#include "sim/scene/weight_system.h"
 #include "sim/vessel/beam_model.h"
-#include "sim/vessel/centre_line.h"
+#include "sim/vessel/beam_state.h"
 #include "tests/accuracy/support/cube_box.h"
 #include "tests/accuracy/support/kuhn_box.h"
 #include "tests/accuracy/support/settle.h"

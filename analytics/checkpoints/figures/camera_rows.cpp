@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "recorder/sources/scope/endoscope.h"
-#include "sim/scene/measurement.h"
+#include "sim/scene/description.h"
 
 namespace calot::analytics {
 namespace {

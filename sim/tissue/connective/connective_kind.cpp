@@ -7,7 +7,6 @@
 #include "sim/scene/model.h"
 #include "sim/scene/scene_view.h"
 #include "sim/scene/state.h"
-#include "sim/tissue/description_fields.h"
 #include "sim/tissue/structure.h"
 
 namespace calot {
@@ -45,14 +44,9 @@ namespace {
 /// @return its fault, or nothing
 std::string addConnective(const SceneDescription& scene, const ConnectiveDescription& description, Model& model) {
   const std::vector<OrganModel>& organs = model.organs();
-  const auto index = [&](const std::string& name) {
-    std::size_t o = 0;
-    while (o < organs.size() && organs[o].name != name) ++o;
-    return o;
-  };
   const std::string what = "connective tissue '" + description.name + "': ";
-  const std::size_t a = index(description.first);
-  const std::size_t b = index(description.second);
+  const std::size_t a = indexNamed(organs, description.first);
+  const std::size_t b = indexNamed(organs, description.second);
   for (const auto& [organ, name] : {std::pair{a, description.first}, std::pair{b, description.second}}) {
     if (organ == organs.size()) return what + "the scene has no organ '" + name + "'";
   }
@@ -122,8 +116,6 @@ std::string ConnectiveKind::build(const SceneDescription& scene, Model& model) {
 const std::string& ConnectiveKind::nameOf(const Model& model, std::size_t index) {
   return model.connective()[index].name;
 }
-
-void ConnectiveKind::resize(const Model& model, States& states) { states.connective.resize(model.connective().size()); }
 
 void ConnectiveKind::start(const Model& model, States& states) {
   for (const ConnectiveModel& connective : model.connective())

@@ -10,7 +10,7 @@
 
 #include "sim/connective/connective_tissue.h"
 #include "sim/math/fields.h"
-#include "sim/tissue/result_field.h"
+#include "sim/math/record.h"
 #include "sim/tissue/structure.h"
 
 namespace calot {
@@ -88,12 +88,6 @@ struct ConnectiveView {
   std::vector<std::array<std::uint32_t, 2>> sheet;  ///< pairs of strands that a sheet joins while both are attached
 };
 
-class Model;
-struct SceneDescription;
-struct SceneView;
-struct State;
-class TissueViewer;
-
 /// Connective tissue as a kind of tissue; sim/tissue/tissues.h documents the members.
 struct ConnectiveKind {
   using Result = ConnectiveResult;
@@ -130,7 +124,6 @@ struct ConnectiveKind {
                              std::vector<StructureModel>& /*structures*/) {}
   static std::size_t bodies(const Models& /*models*/) { return 0; }
   static const std::string& nameOf(const Model& model, std::size_t index);
-  static void resize(const Model& model, States& states);
   static void start(const Model& model, States& states);
   static bool fits(const Model& model, const States& states);
   static void resize(const Model& model, Results& results);

@@ -1,19 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "sim/tissue/fat/fat_tissue.h"
 
 #include <algorithm>
 #include <limits>
 
-#include "sim/carving/adaptive_surface.h"
-#include "sim/fat/fat_picture.h"
+#include "sim/carving/carved_surface.h"
+#include "sim/fat/fat_model.h"
 #include "sim/geometry/closest_point.h"
 #include "sim/geometry/surface_distance.h"
 #include "sim/math/linear.h"
 #include "sim/scene/model.h"
 #include "sim/scene/scene_view.h"
 #include "sim/scene/state.h"
-#include "sim/tissue/description_fields.h"
 #include "sim/tissue/structure.h"
 
 namespace calot {
@@ -111,14 +109,12 @@ std::string addFat(const SceneDescription& scene, const FatDescription& descript
   for (const FatAttachmentDescription& attachment : description.attachments) {
     FatPartner partner{attachment.to, {}, attachment.distance, attachment.stiffness, attachment.damping};
     Partner& to = known.emplace_back();
-    bool found = false;
-    for (std::size_t o = 0; o < organs.size() && !found; ++o) {
-      if (organs[o].name != attachment.to) continue;
-      const SurfaceDescription& surface = scene.organs[o].surface;
-      surfaces.push_back(std::make_unique<SurfaceDistance>(surface.mesh()));
+    const std::size_t o = indexNamed(organs, attachment.to);
+    bool found = o < organs.size();
+    if (found) {
+      surfaces.push_back(std::make_unique<SurfaceDistance>(scene.organs[o].surface.mesh()));
       partner.distance = [distance = surfaces.back().get()](const Vec3& p) { return distance->signedDistance(p); };
       to = {false, o, 0};
-      found = true;
     }
     for (std::size_t t = 0; t < trees.size() && !found; ++t) {
       for (std::size_t b = 0; b < trees[t].vessel.size() && !found; ++b) {
@@ -215,8 +211,6 @@ void FatTissue::listStructures(const Model& model, TissueId kind, std::size_t fi
 }
 
 const std::string& FatTissue::nameOf(const Model& model, std::size_t index) { return model.scene().fat[index].name; }
-
-void FatTissue::resize(const Model& model, States& states) { states.fat.resize(model.fat().size()); }
 
 void FatTissue::start(const Model& model, States& states) {
   const std::size_t firstBody = model.organs().size() + model.vesselTrees().size();

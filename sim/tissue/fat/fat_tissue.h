@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "sim/fat/fat_model.h"
-#include "sim/tissue/result_field.h"
+#include "sim/math/record.h"
 #include "sim/tissue/structure.h"
 
 namespace calot {
@@ -74,12 +74,6 @@ struct FatResult {
   }
 };
 
-class Model;
-struct SceneDescription;
-struct SceneView;
-struct State;
-class TissueViewer;
-
 /// Fat as a kind of tissue; sim/tissue/tissues.h documents the members.
 struct FatTissue {
   using Result = FatResult;
@@ -122,7 +116,6 @@ struct FatTissue {
                              std::vector<StructureModel>& structures);
   static std::size_t bodies(const Models& models) { return models.fat().size(); }
   static const std::string& nameOf(const Model& model, std::size_t index);
-  static void resize(const Model& model, States& states);
   static void start(const Model& model, States& states);
   static bool fits(const Model& model, const States& states);
   static void resize(const Model& model, Results& results);

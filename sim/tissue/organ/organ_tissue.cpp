@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "sim/tissue/organ/organ_tissue.h"
 
 #include <algorithm>
@@ -8,11 +7,10 @@
 #include <utility>
 
 #include "sim/geometry/surface_distance.h"
-#include "sim/geometry/triangle_cells.h"
+#include "sim/geometry/triangle_mesh.h"
 #include "sim/scene/model.h"
 #include "sim/scene/scene_view.h"
 #include "sim/scene/state.h"
-#include "sim/tissue/description_fields.h"
 #include "sim/tissue/structure.h"
 
 namespace calot {
@@ -188,11 +186,6 @@ void OrganTissue::listStructures(const Model& model, TissueId kind, std::size_t 
 }
 
 const std::string& OrganTissue::nameOf(const Model& model, std::size_t index) { return model.organs()[index].name; }
-
-void OrganTissue::resize(const Model& model, States& states) {
-  states.organ.resize(model.organs().size());
-  states.charred.resize(model.organs().size());
-}
 
 void OrganTissue::start(const Model& model, States& states) {
   for (std::size_t o = 0; o < model.organs().size(); ++o) {

@@ -11,9 +11,9 @@
 #include "sim/contact/surface_patches.h"
 #include "sim/contact/surface_surface.h"
 #include "sim/geometry/embedding.h"
-#include "sim/geometry/mesh_to_count.h"
+#include "sim/geometry/isosurface_stuffing.h"
+#include "sim/math/record.h"
 #include "sim/solid/solid.h"
-#include "sim/tissue/result_field.h"
 #include "sim/tissue/structure.h"
 
 namespace calot {
@@ -52,7 +52,7 @@ struct OrganModel {
   Embedding embedding;                 ///< contact and pictures see the fine surface, mechanics the tetrahedra
   ContactSurface surface;              ///< triangles over the skin's vertices
   std::vector<double> triangleArea;    ///< at rest (m^2)
-  std::vector<std::uint8_t> division;  ///< of each triangle's sides, for CharState (sim/geometry/triangle_cells.h)
+  std::vector<std::uint8_t> division;  ///< of each triangle's sides, for CharState (sim/geometry/triangle_mesh.h)
   double cellSize = 0.0;               ///< of the tetrahedral lattice (m)
 };
 
@@ -114,12 +114,6 @@ struct OrganResult {
   }
 };
 
-class Model;
-struct SceneDescription;
-struct SceneView;
-struct State;
-class TissueViewer;
-
 /// Organs as a kind of tissue; sim/tissue/tissues.h documents the members.
 struct OrganTissue {
   using Result = OrganResult;
@@ -164,7 +158,6 @@ struct OrganTissue {
                              std::vector<StructureModel>& structures);
   static std::size_t bodies(const Models& models) { return models.organs().size(); }
   static const std::string& nameOf(const Model& model, std::size_t index);
-  static void resize(const Model& model, States& states);
   static void start(const Model& model, States& states);
   static bool fits(const Model& model, const States& states);
   static void resize(const Model& model, Results& results);

@@ -5,8 +5,8 @@
 
 #include "sim/scene/model.h"
 #include "sim/scene/state.h"
-#include "sim/tissue/description_fields.h"
-#include "sim/vessel/centre_line.h"
+#include "sim/tissue/structure.h"
+#include "sim/vessel/beam_state.h"
 
 namespace calot {
 
@@ -106,9 +106,8 @@ std::string VesselTissue::build(const SceneDescription& scene, Model& model) {
     branch.fixedStart = d.start.kind == VesselEndDescription::Kind::fixed;
     branch.fixedEnd = d.end.kind == VesselEndDescription::Kind::fixed;
     if (d.start.kind == VesselEndDescription::Kind::vessel) {
-      std::size_t parent = 0;
-      while (parent < v && scene.vessels[parent].name != d.start.to) ++parent;
-      if (parent == v) return what + "grows out of '" + d.start.to + "', which is not a vessel before it";
+      const std::size_t parent = indexNamed(scene.vessels, d.start.to);
+      if (parent >= v) return what + "grows out of '" + d.start.to + "', which is not a vessel before it";
       home.push_back({home[parent].tree, branches[home[parent].tree].size()});
       branch.join = nearestNode(BeamModel(branches[home[parent].tree]), home[parent].branch, d.path.front());
     } else {
@@ -130,8 +129,7 @@ std::string VesselTissue::build(const SceneDescription& scene, Model& model) {
     for (const bool atEnd : {false, true}) {
       const VesselEndDescription& end = atEnd ? scene.vessels[v].end : scene.vessels[v].start;
       if (end.kind != VesselEndDescription::Kind::organ) continue;
-      std::size_t organ = 0;
-      while (organ < organs.size() && organs[organ].name != end.to) ++organ;
+      const std::size_t organ = indexNamed(organs, end.to);
       if (organ == organs.size()) {
         return "vessel '" + scene.vessels[v].name + "': is grown to '" + end.to +
                "', which is not an organ of the scene";
@@ -174,8 +172,6 @@ void VesselTissue::listStructures(const Model& model, TissueId kind, std::size_t
 const std::string& VesselTissue::nameOf(const Model& model, std::size_t index) {
   return model.vesselTrees()[index].name;
 }
-
-void VesselTissue::resize(const Model& model, States& states) { states.vessel.resize(model.vesselTrees().size()); }
 
 void VesselTissue::start(const Model& model, States& states) {
   for (std::size_t t = 0; t < model.vesselTrees().size(); ++t) {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/tissue/result_field.h"
+#include "sim/math/record.h"
 #include "sim/tissue/structure.h"
 #include "sim/vessel/beam_model.h"
 #include "sim/vessel/beam_state.h"
@@ -107,12 +107,6 @@ struct ClipView {
   double halfGap = 0.0;  ///< half of what it leaves to the vessel, along x (m)
 };
 
-class Model;
-struct SceneDescription;
-struct SceneView;
-struct State;
-class TissueViewer;
-
 /// Vessels as a kind of tissue; sim/tissue/tissues.h documents the members.
 struct VesselTissue {
   using Result = VesselResult;
@@ -152,7 +146,6 @@ struct VesselTissue {
                              std::vector<StructureModel>& structures);
   static std::size_t bodies(const Models& models) { return models.vesselTrees().size(); }
   static const std::string& nameOf(const Model& model, std::size_t index);
-  static void resize(const Model& model, States& states);
   static void start(const Model& model, States& states);
   static bool fits(const Model& model, const States& states);
   static void resize(const Model& model, Results& results);

@@ -11,8 +11,7 @@
 #include "sim/scene/scene_view.h"
 #include "sim/scene/state.h"
 #include "sim/tissue/structure.h"
-#include "sim/vessel/centre_line.h"
-#include "sim/vessel/clips.h"
+#include "sim/vessel/beam_state.h"
 #include "sim/vessel/tube_surface.h"
 
 namespace calot {

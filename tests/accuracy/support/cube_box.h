@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "sim/solid/hexahedral_elements.h"
+#include "sim/solid/elements.h"
 
 namespace calot::test {
 

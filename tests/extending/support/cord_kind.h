@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/tissue/result_field.h"
+#include "sim/math/record.h"
 
 namespace calot::example {
 
@@ -68,7 +68,7 @@ struct CordKind {
     }
     return {};
   }
-  static void resize(const Models& model, States& states) { states.cords.assign(model.cordModel.size(), {}); }
+  static void start(const Models& model, States& states) { states.cords.assign(model.cordModel.size(), {}); }
   static bool fits(const Models& model, const States& states) { return states.cords.size() == model.cordModel.size(); }
 };
 

@@ -9,8 +9,8 @@
 
 #include "gui/render/image.h"
 #include "gui/render/renderer.h"
-#include "sim/carving/adaptive_surface.h"
-#include "sim/carving/islands.h"
+#include "sim/carving/carved_field.h"
+#include "sim/carving/carved_surface.h"
 #include "tests/sim/carving/support/carving_bodies.h"
 #include "tests/sim/carving/support/tetrahedra_removal.h"
 

@@ -10,7 +10,7 @@
 #include "recorder/base/queues.h"
 #include "recorder/engine/session.h"
 #include "recorder/live/haptic_thread.h"
-#include "sim/step/hand_haptics.h"
+#include "sim/haptics/haptic_tick.h"
 #include "tests/recorder/support/small_scene.h"
 
 namespace {

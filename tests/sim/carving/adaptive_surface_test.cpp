@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sim/carving/adaptive_surface.h"
+#include "sim/carving/carved_surface.h"
 
 #include <gtest/gtest.h>
 

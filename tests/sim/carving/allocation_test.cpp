@@ -6,7 +6,6 @@
 #include <new>
 
 #include "sim/carving/carved_field.h"
-#include "sim/carving/islands.h"
 #include "tests/sim/carving/support/carving_bodies.h"
 
 namespace {

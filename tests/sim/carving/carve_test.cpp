@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a stroke takes off, against what it swept.
-#include "sim/carving/carve.h"
+#include "sim/carving/carved_field.h"
 
 #include <gtest/gtest.h>
 

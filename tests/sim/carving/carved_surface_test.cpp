@@ -9,8 +9,6 @@
 #include <iostream>
 #include <set>
 
-#include "sim/carving/adaptive_surface.h"
-#include "sim/carving/cube_table.h"
 #include "sim/geometry/surface_report.h"
 #include "tests/sim/carving/support/carving_bodies.h"
 

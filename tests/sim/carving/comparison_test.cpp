@@ -4,7 +4,7 @@
 
 #include <iostream>
 
-#include "sim/carving/islands.h"
+#include "sim/carving/carved_field.h"
 #include "sim/geometry/surface_report.h"
 #include "tests/sim/carving/support/carving_bodies.h"
 #include "tests/sim/carving/support/tetrahedra_removal.h"

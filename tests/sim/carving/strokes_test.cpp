@@ -8,9 +8,8 @@
 #include <iostream>
 #include <memory>
 
-#include "sim/carving/adaptive_surface.h"
 #include "sim/carving/carved_field.h"
-#include "sim/carving/islands.h"
+#include "sim/carving/carved_surface.h"
 #include "tests/sim/carving/support/carving_bodies.h"
 
 namespace calot {

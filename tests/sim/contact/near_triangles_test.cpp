@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Lists of near triangles, young, old or none: the contacts are the same, bit for bit.
-#include "sim/contact/near_triangles.h"
+#include "sim/contact/surface_surface.h"
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,6 @@
 #include <utility>
 #include <vector>
 
-#include "sim/contact/surface_surface.h"
 #include "sim/math/random.h"
 #include "tests/sim/contact/support/body.h"
 #include "tests/sim/scene/support/scenes.h"

@@ -9,7 +9,7 @@
 
 #include "sim/contact/broad_phase.h"
 #include "sim/contact/capsule_contact.h"
-#include "sim/contact/surface_normal.h"
+#include "sim/contact/surface_patches.h"
 #include "sim/math/fields.h"
 #include "tests/sim/fat/support/fat_bodies.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The surface of fat for those who draw it: followed from stroke to stroke it is what a State gives by itself.
-#include "sim/fat/fat_picture.h"
+#include "sim/fat/fat_model.h"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "sim/geometry/mesh_to_count.h"
+#include "sim/geometry/isosurface_stuffing.h"
 #include "sim/math/random.h"
 #include "tests/sim/scene/support/scenes.h"
 

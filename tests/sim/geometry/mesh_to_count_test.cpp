@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sim/geometry/mesh_to_count.h"
+#include "sim/geometry/isosurface_stuffing.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -10,7 +10,6 @@
 #include <memory>
 #include <vector>
 
-#include "sim/step/hand_haptics.h"
 #include "sim/step/stepper.h"
 #include "tests/sim/scene/support/scenes.h"
 

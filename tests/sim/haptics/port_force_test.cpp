@@ -8,7 +8,6 @@
 #include <numbers>
 #include <vector>
 
-#include "sim/step/hand_haptics.h"
 #include "tests/sim/scene/support/scenes.h"
 
 namespace calot {

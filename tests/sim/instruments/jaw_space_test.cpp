@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The space between jaws: its planes, and what of a triangle lies in it.
-#include "sim/instruments/jaw_space.h"
+#include "sim/instruments/instrument_shape.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "sim/geometry/closest_point.h"
-#include "sim/instruments/instrument_shape.h"
 #include "sim/math/random.h"
 
 namespace calot {

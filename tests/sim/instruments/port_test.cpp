@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sim/instruments/port.h"
+#include "sim/instruments/instrument_shape.h"
 
 #include <gtest/gtest.h>
 

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "sim/fat/fat_body.h"
-#include "sim/vessel/clips.h"
+#include "sim/vessel/beam_state.h"
 #include "tests/gui/render/support/shapes.h"
 #include "tests/sim/scene/support/scenes.h"
 

@@ -10,10 +10,9 @@
 #include <numeric>
 #include <vector>
 
-#include "sim/contact/surface_normal.h"
+#include "sim/contact/surface_patches.h"
 #include "sim/geometry/closest_point.h"
-#include "sim/step/fat_contacts.h"
-#include "sim/step/tissue_travel.h"
+#include "sim/step/tissue_contacts.h"
 #include "tests/sim/scene/support/scenes.h"
 
 namespace calot {

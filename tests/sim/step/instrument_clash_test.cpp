@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "sim/geometry/closest_point.h"
-#include "sim/step/instrument_clash.h"
+#include "sim/step/placed_instrument.h"
 #include "tests/sim/scene/support/loop.h"
 
 namespace calot {

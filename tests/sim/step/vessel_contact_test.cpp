@@ -9,9 +9,9 @@
 #include <numeric>
 #include <vector>
 
-#include "sim/contact/surface_normal.h"
-#include "sim/step/vessel_contacts.h"
-#include "sim/vessel/clips.h"
+#include "sim/contact/surface_patches.h"
+#include "sim/step/tissue_contacts.h"
+#include "sim/vessel/beam_state.h"
 #include "tests/sim/scene/support/scenes.h"
 
 namespace calot {

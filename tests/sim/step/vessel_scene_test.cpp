@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "sim/judgement/judge.h"
-#include "sim/vessel/clips.h"
+#include "sim/vessel/beam_state.h"
 #include "tests/sim/scene/support/scenes.h"
 #include "tests/support/message.h"
 

@@ -10,9 +10,8 @@
 
 #include "sim/math/fields.h"
 #include "sim/math/random.h"
-#include "sim/vessel/beam_element.h"
-#include "sim/vessel/centre_line.h"
-#include "sim/vessel/clips.h"
+#include "sim/vessel/beam_model.h"
+#include "sim/vessel/beam_state.h"
 #include "tests/sim/vessel/support/beams.h"
 
 namespace calot {

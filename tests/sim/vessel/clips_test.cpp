@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Clips, cuts and tears: what they do to a vessel, and how clips sit.
-#include "sim/vessel/clips.h"
+#include "sim/vessel/beam_state.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,6 @@
 #include <numbers>
 #include <vector>
 
-#include "sim/vessel/centre_line.h"
 #include "tests/sim/vessel/support/beams.h"
 
 namespace calot {

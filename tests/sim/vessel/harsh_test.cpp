@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "sim/math/random.h"
-#include "sim/vessel/clips.h"
+#include "sim/vessel/beam_state.h"
 #include "tests/sim/vessel/support/beams.h"
 
 namespace calot {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A forest's response in floats is that of the exact substitution.
-#include "sim/vessel/block_tree.h"
+#include "sim/vessel/beam_solver.h"
 
 #include <gtest/gtest.h>
 

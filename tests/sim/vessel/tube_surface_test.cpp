@@ -11,8 +11,8 @@
 
 #include "sim/geometry/triangle_mesh.h"
 #include "sim/math/random.h"
-#include "sim/vessel/block_tree.h"
-#include "sim/vessel/clips.h"
+#include "sim/vessel/beam_solver.h"
+#include "sim/vessel/beam_state.h"
 #include "tests/sim/vessel/support/beams.h"
 
 namespace calot {

@@ -11,7 +11,7 @@
 #include <string>
 
 #include "recorder/formats/scene_file.h"
-#include "sim/step/hand_haptics.h"
+#include "sim/haptics/haptic_tick.h"
 #include "tests/sim/scene/support/scenes.h"
 #include "tests/stability/closed_loop/support/closed_loop.h"
 

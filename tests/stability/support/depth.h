@@ -9,7 +9,7 @@
 
 #include "sim/geometry/surface_distance.h"
 #include "sim/instruments/instrument_shape.h"
-#include "sim/step/contact_dimples.h"
+#include "sim/step/contact_block.h"
 #include "sim/step/stepper.h"
 
 namespace calot::test {

@@ -9,7 +9,7 @@
 #include "recorder/formats/scene_file.h"
 #include "sim/math/executor.h"
 #include "sim/scene/state.h"
-#include "sim/vessel/beam_element.h"
+#include "sim/vessel/beam_model.h"
 
 namespace calot::test {
 

@@ -6,7 +6,6 @@
 #include <functional>
 #include <vector>
 
-#include "sim/carving/carve.h"
 #include "sim/carving/carved_field.h"
 #include "sim/carving/carved_surface.h"
 #include "sim/geometry/triangle_mesh.h"

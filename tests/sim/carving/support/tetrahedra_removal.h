@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "sim/carving/carve.h"
+#include "sim/carving/carved_field.h"
 #include "sim/geometry/isosurface_stuffing.h"
 #include "sim/geometry/triangle_mesh.h"
 

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "sim/math/fields.h"
-#include "sim/solid/tetrahedral_elements.h"
+#include "sim/solid/elements.h"
 
 namespace calot::test {
 

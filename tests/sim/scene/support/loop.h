@@ -5,7 +5,7 @@
 #include <array>
 #include <vector>
 
-#include "sim/step/hand_haptics.h"
+#include "sim/haptics/haptic_tick.h"
 #include "tests/sim/scene/support/scenes.h"
 
 namespace calot::test {

@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One instrument against the other: both are unions of capsules, so the distance is exact. Internal to this folder.
+// A hand's instrument as capsules in W: against the other one (both are unions of capsules, so the distance is exact),
+// and out of tissue that it still stands in. Internal to this folder.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
+#include "sim/contact/capsule_contact.h"
 #include "sim/instruments/instrument_shape.h"
 #include "sim/scene/model.h"
 #include "sim/scene/state.h"
 #include "sim/step/contact_block.h"
+#include "sim/step/surfaces.h"
 
 namespace calot {
-
-// A hand's instrument as capsules in W, and how far its jaws may sink into tissue. Internal to this folder.
 
 /// Simulated pose of a hand's instrument: p_WI, q_WI.
 inline Pose simulatedPose(const HandState& hand) { return {hand.simulatedPosition, hand.simulatedOrientation}; }
@@ -63,5 +64,48 @@ double gapBetween(const PlacedInstrument& a, const PlacedInstrument& b, double l
 /// is not beside one that is listed already; at most `maxClashPoints`.
 void clashPoints(const PlacedInstrument& a, const PlacedInstrument& b, double reach, std::vector<ClashPoint>& out);
 inline constexpr std::size_t maxClashPoints = 4;  ///< two rigid straight bodies need no more
+
+/// Rows of the contact problem are linear, tissue is not: what an instrument still penetrates after the step, it leaves
+/// by the shortest motion of its own. In a fold the nearest surface may lie deeper in: then it goes back along its
+/// shaft, the way it came in, and looks again. Where tissue presses from two sides there may be no way out: that depth
+/// is reported as pinched.
+class PenetrationResolver {
+ public:
+  explicit PenetrationResolver(const Model& model) : model_(model) {}
+
+  /// Writes the hand's simulated pose; raises `contact.maxDepth` or `pinchedDepth` to what is left (m).
+  /// @pre surfaces are current
+  void run(Surfaces& surfaces, std::size_t hand, State& state, ContactResult& contact);
+
+ private:
+  /// A point at which an instrument stands inside a structure or the other instrument.
+  struct Inside {
+    ToolRow row;
+    Vec3 normal;
+    double gap;
+  };
+  /// Result of a search.
+  struct Outcome {
+    Pose pose;
+    double depth;  ///< that is left (m)
+    bool pinched;  ///< between tissue on two sides
+  };
+
+  double findInside(Surfaces& surfaces, const State& state, std::size_t hand, const Pose& pose);
+  [[nodiscard]] ToolRow minWayOut() const;
+  Outcome search(Surfaces& surfaces, const State& state, std::size_t hand, Pose pose);
+
+  const Model& model_;
+  PlacedInstrument instrument_, other_;
+  std::vector<ClashPoint> clash_;
+  std::vector<SurfaceContact> found_;
+  std::vector<Inside> inside_;
+};
+
+/// Contacts of a hand's instrument with a structure, nearer than `far` (m). Their gaps count from allowedDepth(), and
+/// from the dimples that the capsules press. @pre surfaces are current
+void instrumentContacts(const Model& model, Surfaces& surfaces, const State& state, std::size_t hand,
+                        const PlacedInstrument& instrument, std::size_t structure, double far,
+                        std::vector<SurfaceContact>& out);
 
 }  // namespace calot
