@@ -79,10 +79,11 @@ TEST(IntraclassCorrelation, noInputGivesANan) {
     for (const IccForm form : {IccForm::twoSingle, IccForm::twoAverage, IccForm::threeAverage}) {
       const auto icc = intraclassCorrelation(t, form);
       if (!icc) continue;
-      ASSERT_TRUE(std::isfinite(icc->value)) << nameOf(form);
+      ASSERT_TRUE(std::isfinite(icc->value)) << static_cast<int>(form);
       if (icc->interval) {
-        ASSERT_TRUE(std::isfinite(icc->interval->lower) && std::isfinite(icc->interval->upper)) << nameOf(form);
-        ASSERT_LE(icc->interval->lower, icc->interval->upper) << nameOf(form);
+        ASSERT_TRUE(std::isfinite(icc->interval->lower) && std::isfinite(icc->interval->upper))
+            << static_cast<int>(form);
+        ASSERT_LE(icc->interval->lower, icc->interval->upper) << static_cast<int>(form);
       }
     }
   }
