@@ -44,9 +44,9 @@ std::string nameOf(Finality finality);        ///< "running", "final"
 
 /// Declaration of a checkpoint.
 struct CheckpointDefinition {
-  std::string name = {};         ///< "path-length": key in the database, never reused for another meaning
-  std::string title = {};        ///< "Path length of the instrument's tip"
-  std::string unit = {};         ///< SI, of stored values: "s", "m", "N", "1"
+  std::string name = {};   ///< "path-length": key in the database, never reused for another meaning
+  std::string title = {};  ///< "Path length of the instrument's tip"
+  std::string unit = {};   ///< SI, of stored values: "s", "m", "N"; a row's may follow from displayUnit, or is "1"
   std::string displayUnit = {};  ///< at the edges: "mm"
   double displayFactor = 1.0;    ///< displayed = stored * displayFactor; by the unit (completed())
   Direction direction = Direction::none;
