@@ -2,7 +2,6 @@
 // calot cohort: a cohort database as a whole.
 
 #include "analytics/cohort/cohort_database.h"
-#include "analytics/cohort/merge.h"
 #include "analytics/cohort/registers.h"
 #include "analytics/cohort/withdraw.h"
 #include "analytics/interchange/cohort_bundle.h"
