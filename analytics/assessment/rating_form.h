@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Forms that people fill in: questionnaires of participants, and scales by which raters judge attempts
-// (schemas/form.schema.json).
+// (schemas/form.schema.json); and the answers to a pack of films.
 #pragma once
 
 #include <cstddef>

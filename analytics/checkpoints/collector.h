@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Values of all checkpoints: of a run or replay, of recorded observables, or of motion alone; and the samples of a
-// hand's motion that they are computed of.
+// hand's motion and its forces that they are computed of.
 #pragma once
 
 #include <array>

@@ -20,7 +20,7 @@ enum class Origin : std::uint8_t {
   resimulated = 0,  ///< the simulation ran again, bit for bit, in the same simulation version
   observables = 1,  ///< recorded StepResults and forces, read by any later software
   samples = 2,      ///< motion of the operator's hands alone (the real tip)
-  external = 3,     ///< a user's own script (external_metric.h)
+  external = 3,     ///< a user's own script (ExternalMetric)
 };
 
 /// Subjects of the figure: once for the attempt, for each hand, organ of the scene, phase of the procedure, or

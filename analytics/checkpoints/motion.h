@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The motion of one instrument: samples, gaps and bridges, resampling to a fixed rate, filtered segments.
+// The motion of one instrument: samples, gaps and bridges, resampling to a fixed rate, zero-phase filter, segments.
 #pragma once
 
 #include <cmath>
@@ -172,7 +172,7 @@ struct MotionSamples {
   bool oriented = true;  ///< false: orientations are not known, and left out
 };
 
-/// Bridges gaps (gap_bridge.h), filters, takes the speeds. Runs too short for the filter are left out; beside a gap
+/// Bridges gaps (bridged()), filters, takes the speeds. Runs too short for the filter are left out; beside a gap
 /// they count as lost with it.
 Motion filteredMotion(MotionSamples samples, double cutoff);
 

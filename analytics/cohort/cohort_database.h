@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The cohort database: participants, attempts, recordings' identities and checkpoint values, protocols, forms and
-// norms, in one SQLite file (docs/reference/cohort.md, schemas/cohort/*.sql).
+// norms, in one SQLite file (docs/reference/cohort.md, schemas/cohort/*.sql); its check, and merging two (merge.cpp).
 #pragma once
 
 #include <array>
@@ -110,8 +110,8 @@ struct AttemptRow : AttemptRecord {
 using FieldValue = std::variant<std::monostate, bool, std::int64_t, std::uint64_t, double, std::string,
                                 std::vector<std::string>, std::map<std::string, std::string>>;
 using Fields = std::vector<std::pair<std::string, FieldValue>>;
-/// A row by the names that lists give its columns: those that declared_tables.h declares, then what several of them say
-/// together.
+/// A row by the names that lists give its columns: those that declared_tables.cpp declares, then what several of them
+/// say together.
 Fields fieldsOf(const AttemptRow& attempt);
 Fields fieldsOf(const Participant& participant);
 Fields fieldsOf(const CheckpointValue& value);
