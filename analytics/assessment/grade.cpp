@@ -264,32 +264,16 @@ const CheckpointValue* find(const std::vector<CheckpointValue>& values, std::str
 
 std::string ending(const AttemptRow& attempt) {
   if (!attempt.complete) return "The recording is not whole.";
-  switch (attempt.outcome) {
-    case recorder::Outcome::running:
-      return "The attempt was not ended.";
-    case recorder::Outcome::completed:
-      return "The task was completed.";
-    default:
-      return fmt::format("The task was not completed: {}.", recorder::wordFor(attempt.outcome));
-  }
+  if (attempt.outcome == recorder::Outcome::running) return "The attempt was not ended.";
+  if (attempt.outcome == recorder::Outcome::completed) return "The task was completed.";
+  return fmt::format("The task was not completed: {}.", recorder::wordFor(attempt.outcome));
 }
 
 std::string verdictOf(const AttemptRow& attempt, const Grade* grade) {
-  std::string text = ending(attempt);
-  switch (attempt.verification.verdict) {
-    case Verdict::verified:
-      break;
-    case Verdict::diverged:
-      text += " The re-simulation differs: no figure can be relied on.";
-      break;
-    case Verdict::damaged:
-      text += " The recording is damaged: no figure can be relied on.";
-      break;
-    case Verdict::notCheckableHere:
-    case Verdict::notChecked:
-      text += " The recording is not verified.";
-      break;
-  }
+  constexpr const char* notVerified = " The recording is not verified.";
+  constexpr const char* ofVerdict[]{"", " The re-simulation differs: no figure can be relied on.",
+                                    " The recording is damaged: no figure can be relied on.", notVerified, notVerified};
+  const std::string text = ending(attempt) + ofVerdict[static_cast<std::size_t>(attempt.verification.verdict)];
   if (grade != nullptr) return grade->verdict + " " + text;
   return text + " It is not held against a norm.";
 }
