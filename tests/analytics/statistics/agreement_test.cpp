@@ -23,7 +23,7 @@ TEST(IntraclassCorrelation, threeOfShroutAndFleiss) {
   for (const Row& r : {Row{IccForm::twoSingle, .28976377952756, .018786513374712, .76108436964895},
                        Row{IccForm::twoAverage, .62005054759899, .071136815302503, .92723204016772},
                        Row{IccForm::threeAverage, .90931554237707, .675674713816305, .98589167816906}}) {
-    SCOPED_TRACE(nameOf(r.form));
+    SCOPED_TRACE(static_cast<int>(r.form));
     const auto icc = intraclassCorrelation(judges, r.form);
     ASSERT_TRUE(icc) << icc.reason();
     EXPECT_NEAR(icc->value, r.value, 5e-14);
