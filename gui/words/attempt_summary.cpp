@@ -77,11 +77,9 @@ std::string errorsOf(const std::vector<analytics::CheckpointValue>& values) {
 
 bool sceneLacks(const analytics::CheckpointValue& value) {
   if (value.availability != analytics::Availability::notApplicable) return false;
-  const auto begins = [&](std::string_view with) { return value.reason.rfind(with, 0) == 0; };
-  constexpr std::string_view end = "in this scene";
-  return begins("the scene has no ") || begins("the scene gives this organ no ") ||
-         (value.reason.size() >= end.size() &&
-          value.reason.compare(value.reason.size() - end.size(), end.size(), end) == 0);
+  const std::string& reason = value.reason;
+  return reason.starts_with("the scene has no ") || reason.starts_with("the scene gives this organ no ") ||
+         reason.ends_with("in this scene");
 }
 
 AttemptSummary summaryOf(const analytics::AttemptRow& attempt, const std::vector<analytics::CheckpointValue>& values,
