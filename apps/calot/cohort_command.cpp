@@ -162,12 +162,12 @@ struct NameOptions {
 };
 
 void nameSite(const NameOptions& o) {
-  analytics::setSite(o.cohort, o.name, o.noteGiven());
+  analytics::setNamed(o.cohort, "site", o.name, o.noteGiven());
   o.printDone();
 }
 
 void nameArm(const NameOptions& o) {
-  analytics::setArm(o.cohort, o.name, o.noteGiven());
+  analytics::setNamed(o.cohort, "arm", o.name, o.noteGiven());
   o.printDone();
 }
 
