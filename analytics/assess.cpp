@@ -3,6 +3,7 @@
 #include "analytics/assess.h"
 
 #include <fmt/format.h>
+#include <sodium.h>
 #include <algorithm>
 #include <array>
 #include <cassert>
@@ -161,11 +162,9 @@ bool storeExternal(CohortDatabase& database, const std::string& attempt, MetricO
 namespace {
 
 std::array<std::byte, 32> bytesOf(const std::string& hexadecimal) {
-  assert(hexadecimal.size() == 64);
-  const auto digit = [](char c) { return static_cast<unsigned>(c <= '9' ? c - '0' : c - 'a' + 10); };
   std::array<std::byte, 32> bytes{};
-  for (std::size_t i = 0; i < bytes.size(); ++i)
-    bytes[i] = static_cast<std::byte>(digit(hexadecimal[2 * i]) * 16U + digit(hexadecimal[2 * i + 1]));
+  sodium_hex2bin(reinterpret_cast<unsigned char*>(bytes.data()), bytes.size(), hexadecimal.data(), hexadecimal.size(),
+                 nullptr, nullptr, nullptr);
   return bytes;
 }
 

@@ -3,11 +3,9 @@
 #include "analytics/assessment/grade.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <string_view>
 
 #include "analytics/assessment/norm.h"
 #include "analytics/checkpoints/checkpoint.h"
@@ -251,138 +249,6 @@ std::string useOf(const Norm& norm) {
   const NormEvidence& e = norm.evidence.back();
   return fmt::format("Validity evidence of the site: {} ({}, SHA-256 {}), attached on {} by {}.", e.statement,
                      e.fileName, e.sha256, e.attachedUtc, e.by);
-}
-
-namespace {
-
-constexpr std::string_view criticalView = "critical-view", criticalErrors = "critical-errors";
-
-const CheckpointValue* find(const std::vector<CheckpointValue>& values, std::string_view name) {
-  const auto at = std::find_if(values.begin(), values.end(), [&](const CheckpointValue& v) { return v.name == name; });
-  return at == values.end() ? nullptr : &*at;
-}
-
-std::string ending(const AttemptRow& attempt) {
-  if (!attempt.complete) return "The recording is not whole.";
-  switch (attempt.outcome) {
-    case recorder::Outcome::running:
-      return "The attempt was not ended.";
-    case recorder::Outcome::completed:
-      return "The task was completed.";
-    default:
-      return fmt::format("The task was not completed: {}.", recorder::wordFor(attempt.outcome));
-  }
-}
-
-std::string verdictOf(const AttemptRow& attempt, const Grade* grade) {
-  std::string text = ending(attempt);
-  switch (attempt.verification.verdict) {
-    case Verdict::verified:
-      break;
-    case Verdict::diverged:
-      text += " The re-simulation differs: no figure can be relied on.";
-      break;
-    case Verdict::damaged:
-      text += " The recording is damaged: no figure can be relied on.";
-      break;
-    case Verdict::notCheckableHere:
-    case Verdict::notChecked:
-      text += " The recording is not verified.";
-      break;
-  }
-  if (grade != nullptr) return grade->verdict + " " + text;
-  return text + " It is not held against a norm.";
-}
-
-std::string viewOf(const CheckpointValue* view) {
-  if (view == nullptr || sceneLacks(*view)) return {};
-  if (!view->value) return fmt::format("Critical view: not judged, {}.", view->reason);
-  const bool reached = *view->value >= JudgementRules().satisfactory;
-  return fmt::format("Critical view: {}, {:.0f} of 6 points ({}).", reached ? "satisfactory" : "not reached",
-                     *view->value, view->note);
-}
-
-std::string counted(const std::vector<CheckpointValue>& values, std::string_view name, const char* one,
-                    const char* more) {
-  double sum = 0.0;
-  bool any = false;
-  for (const CheckpointValue& v : values) {
-    if (v.name != name || !v.value) continue;
-    any = true;
-    sum += *v.value;
-  }
-  if (!any) return {};
-  if (sum == 0.0) return fmt::format("no {}", one);
-  return fmt::format("{:.0f} {}", sum, sum == 1.0 ? one : more);
-}
-
-std::string errorsOf(const std::vector<CheckpointValue>& values) {
-  std::vector<std::string> parts;
-  for (std::string part : {counted(values, criticalErrors, "critical error", "critical errors"),
-                           counted(values, "clip-errors", "clip error", "clip errors"),
-                           counted(values, "organ-perforations", "perforation", "perforations")}) {
-    if (!part.empty()) parts.push_back(std::move(part));
-  }
-  if (parts.empty()) return "Errors: none are judged in this scene.";
-  std::string text = fmt::format("Errors: {}", fmt::join(parts, ", "));
-  const CheckpointValue* critical = find(values, criticalErrors);
-  if (critical != nullptr && critical->value.value_or(0.0) > 0.0) text += "; a critical error fails the attempt";
-  return text + ".";
-}
-
-}  // namespace
-
-bool sceneLacks(const CheckpointValue& value) {
-  if (value.availability != Availability::notApplicable) return false;
-  const auto begins = [&](std::string_view with) { return value.reason.rfind(with, 0) == 0; };
-  constexpr std::string_view end = "in this scene";
-  return begins("the scene has no ") || begins("the scene gives this organ no ") ||
-         (value.reason.size() >= end.size() &&
-          value.reason.compare(value.reason.size() - end.size(), end.size(), end) == 0);
-}
-
-AttemptSummary summaryOf(const AttemptRow& attempt, const std::vector<CheckpointValue>& values, const Grade* grade) {
-  AttemptSummary summary;
-  summary.verdict = verdictOf(attempt, grade);
-  summary.criticalView = viewOf(find(values, criticalView));
-  summary.errors = errorsOf(values);
-  for (const std::string_view name : countingCheckpoints()) {
-    if (name == criticalView) continue;
-    const CheckpointDefinition* definition = findCheckpoint(name);
-    KeyFigure figure{std::string(name), definition != nullptr ? definition->title : std::string(name), {}};
-    for (const CheckpointValue& v : values) {
-      if (v.name == name && !sceneLacks(v)) figure.values.push_back(v);
-    }
-    if (!figure.values.empty()) summary.figures.push_back(std::move(figure));
-  }
-  return summary;
-}
-
-NextGoal nextGoal(const Grade& grade) {
-  if (grade.criticalErrors.value_or(0.0) > 0.0)
-    return {"No critical error: nothing that must be spared is clipped, cut, burned or torn.",
-            std::string(criticalErrors),
-            {}};
-  const GradedFigure* next = nullptr;
-  const auto before = [](const GradedFigure& a, const GradedFigure& b) {
-    if (isFixed(a.mark) != isFixed(b.mark)) return isFixed(a.mark);
-    return (a.rank ? *a.rank : 0.0) < (b.rank ? *b.rank : 0.0);
-  };
-  for (const GradedFigure& figure : grade.figures) {
-    if (!figure.mark.inRule || !figure.weak() || !figure.value || !figure.mark.cut) continue;
-    if (next == nullptr || before(figure, *next)) next = &figure;
-  }
-  if (next == nullptr)
-    return {grade.passed ? "Every figure that counts is passed: the next task, or another norm."
-                         : "No figure that counts falls short of its pass mark by its value.",
-            {},
-            {}};
-  const std::string of = next->mark.subject.empty() ? next->title : next->title + ", " + next->mark.subject;
-  const std::string unit = next->unit == "1" ? "" : " " + next->unit;
-  const auto shown = [&](double si) { return fmt::format("{:.4g}{}", si * next->displayFactor, unit); };
-  return {fmt::format("{}: {} {} (now {}).", of, next->mark.direction == Direction::higher ? "at least" : "at most",
-                      shown(*next->mark.cut), shown(*next->value)),
-          next->mark.checkpoint, next->mark.subject};
 }
 
 }  // namespace calot::analytics

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One attempt held against a norm, and its summary in words.
+// One attempt held against a norm.
 #pragma once
 
 #include <cstdint>
@@ -75,33 +75,5 @@ void addMoments(Grade& grade, const std::vector<FigureMoments>& found);
 
 /// "formative" until evidence is attached to the norm, then what it is.
 std::string useOf(const Norm& norm);
-
-/// A checkpoint that counts (countingCheckpoints()), with its values: one, or one for each hand or organ.
-struct KeyFigure {
-  std::string checkpoint, title;
-  std::vector<CheckpointValue> values;  ///< in the order of the attempt's
-};
-
-struct AttemptSummary {
-  std::string verdict;             ///< how it ended and what verification found; with a grade, its verdict
-  std::string criticalView;        ///< empty: the scene has none
-  std::string errors;              ///< critical errors first, then what else went wrong
-  std::vector<KeyFigure> figures;  ///< the five that count beside the critical view, those that the scene has
-};
-
-/// @param grade of the attempt; null: it was not held against a norm
-AttemptSummary summaryOf(const AttemptRow& attempt, const std::vector<CheckpointValue>& values, const Grade* grade);
-
-/// True if a value is missing because the scene lacks its subject ("the scene has no fat"): true of
-/// every attempt on this scene.
-bool sceneLacks(const CheckpointValue& value);
-
-/// A goal for the next attempt: the first figure that counts and that this attempt did not pass, critical errors and
-/// fixed marks before others, then the one that fewest competent people fall behind.
-struct NextGoal {
-  std::string text;  ///< one sentence, or the reason why there is no value
-  std::string checkpoint, subject;
-};
-NextGoal nextGoal(const Grade& grade);
 
 }  // namespace calot::analytics

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Makes a norm: who is in it, who of them is competent, and the pass mark of every figure, by contrasting groups or by
 // borderline regression on raters' scores (norm.cpp), or set by people: fixed marks and judges' (Angoff;
-// norm_rule.cpp). Stores it, and puts it into words (create_norm.cpp).
+// norm_rule.cpp). Stores it, and puts it into words (norm_rule.cpp).
 #pragma once
 
 #include <cstddef>

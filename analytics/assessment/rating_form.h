@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Forms that people fill in: questionnaires of participants, and scales by which raters judge attempts
-// (schemas/form.schema.json).
+// (schemas/form.schema.json); and the answers to a pack of films.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <optional>
 #include <span>
@@ -12,6 +14,7 @@
 #include <vector>
 
 #include "analytics/assessment/declared_document.h"
+#include "analytics/cohort/blinding.h"
 
 namespace calot::analytics {
 
@@ -60,5 +63,23 @@ RatingForm parseRatingForm(std::span<const std::byte> bytes, const std::string& 
 /// @param given pairs of key and score; the score of one that was left blank is "-"
 std::map<std::string, int> answersOf(const RatingForm& form,
                                      const std::vector<std::pair<std::string, std::string>>& given);
+
+/// Answers saved by a rater's page, with the films' names resolved.
+struct PackAnswers {
+  RatingPack pack;
+  RatingForm form;
+  std::string rater;
+  std::vector<Rating> ratings;
+  std::size_t notJudged = 0;  ///< films of which the rater could judge no item
+  std::size_t withdrawn = 0;  ///< films of attempts that were withdrawn since
+};
+
+/// Reads and checks the file that a rating page saved: {"format": "calot-answers", "formatVersion": 1, "pack", "rater",
+/// "films": [{"film", "scores": {ITEM: "SCORE" or "-"}}]}; a "seal", which earlier pages wrote, is not read.
+/// @param find the pack of that id, if there is one
+/// @throws Error (damaged) for a malformed file; (refused) for a pack or rater that is not known, a film that is
+/// missing or there twice.
+PackAnswers readPackAnswers(const std::filesystem::path& file,
+                            const std::function<std::optional<RatingPack>(const std::string& id)>& find);
 
 }  // namespace calot::analytics

@@ -183,16 +183,25 @@ CheckpointDefinition completed(CheckpointDefinition definition) {
   const auto fill = [](std::string& text, const std::string& usual) {
     if (text.empty()) text = usual;
   };
-  fill(definition.displayUnit, definition.unit);
   fill(definition.window, "whole attempt");
   fill(definition.instruments, "union over instruments");
   fill(definition.filter, "none");
   if (definition.origins.empty()) definition.origins = {Origin::resimulated, Origin::observables};
-  static const std::map<std::string, double> factors{
-      {"%", 100.0}, {"mm", 1000.0}, {"mm/s", 1000.0}, {"deg", 180.0 / std::numbers::pi},
-      {"ml", 1e6},  {"cm^2", 1e4},  {"cm^2/ml", 0.01}};
-  const auto factor = factors.find(definition.displayUnit);
-  if (factor != factors.end()) definition.displayFactor = factor->second;
+  struct Display {
+    double factor;
+    const char* unit;
+  };
+  static const std::map<std::string, Display> displays{
+      {"%", {100.0, "1"}},       {"mm", {1000.0, "m"}},
+      {"mm/s", {1000.0, "m/s"}}, {"deg", {180.0 / std::numbers::pi, "rad"}},
+      {"ml", {1e6, "m^3"}},      {"cm^2", {1e4, "m^2"}},
+      {"cm^2/ml", {0.01, "1/m"}}};
+  if (const auto display = displays.find(definition.displayUnit); display != displays.end()) {
+    definition.displayFactor = display->second.factor;
+    fill(definition.unit, display->second.unit);
+  }
+  fill(definition.unit, "1");
+  fill(definition.displayUnit, definition.unit);
   return definition;
 }
 

@@ -41,7 +41,7 @@ struct SceneFacts {
   struct Connective {
     std::string name;
     bool holdsGallbladder = false;  ///< it is a cystic plate
-    double area = 0.0;              ///< of its bed at rest (m^2), where it holds a gallbladder (connective_bed.h)
+    double area = 0.0;              ///< of its bed at rest (m^2), where it holds a gallbladder (connective_tissue.h)
   };
   /// In the scene's order: the columns of StepResult.
   std::vector<Organ> organ;
@@ -143,7 +143,7 @@ struct AttemptEnd {
   std::array<const Motion*, handCount> motion{};  ///< both hands' motion, never null (checkpoints/motion.h)
   /// The same for each phase of a procedure, in its order (checkpoints/phases.h), never null.
   const std::vector<PhaseMotion>* phases = nullptr;
-  const ForceTrack* force = nullptr;            ///< haptic forces of both hands, never null (checkpoints/force.h)
+  const ForceTrack* force = nullptr;            ///< haptic forces of both hands, never null (collector.h)
   const PhaseForceTrack* phaseForce = nullptr;  ///< the same of each phase, never null
 };
 

@@ -20,7 +20,7 @@ enum class Origin : std::uint8_t {
   resimulated = 0,  ///< the simulation ran again, bit for bit, in the same simulation version
   observables = 1,  ///< recorded StepResults and forces, read by any later software
   samples = 2,      ///< motion of the operator's hands alone (the real tip)
-  external = 3,     ///< a user's own script (external_metric.h)
+  external = 3,     ///< a user's own script (ExternalMetric)
 };
 
 /// Subjects of the figure: once for the attempt, for each hand, organ of the scene, phase of the procedure, or
@@ -44,9 +44,9 @@ std::string nameOf(Finality finality);        ///< "running", "final"
 
 /// Declaration of a checkpoint.
 struct CheckpointDefinition {
-  std::string name = {};         ///< "path-length": key in the database, never reused for another meaning
-  std::string title = {};        ///< "Path length of the instrument's tip"
-  std::string unit = {};         ///< SI, of stored values: "s", "m", "N", "1"
+  std::string name = {};   ///< "path-length": key in the database, never reused for another meaning
+  std::string title = {};  ///< "Path length of the instrument's tip"
+  std::string unit = {};   ///< SI, of stored values: "s", "m", "N"; a row's may follow from displayUnit, or is "1"
   std::string displayUnit = {};  ///< at the edges: "mm"
   double displayFactor = 1.0;    ///< displayed = stored * displayFactor; by the unit (completed())
   Direction direction = Direction::none;

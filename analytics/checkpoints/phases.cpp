@@ -30,25 +30,13 @@ void append(const MotionSegment& segment, std::int64_t begin, std::int64_t end, 
 
 }  // namespace
 
-const char* nameOf(Phase phase) {
-  switch (phase) {
-    case Phase::identification:
-      return "identification";
-    case Phase::clipping:
-      return "clipping";
-    case Phase::cutting:
-      return "cutting";
-    case Phase::dissection:
-      return "dissection";
-    case Phase::none:
-    case Phase::done:
-      break;
-  }
-  return "none";
-}
-
 std::size_t windowOf(Phase phase) {
   return static_cast<std::size_t>(std::find(windowPhases.begin(), windowPhases.end(), phase) - windowPhases.begin());
+}
+
+const char* nameOf(Phase phase) {
+  constexpr const char* names[]{"identification", "clipping", "cutting", "dissection", "none"};
+  return names[windowOf(phase)];
 }
 
 CheckpointDefinition phaseDefinition(const CheckpointDefinition& whole, const char* pieces, std::uint32_t version) {

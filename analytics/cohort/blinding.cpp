@@ -133,10 +133,9 @@ std::optional<RatingPack> readRatingPack(const std::string& path, const std::str
                   {text(row.getColumn(0)), row.getColumn(1).getUInt(), text(row.getColumn(2)), text(row.getColumn(3))},
                   {}};
             });
-    eachRow(db, "SELECT rater, taken_utc FROM rating_pack_rater WHERE pack = ? ORDER BY rater", {id},
-            [&](SQLite::Statement& row) {
-              pack->raters.push_back({text(row.getColumn(0)), text(row.getColumn(1)), {}});
-            });
+    eachRow(db, "SELECT rater FROM rating_pack_rater WHERE pack = ? ORDER BY rater", {id}, [&](SQLite::Statement& row) {
+      pack->raters.push_back({text(row.getColumn(0)), {}});
+    });
     if (!pack) return pack;
     for (PackedRater& rater : pack->raters) {
       eachRow(db,

@@ -39,7 +39,6 @@ struct PackedFilm {
 /// One rater's part of a pack.
 struct PackedRater {
   std::string rater;              ///< pseudonym
-  std::string takenUtc = {};      ///< when the answers were stored; empty: not yet
   std::vector<PackedFilm> films;  ///< in the order in which the rater sees them; those of withdrawn attempts are gone
 };
 

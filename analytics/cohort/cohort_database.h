@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The cohort database: participants, attempts, recordings' identities and checkpoint values, protocols, forms and
-// norms, in one SQLite file (docs/reference/cohort.md, schemas/cohort/*.sql).
+// norms, in one SQLite file (docs/reference/cohort.md, schemas/cohort/*.sql); its check, and merging two (merge.cpp).
 #pragma once
 
 #include <array>
@@ -110,8 +110,8 @@ struct AttemptRow : AttemptRecord {
 using FieldValue = std::variant<std::monostate, bool, std::int64_t, std::uint64_t, double, std::string,
                                 std::vector<std::string>, std::map<std::string, std::string>>;
 using Fields = std::vector<std::pair<std::string, FieldValue>>;
-/// A row by the names that lists give its columns: those that declared_tables.h declares, then what several of them say
-/// together.
+/// A row by the names that lists give its columns: those that declared_tables.cpp declares, then what several of them
+/// say together.
 Fields fieldsOf(const AttemptRow& attempt);
 Fields fieldsOf(const Participant& participant);
 Fields fieldsOf(const CheckpointValue& value);
@@ -341,5 +341,24 @@ CohortCheck checkCohort(const std::string& path);
 
 /// Before figures of a database are shown. @throws Error (damaged) naming the first fault of checkCohort()
 void refuseUnsound(const std::string& path);
+
+struct CohortMerge {
+  std::uint64_t participants = 0, attempts = 0;  ///< taken in
+  std::uint64_t extended = 0;                    ///< attempts of which the other database had more, or had judged
+  std::uint64_t rows = 0;                        ///< of all other tables, taken in
+  std::uint64_t audit = 0;                       ///< rows of the audit trail, which carry no new content
+  std::uint64_t filled = 0;                      ///< entries that were empty here
+  std::uint64_t withdrawn = 0;                   ///< attempts that were withdrawn here and stay out
+  std::vector<std::string> conflicts;            ///< one line each; then nothing was merged
+
+  [[nodiscard]] bool changed() const { return participants + attempts + extended + rows + filled > 0; }
+};
+
+/// Takes everything of one database into another, which is made where there is none, in one transaction. Rows are the
+/// same where their keys are: a pseudonym, a uuid, a name; never the numbers of rows. Of an attempt in both, the longer
+/// recording counts and the values that are there stay. Doing it again changes nothing. Where both say different things
+/// of one row, that is a conflict, every one is reported, and nothing is merged.
+/// @throws Error as CohortDatabase does; (invalid) where both are one file.
+CohortMerge mergeCohorts(const std::string& into, const std::string& from);
 
 }  // namespace calot::analytics

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "analytics/cohort/merge.h"
+#include "analytics/cohort/cohort_database.h"
 
 #include <fmt/format.h>
 

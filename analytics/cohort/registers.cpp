@@ -32,12 +32,9 @@ void change(const std::string& path, const char* kind, const std::string& name, 
 
 }  // namespace
 
-void setSite(const std::string& path, const std::string& name, const std::optional<std::string>& note) {
-  change(path, "site", name, [&](SQLite::Database& db, std::string&) { return put(db, "site", name, note); });
-}
-
-void setArm(const std::string& path, const std::string& name, const std::optional<std::string>& note) {
-  change(path, "arm", name, [&](SQLite::Database& db, std::string&) { return put(db, "arm", name, note); });
+void setNamed(const std::string& path, const char* kind, const std::string& name,
+              const std::optional<std::string>& note) {
+  change(path, kind, name, [&](SQLite::Database& db, std::string&) { return put(db, kind, name, note); });
 }
 
 void setStation(const std::string& path, const std::string& name, const std::optional<std::string>& site,

@@ -37,8 +37,9 @@ Registers readRegisters(const std::string& path);
 /// Each adds the name where it is new, changes what is given, and writes an audit row where something changed.
 /// @throws Error (invalid) for an empty or malformed name; (refused) for a participant that is not there. A station's
 /// key that is there already is not replaced by another: (refused).
-void setSite(const std::string& path, const std::string& name, const std::optional<std::string>& note);
-void setArm(const std::string& path, const std::string& name, const std::optional<std::string>& note);
+/// @param kind "site" or "arm"
+void setNamed(const std::string& path, const char* kind, const std::string& name,
+              const std::optional<std::string>& note);
 void setStation(const std::string& path, const std::string& name, const std::optional<std::string>& site,
                 const std::optional<PublicKey>& key, const std::optional<std::string>& note);
 void setCohort(const std::string& path, const std::string& name, const std::optional<std::string>& note,

@@ -4,6 +4,7 @@
 #include "analytics/cohort/tables.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <algorithm>
 #include <set>
 
@@ -134,16 +135,10 @@ std::int64_t numberOf(const Cell& cell) {
 }
 
 std::string joined(const std::vector<std::string>& parts, const char* between) {
-  std::string text;
-  for (const std::string& part : parts) text += (text.empty() ? "" : between) + part;
-  return text;
+  return fmt::format("{}", fmt::join(parts, between));
 }
 
-std::string hexOf(const Blob& bytes) {
-  std::string hex;
-  for (const unsigned char byte : bytes) hex += fmt::format("{:02x}", byte);
-  return hex;
-}
+std::string hexOf(const Blob& bytes) { return fmt::format("{:02x}", fmt::join(bytes, "")); }
 
 int execute(SQLite::Database& db, const std::string& sql, const std::vector<Cell>& parameters) {
   SQLite::Statement statement(db, sql);

@@ -2,6 +2,7 @@
 // Two devices or methods that measured the same people, and figures against another, such as a rating (concurrent
 // validity).
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -93,11 +94,9 @@ std::vector<Comparison> comparisonsOf(const DesignData& data, const DesignChoice
     return comparisons;
   }
   if (data.occasions.size() != 2) {
-    std::string list;
-    for (const std::string& o : data.occasions) list += (list.empty() ? "" : ", ") + o;
     throw Error(ErrorKind::refused, Where{data.where},
                 fmt::format("agreement is between two: of \"{}\" there are {} ({})", data.occasionWord,
-                            data.occasions.size(), list));
+                            data.occasions.size(), fmt::join(data.occasions, ", ")));
   }
   for (const DesignFigure& f : data.figures)
     comparisons.push_back({f.name, data.occasions[0], data.occasions[1], f.unit, pairsAtOccasions(f)});

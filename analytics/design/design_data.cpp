@@ -162,12 +162,8 @@ std::optional<std::size_t> columnIfNamed(const CsvTable& table, const std::strin
 bool finishedIn(const CsvTable& table, const CsvRow& row, const std::optional<std::size_t>& column) {
   if (!column) return true;
   const std::string& cell = row.cells[*column];
-  for (const char* yes : {"1", "yes", "true", "TRUE"}) {
-    if (cell == yes) return true;
-  }
-  for (const char* no : {"0", "no", "false", "FALSE"}) {
-    if (cell == no) return false;
-  }
+  if (cell == "1" || cell == "yes" || cell == "true" || cell == "TRUE") return true;
+  if (cell == "0" || cell == "no" || cell == "false" || cell == "FALSE") return false;
   failAt(table, row.line, table.columns[*column],
          fmt::format("\"{}\" is neither 1, yes nor true, nor 0, no or false", shown(cell)));
 }

@@ -269,8 +269,6 @@ std::string significantOrDash(const std::optional<double>& value, int digits) {
   return value ? significant(*value, digits) : "-";
 }
 
-std::string pOrDash(const std::optional<double>& p) { return p ? pText(*p) : "-"; }
-
 namespace {
 
 // The policy forbids whatever is not in the page itself, should a text ever get through as markup.

@@ -70,8 +70,6 @@ std::string significantOrDash(const std::optional<double>& value, int digits = 4
 
 /// "p" with what a reader may believe: "< 0.0001", "0.0433".
 std::string pText(double p);
-/// The same, or "-" for a missing value.
-std::string pOrDash(const std::optional<double>& p);
 
 struct TextSpan {
   std::string text;

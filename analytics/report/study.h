@@ -112,13 +112,13 @@ struct StudyLock {
 
 /// A report's information about its protocol.
 struct StudyProtocol : Protocol {
-  std::string registeredUtc;    ///< empty: never
-  std::string firstAttemptUtc;  ///< earliest start among the data; empty: not known
-  std::string whyExploratory;   ///< empty: it was registered before the first attempt
-  std::vector<ProtocolVersion> versions;
-  std::vector<std::string> deviations;  ///< whole sentences
-  bool masked = false;                  ///< the groups have drawn names, hypotheses no directions
-  std::optional<StudyLock> lock;        ///< none: not locked
+  std::string registeredUtc = {};    ///< empty: never
+  std::string firstAttemptUtc = {};  ///< earliest start among the data; empty: not known
+  std::string whyExploratory = {};   ///< empty: it was registered before the first attempt
+  std::vector<ProtocolVersion> versions = {};
+  std::vector<std::string> deviations = {};  ///< whole sentences
+  bool masked = false;                       ///< the groups have drawn names, hypotheses no directions
+  std::optional<StudyLock> lock = {};        ///< none: not locked
 };
 
 /// A reason for exclusion of attempts (or a table's rows), in the order in which reasons are checked.

@@ -114,15 +114,12 @@ ValueTree simulationTree(const StudyRow& row) {
 }
 
 ValueTree coverageTree(const CoverageRow& row) {
-  return {
-      {"subject", row.subject},
-      {"shares", row.share},
-      {"too_little", row.below},
-      {"mann_whitney", treeOf(row.test,
-                              [](const MannWhitney& t) {
-                                return ValueTree{{"u", t.u}, {"p", t.p}, {"method", t.exact ? "exact" : "asymptotic"}};
-                              })},
-      {"differs", coverageDiffers(row)}};
+  ValueTree tree{{"subject", row.subject}, {"shares", row.share}, {"too_little", row.below}};
+  tree["mann_whitney"] = treeOf(row.test, [](const MannWhitney& t) {
+    return ValueTree{{"u", t.u}, {"p", t.p}, {"method", t.exact ? "exact" : "asymptotic"}};
+  });
+  tree["differs"] = coverageDiffers(row);
+  return tree;
 }
 
 }  // namespace
@@ -144,52 +141,44 @@ ValueTree rowTree(const Study& study, const StudyRow& row) {
                {"attainable_p", row.attainableP},
                {"supported", row.supported},
                {"worst_ranked", row.worstRanked},
-               {"hypothesis", hypothesisTree(study, row)},
-               {"mann_whitney", treeOf(row.test,
-                                       [&](const MannWhitney& t) {
-                                         return ValueTree{{"u", t.u},
-                                                          {"p", t.p},
-                                                          {"p_holm", row.holm},
-                                                          {"p_benjamini_hochberg", row.benjaminiHochberg},
-                                                          {"method", t.exact ? "exact" : "asymptotic"},
-                                                          {"ties", t.ties},
-                                                          {"smallest_p", t.smallestP}};
-                                       })},
-               {"effect", treeOf(row.effect,
-                                 [](const Superiority& e) {
-                                   return ValueTree{{"cliffs_delta", e.delta}, {"a", e.a}};
-                                 })},
-               {"area", areaTree(row)},
-               {"shift", treeOf(row.shift,
-                                [](double shift) {
-                                  return ValueTree{{"hodges_lehmann", shift}};
-                                })},
-               {"shift_interval", treeOf(row.shiftInterval,
-                                         [](const ShiftInterval& i) {
-                                           return ValueTree{{"lower", i.lower},
-                                                            {"upper", i.upper},
-                                                            {"level_asked", 0.95},
-                                                            {"level_attained", i.attained},
-                                                            {"method", nameOf(i.method)}};
-                                         })},
-               {"hedges", treeOf(row.hedges,
-                                 [](const HedgesG& h) {
-                                   return ValueTree{{"g", h.g}, {"d", h.d}, {"j", h.j}, {"interval", h.interval}};
-                                 })},
-               {"spearman_with_duration", treeOf(row.withDuration,
-                                                 [&](const Spearman& s) {
-                                                   return ValueTree{{"rho", s.rho},
-                                                                    {"p", s.p},
-                                                                    {"n", row.withDurationPairs},
-                                                                    {"method", s.exact ? "exact" : "Student's t"},
-                                                                    {"ties", s.ties}};
-                                                 })},
-               {"at_one_baseline", adjustedTree(row.adjusted)},
+               {"hypothesis", hypothesisTree(study, row)}});
+  tree["mann_whitney"] = treeOf(row.test, [&](const MannWhitney& t) {
+    return ValueTree{{"u", t.u},
+                     {"p", t.p},
+                     {"p_holm", row.holm},
+                     {"p_benjamini_hochberg", row.benjaminiHochberg},
+                     {"method", t.exact ? "exact" : "asymptotic"},
+                     {"ties", t.ties},
+                     {"smallest_p", t.smallestP}};
+  });
+  tree["effect"] = treeOf(row.effect, [](const Superiority& e) {
+    return ValueTree{{"cliffs_delta", e.delta}, {"a", e.a}};
+  });
+  tree["area"] = areaTree(row);
+  tree["shift"] = treeOf(row.shift, [](double shift) { return ValueTree{{"hodges_lehmann", shift}}; });
+  tree["shift_interval"] = treeOf(row.shiftInterval, [](const ShiftInterval& i) {
+    return ValueTree{{"lower", i.lower},
+                     {"upper", i.upper},
+                     {"level_asked", 0.95},
+                     {"level_attained", i.attained},
+                     {"method", nameOf(i.method)}};
+  });
+  tree["hedges"] = treeOf(row.hedges, [](const HedgesG& h) {
+    return ValueTree{{"g", h.g}, {"d", h.d}, {"j", h.j}, {"interval", h.interval}};
+  });
+  tree["spearman_with_duration"] = treeOf(row.withDuration, [&](const Spearman& s) {
+    return ValueTree{{"rho", s.rho},
+                     {"p", s.p},
+                     {"n", row.withDurationPairs},
+                     {"method", s.exact ? "exact" : "Student's t"},
+                     {"ties", s.ties}};
+  });
+  tree.update({{"at_one_baseline", adjustedTree(row.adjusted)},
                {"coverage_warnings", row.coverageWarnings},
-               {"simulation", simulationTree(row)},
-               {"published", row.publishedExpert ? ValueTree{{"expert_mean", *row.publishedExpert},
-                                                             {"novice_mean", *row.publishedNovice}}
-                                                 : ValueTree(nullptr)}});
+               {"simulation", simulationTree(row)}});
+  tree["published"] = nullptr;
+  if (row.publishedExpert)
+    tree["published"] = {{"expert_mean", *row.publishedExpert}, {"novice_mean", *row.publishedNovice}};
   return tree;
 }
 

@@ -18,22 +18,19 @@
 namespace calot::analytics {
 namespace {
 
-const std::vector<std::string>& exclusionReasons() {
-  static const std::vector<std::string> reasons{"not in the named cohort",
-                                                "withdrawn from research",
-                                                "excluded by hand",
-                                                "recording diverged or damaged",
-                                                "not verified yet",
-                                                "recording incomplete",
-                                                "technical failure",
-                                                "synthetic (performer)",
-                                                "practice",
-                                                "branch of another attempt",
-                                                "golden recording",
-                                                "no group",
-                                                "not comparable (another key)"};
-  return reasons;
-}
+constexpr std::array exclusionReasons{"not in the named cohort",
+                                      "withdrawn from research",
+                                      "excluded by hand",
+                                      "recording diverged or damaged",
+                                      "not verified yet",
+                                      "recording incomplete",
+                                      "technical failure",
+                                      "synthetic (performer)",
+                                      "practice",
+                                      "branch of another attempt",
+                                      "golden recording",
+                                      "no group",
+                                      "not comparable (another key)"};
 
 }  // namespace
 
@@ -46,11 +43,11 @@ namespace {
 
 /// First reason that excludes an attempt, or empty. Details that differ between attempts follow a colon.
 std::string whyOut(const AttemptRow& a, const StudyOptions& options, bool everybody) {
-  const std::vector<std::string>& reason = exclusionReasons();
+  const auto& reason = exclusionReasons;
   if (options.cohort && options.cohort->participants.count(a.participant) == 0)
-    return reason[0] + ": " + options.cohort->name;
+    return fmt::format("{}: {}", reason[0], options.cohort->name);
   if (a.withdrawn) return reason[1];
-  if (a.excluded) return reason[2] + ": " + a.exclusionReason;
+  if (a.excluded) return fmt::format("{}: {}", reason[2], a.exclusionReason);
   if (a.verification.verdict == Verdict::diverged || a.verification.verdict == Verdict::damaged) return reason[3];
   if (a.verification.verdict == Verdict::notChecked) return reason[4];
   if (!a.complete || a.outcome == recorder::Outcome::running) return reason[5];
@@ -91,7 +88,7 @@ IncludedAttempts includedAttempts(const std::vector<AttemptRow>& recruited, cons
       included.taken.push_back(&a);
     }
   }
-  for (const std::string& reason : exclusionReasons()) {
+  for (const std::string reason : exclusionReasons) {
     for (const auto& [why, count] : out) {
       if (why == reason || why.rfind(reason + ": ", 0) == 0) included.flow.push_back({why, count});
     }

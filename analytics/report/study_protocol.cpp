@@ -3,6 +3,7 @@
 #include "analytics/report/study_protocol.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <sodium.h>
 #include <algorithm>
 #include <array>
@@ -306,61 +307,43 @@ Study makeProtocolStudy(const CohortDatabase& database, const StudyOptions& opti
 
 namespace {
 
-/// Hashes cells, each behind its length: no two lists of cells give the same bytes.
-class CellHash {
- public:
-  CellHash() { crypto_hash_sha256_init(&state_); }
-
-  template <class... Cells>
-  void add(const Cells&... cells) {
-    (cell(fmt::format("{}", cells)), ...);
-  }
-
-  std::string hex() {
-    std::array<unsigned char, crypto_hash_sha256_BYTES> digest{};
-    crypto_hash_sha256_final(&state_, digest.data());
-    std::string text;
-    for (const unsigned char byte : digest) text += fmt::format("{:02x}", byte);
-    return text;
-  }
-
- private:
-  void cell(const std::string& text) {
-    std::array<unsigned char, 8> size{};
-    for (std::size_t i = 0; i < size.size(); ++i)
-      size[i] = static_cast<unsigned char>(std::uint64_t{text.size()} >> (8 * i));
-    crypto_hash_sha256_update(&state_, size.data(), size.size());
-    crypto_hash_sha256_update(&state_, reinterpret_cast<const unsigned char*>(text.data()), text.size());
-  }
-
-  crypto_hash_sha256_state state_{};
-};
+/// Each cell behind its length: no two lists of cells give the same bytes.
+void hashCell(crypto_hash_sha256_state& state, const std::string& text) {
+  std::array<unsigned char, 8> size{};
+  for (std::size_t i = 0; i < size.size(); ++i)
+    size[i] = static_cast<unsigned char>(std::uint64_t{text.size()} >> (8 * i));
+  crypto_hash_sha256_update(&state, size.data(), size.size());
+  crypto_hash_sha256_update(&state, reinterpret_cast<const unsigned char*>(text.data()), text.size());
+}
 
 }  // namespace
 
 std::string analysisDigest(const CohortDatabase& database) {
   [[maybe_unused]] static const int ready = sodium_init();
-  CellHash hash;
+  crypto_hash_sha256_state state{};
+  crypto_hash_sha256_init(&state);
+  const auto add = [&](const auto&... cells) { (hashCell(state, fmt::format("{}", cells)), ...); };
   for (const AttemptRow& a : database.listAttempts()) {
-    hash.add(a.uuid, a.participant, a.group, a.profile, a.startUtc, a.comparabilityKey, static_cast<int>(a.outcome),
-             static_cast<int>(a.mode), static_cast<int>(a.verification.verdict), a.complete, a.excluded,
-             a.exclusionReason);
+    add(a.uuid, a.participant, a.group, a.profile, a.startUtc, a.comparabilityKey, static_cast<int>(a.outcome),
+        static_cast<int>(a.mode), static_cast<int>(a.verification.verdict), a.complete, a.excluded, a.exclusionReason);
   }
   for (const Participant& p : database.participants()) {
-    hash.add(p.pseudonym, p.group, p.experience.size());
-    for (const auto& [criterion, value] : p.experience) hash.add(criterion, value);
+    add(p.pseudonym, p.group, p.experience.size());
+    for (const auto& [criterion, value] : p.experience) add(criterion, value);
   }
   database.eachValue({}, [&](const AttemptValue& item) {
     const CheckpointValue& v = item.value;
     // Shortest digits that give the same double again.
-    hash.add(item.attempt, v.name, v.subject, v.version, static_cast<int>(v.availability),
-             v.value ? fmt::format("{}", *v.value) : std::string());
+    add(item.attempt, v.name, v.subject, v.version, static_cast<int>(v.availability),
+        v.value ? fmt::format("{}", *v.value) : std::string());
   });
   for (const Rating& r : database.ratings()) {
-    hash.add(r.form, r.formVersion, r.attempt, r.rater, r.participant, r.answers.size());
-    for (const auto& [item, score] : r.answers) hash.add(item, score);
+    add(r.form, r.formVersion, r.attempt, r.rater, r.participant, r.answers.size());
+    for (const auto& [item, score] : r.answers) add(item, score);
   }
-  return hash.hex();
+  std::array<unsigned char, crypto_hash_sha256_BYTES> digest{};
+  crypto_hash_sha256_final(&state, digest.data());
+  return fmt::format("{:02x}", fmt::join(digest, ""));
 }
 
 }  // namespace calot::analytics

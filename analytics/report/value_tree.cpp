@@ -39,8 +39,6 @@ std::string range(const ValueTree& value, CellText text) {
 
 }  // namespace
 
-std::string jsonText(const ValueTree& tree) { return tree.dump(2, ' ', false, ValueTree::error_handler_t::replace); }
-
 std::string csvText(const ValueTree& rows, const std::string& columns) {
   std::vector<Path> paths;
   std::string text;

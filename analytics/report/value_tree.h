@@ -47,9 +47,6 @@ ValueTree treeOf(const Expected<T>& result, Write write) {
   return write(*result);
 }
 
-/// Over several lines; bytes that are no UTF-8 are replaced.
-std::string jsonText(const ValueTree& tree);
-
 /// A CSV file of the tree's rows, a line each. Numbers have the digits that give them back, true and false are "yes"
 /// and "no", a list's texts are joined by "; ", and what is null or not there is an empty cell.
 /// @param columns apart by blanks, each with the path of its cell in a row where that is not the name: "unit

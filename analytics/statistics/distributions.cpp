@@ -18,7 +18,6 @@ namespace calot::analytics {
 
 namespace bm = boost::math;
 
-double normalCdf(double z) { return bm::cdf(bm::normal(), z); }
 double normalQuantile(double p) { return bm::quantile(bm::normal(), p); }
 double normalTwoSided(double z) { return std::min(1.0, 2.0 * bm::cdf(bm::complement(bm::normal(), std::abs(z)))); }
 

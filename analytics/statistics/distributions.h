@@ -6,7 +6,6 @@
 
 namespace calot::analytics {
 
-double normalCdf(double z);
 /// @pre 0 < p < 1, here and below.
 double normalQuantile(double p);
 /// P(|Z| >= |z|).

@@ -195,8 +195,7 @@ Expected<RandomIntercept> randomIntercept(std::span<const ModelAttempt> attempts
                                                                          : model.reason()};
   }
   const double df = static_cast<double>(participants.size() - sites.size()) - 1.0;
-  return RandomIntercept{termOf(*model, 0, df, level), model->betweenVariance, model->withinVariance,
-                         model->restrictedLogLikelihood};
+  return RandomIntercept{termOf(*model, 0, df, level), *model};
 }
 
 namespace {
@@ -268,11 +267,7 @@ Expected<RepeatedGroups> repeatedGroups(std::span<const OccasionValue> values, O
     result.occasion.push_back(termOf(*model, 2 + s, inner, level));
     result.interaction.push_back(termOf(*model, 2 + steps + s, inner, level));
   }
-  result.betweenVariance = model->betweenVariance;
-  result.withinVariance = model->withinVariance;
-  result.restrictedLogLikelihood = model->restrictedLogLikelihood;
-  result.participants = model->participants;
-  result.attempts = model->attempts;
+  static_cast<ModelVariances&>(result) = *model;
   result.occasions = occasions.size();
   return result;
 }

@@ -10,14 +10,17 @@
 
 namespace calot::analytics {
 
-/// y = X b + u_participant + e, u and e independent and normal, fitted by restricted maximum likelihood.
-struct InterceptModel {
-  std::vector<double> coefficients;      ///< b, a column of X each
-  std::vector<double> errors;            ///< of b; the variances taken as known
-  double betweenVariance = 0.0;          ///< of u; 0: at its bound
-  double withinVariance = 0.0;           ///< of e
+struct ModelVariances {
+  double betweenVariance = 0.0;  ///< of participants; 0: at its bound, attempts of a person are as alike as others
+  double withinVariance = 0.0;   ///< of attempts of one participant
   double restrictedLogLikelihood = 0.0;  ///< without the term ln |X'X| / 2 that depends on the coding (as R's nlme)
   std::size_t participants = 0, attempts = 0;
+};
+
+/// y = X b + u_participant + e, u and e independent and normal, fitted by restricted maximum likelihood.
+struct InterceptModel : ModelVariances {
+  std::vector<double> coefficients;  ///< b, a column of X each
+  std::vector<double> errors;        ///< of b; the variances taken as known
 };
 
 /// Restricted maximum likelihood (Patterson and Thompson 1971, Biometrika 58:545). With l = var u / var e and w_i = 1 -
@@ -37,11 +40,7 @@ struct ModelAttempt {
 };
 
 /// Mean of x less mean of y, within sites; df = participants less sites less 1 (containment).
-struct RandomIntercept : ModelTerm {
-  double betweenVariance = 0.0;  ///< of participants; 0: at its bound, attempts of a person are as alike as others
-  double withinVariance = 0.0;   ///< of attempts of one participant
-  double restrictedLogLikelihood = 0.0;  ///< as InterceptModel's
-};
+struct RandomIntercept : ModelTerm, ModelVariances {};
 
 /// Value = constant + b [x] + site + u_participant + e by restricted maximum likelihood (fitInterceptModel()).
 /// Intervals and p take the variances as known but for the degrees of freedom. Sites are fixed strata. No answer for an
@@ -62,12 +61,11 @@ enum class OccasionKind {
 };
 
 /// Effects of the group are of x less y.
-struct RepeatedGroups {
+struct RepeatedGroups : ModelVariances {
   ModelTerm group;                     ///< difference of the groups at the first occasion
   std::vector<ModelTerm> occasion;     ///< of y: change for each step, or at each later occasion against the first
   std::vector<ModelTerm> interaction;  ///< by how much that of x differs
-  double betweenVariance = 0.0, withinVariance = 0.0, restrictedLogLikelihood = 0.0;
-  std::size_t participants = 0, attempts = 0, occasions = 0;
+  std::size_t occasions = 0;
 };
 
 /// value = a + b [x] + c occasion + d [x] occasion + u_participant + e by restricted maximum likelihood

@@ -104,11 +104,6 @@ Interval ofTwoSingle(double icc, const Design& d, double p) {
 
 }  // namespace
 
-const char* nameOf(IccForm form) {
-  static constexpr const char* names[]{"ICC(2,1)", "ICC(2,k)", "ICC(3,k)"};
-  return names[static_cast<std::size_t>(form)];
-}
-
 Expected<IntraclassCorrelation> intraclassCorrelation(const RatingTable& table, IccForm form, double level) {
   assert(level > 0.0 && level < 1.0);
   if (const std::string reason = objection(table); !reason.empty()) return NoResult{reason};

@@ -53,9 +53,6 @@ Expected<CronbachAlpha> cronbachAlpha(const RatingTable& items, double level = 0
 /// average: of the mean of all k.
 enum class IccForm : std::uint8_t { twoSingle, twoAverage, threeAverage };
 
-/// "ICC(2,1)" and so on.
-const char* nameOf(IccForm form);
-
 struct IntraclassCorrelation {
   double value = 0.0;  ///< may be negative
   Expected<Interval> interval = NoResult{"not computed"};

@@ -61,25 +61,11 @@ Expected<ContrastingGroups> contrastingGroups(std::span<const double> experts, s
   const auto back = [&](double v) { return options.logScale ? std::exp(v) : v; };
   ContrastingGroups result;
   result.cut = back(*cut);
-  const auto passes = [&](double v) { return better == Better::higher ? v >= *cut : v <= *cut; };
-  const auto judged = [&](const std::vector<double>& group, bool wrong) {
-    const NormalCurve curve = curveOf(group);
-    const double z = (*cut - curve.mean) / curve.deviation;
-    Misjudged m;
-    m.observed = static_cast<std::size_t>(
-        std::count_if(group.begin(), group.end(), [&](double v) { return passes(v) == wrong; }));
-    m.share = static_cast<double>(m.observed) / static_cast<double>(group.size());
-    m.theoretical = normalCdf((better == Better::higher) == wrong ? -z : z);
-    return m;
-  };
-  result.falsePositives = judged(n, true);
-  result.falseNegatives = judged(e, false);
   const auto b = bootstrap(
       e, n, [&](std::span<const double> x, std::span<const double> y) { return cutOf(x, y, better); }, options);
   result.seed = options.seed;
   if (b) {
     result.interval = Interval{back(b->interval.lower), back(b->interval.upper), options.level, b->interval.method};
-    result.resamplesWithoutCut = b->without;
   } else {
     result.interval = NoResult{b.reason()};
   }

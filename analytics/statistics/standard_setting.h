@@ -29,19 +29,10 @@ struct ContrastingGroupsOptions : BootstrapOptions {
   bool logScale = false;  ///< curves of the logarithms (times); the cut is transformed back
 };
 
-struct Misjudged {
-  std::size_t observed = 0;  ///< people
-  double share = 0.0;        ///< of their group
-  double theoretical = 0.0;  ///< share under the fitted curve
-};
-
 struct ContrastingGroups {
-  double cut = 0.0;          ///< in the unit of the values; at the cut one passes
-  Misjudged falsePositives;  ///< novices who pass
-  Misjudged falseNegatives;  ///< experts who fail
+  double cut = 0.0;  ///< in the unit of the values; at the cut one passes
   /// Percentile bootstrap with groups resampled separately; wide for ten values per group.
   Expected<Interval> interval = NoResult{"not computed"};
-  std::size_t resamplesWithoutCut = 0;  ///< when there is an interval
   std::uint64_t seed = 0;
 };
 

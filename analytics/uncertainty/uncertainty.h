@@ -36,7 +36,7 @@ OpenLoopRun runIn(const SceneDescription& scene, const recorder::AttemptHeader& 
 using UncertaintyProgress = std::function<void(std::uint64_t done, std::uint64_t of)>;
 
 /// Runs an attempt's samples in half the step (to the next whole tick), with twice the tetrahedra, and
-/// in twelve scenes with perturbed constants (scene_variants.h); each run by itself, `threads` at a time.
+/// in twelve scenes with perturbed constants (perturbed()); each run by itself, `threads` at a time.
 /// @param values of the attempt as it is: those that the intervals are of
 /// @param threads 0: one for each processor
 /// @throws Error (refused) where the attempt's scene cannot be varied: steps of one tick

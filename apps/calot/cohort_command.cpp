@@ -2,7 +2,6 @@
 // calot cohort: a cohort database as a whole.
 
 #include "analytics/cohort/cohort_database.h"
-#include "analytics/cohort/merge.h"
 #include "analytics/cohort/registers.h"
 #include "analytics/cohort/withdraw.h"
 #include "analytics/interchange/cohort_bundle.h"
@@ -163,12 +162,12 @@ struct NameOptions {
 };
 
 void nameSite(const NameOptions& o) {
-  analytics::setSite(o.cohort, o.name, o.noteGiven());
+  analytics::setNamed(o.cohort, "site", o.name, o.noteGiven());
   o.printDone();
 }
 
 void nameArm(const NameOptions& o) {
-  analytics::setArm(o.cohort, o.name, o.noteGiven());
+  analytics::setNamed(o.cohort, "arm", o.name, o.noteGiven());
   o.printDone();
 }
 

@@ -7,7 +7,6 @@
 #include <map>
 #include <set>
 
-#include "analytics/assessment/pack_answers.h"
 #include "analytics/assessment/rating_form.h"
 #include "analytics/cohort/blinding.h"
 #include "analytics/cohort/withdraw.h"

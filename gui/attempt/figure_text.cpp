@@ -227,18 +227,18 @@ SummaryPanel::SummaryPanel(QWidget* parent)
   setLayout(both);
 }
 
-void SummaryPanel::showSummary(const analytics::AttemptSummary& summary) {
+void SummaryPanel::showSummary(const AttemptSummary& summary) {
   verdict_->setText(QString::fromStdString(summary.verdict));
   criticalView_->setText(QString::fromStdString(summary.criticalView));
   criticalView_->setVisible(!summary.criticalView.empty());
   errors_->setText(QString::fromStdString(summary.errors));
   QStringList lines;
-  for (const analytics::KeyFigure& figure : summary.figures) lines += keyFigureText(figure);
+  for (const KeyFigure& figure : summary.figures) lines += keyFigureText(figure);
   figures_->setText(lines.join('\n'));
   show();
 }
 
-QString keyFigureText(const analytics::KeyFigure& figure) {
+QString keyFigureText(const KeyFigure& figure) {
   QStringList parts;
   for (const analytics::CheckpointValue& value : figure.values) {
     const QString subject = QString::fromStdString(value.subject);

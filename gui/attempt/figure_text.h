@@ -13,6 +13,7 @@
 
 #include "analytics/assessment/grade.h"
 #include "analytics/cohort/cohort_database.h"
+#include "gui/words/attempt_summary.h"
 
 class QLabel;
 
@@ -99,7 +100,7 @@ class SummaryPanel : public QWidget {
   Q_OBJECT
  public:
   explicit SummaryPanel(QWidget* parent = nullptr);
-  void showSummary(const analytics::AttemptSummary& summary);
+  void showSummary(const AttemptSummary& summary);
 
  private:
   QLabel* verdict_;
@@ -109,6 +110,6 @@ class SummaryPanel : public QWidget {
 };
 
 /// "Path length of the instrument's tip: left 179 mm, right 696 mm"
-[[nodiscard]] QString keyFigureText(const analytics::KeyFigure& figure);
+[[nodiscard]] QString keyFigureText(const KeyFigure& figure);
 
 }  // namespace calot::gui

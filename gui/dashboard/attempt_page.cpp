@@ -45,7 +45,7 @@ constexpr double millimetres = 1000.0;
 struct SheetRequest {
   std::string database;
   analytics::AttemptRow attempt;
-  analytics::AttemptSummary summary;
+  AttemptSummary summary;
   std::vector<TrackEvent> events;
   std::vector<WorstMoment> moments;  ///< at most maxWorstMoments
   std::filesystem::path recording;   ///< empty: no pictures
@@ -77,8 +77,7 @@ analytics::ReportDocument attemptDocument(const SheetRequest& request) {
   if (!request.summary.criticalView.empty()) document.add(request.summary.criticalView);
   document.add(request.summary.errors);
   std::vector<std::string> figures;
-  for (const analytics::KeyFigure& figure : request.summary.figures)
-    figures.push_back(keyFigureText(figure).toStdString());
+  for (const KeyFigure& figure : request.summary.figures) figures.push_back(keyFigureText(figure).toStdString());
   document.addList(figures);
   analytics::ReportTable table = analytics::tableOf("What went wrong", {"time", "=event"});
   constexpr std::size_t maxRows = 24;

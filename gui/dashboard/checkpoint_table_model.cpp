@@ -13,6 +13,7 @@
 
 #include "analytics/assessment/grade.h"
 #include "gui/attempt/widget_parts.h"
+#include "gui/words/attempt_summary.h"
 #include "gui/words/event_words.h"
 
 namespace calot::gui {
@@ -333,7 +334,7 @@ void FamilyTreeModel::fill() {
   std::map<int, Entry*> families;  // by rank
   for (int row = 0; row < source_.rowCount(); ++row) {
     const analytics::CheckpointValue& value = source_.value(row);
-    if (analytics::sceneLacks(value)) {
+    if (sceneLacks(value)) {
       ++leftOut_;
       continue;
     }

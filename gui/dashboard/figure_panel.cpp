@@ -73,8 +73,8 @@ void FigurePanel::setEvents(const std::vector<TrackEvent>& events) {
   eventTable_->expandAll();
 }
 
-analytics::AttemptSummary FigurePanel::summary() const {
-  return analytics::summaryOf(*attempt_, values_, standing_ && standing_->grade ? &*standing_->grade : nullptr);
+AttemptSummary FigurePanel::summary() const {
+  return summaryOf(*attempt_, values_, standing_ && standing_->grade ? &*standing_->grade : nullptr);
 }
 
 std::vector<WorstMoment> FigurePanel::worstMoments() const {

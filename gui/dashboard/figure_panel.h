@@ -9,6 +9,7 @@
 #include "analytics/assessment/grade.h"
 #include "gui/dashboard/checkpoint_table_model.h"
 #include "gui/dashboard/cohort_document.h"
+#include "gui/words/attempt_summary.h"
 
 class QComboBox;
 class QLabel;
@@ -56,7 +57,7 @@ class FigurePanel : public QWidget {
   void setMoments(const std::vector<analytics::FigureMoments>& moments);
 
   [[nodiscard]] const std::vector<analytics::CheckpointValue>& values() const { return values_; }
-  [[nodiscard]] analytics::AttemptSummary summary() const;  ///< @pre an attempt is shown
+  [[nodiscard]] AttemptSummary summary() const;  ///< @pre an attempt is shown
   /// Moments worth a picture: of figures that fall short of the norm, then of those that count, apart in time.
   [[nodiscard]] std::vector<WorstMoment> worstMoments() const;
   [[nodiscard]] const std::vector<TrackEvent>& events() const { return trackEvents_; }

@@ -6,6 +6,7 @@
 #include "analytics/assessment/grade.h"
 #include "gui/attempt/figure_text.h"
 #include "gui/dashboard/plot_view.h"
+#include "gui/words/attempt_summary.h"
 
 namespace calot::gui {
 
@@ -217,7 +218,7 @@ void TraineePage::showGoal(const TraineeHistory& history, const std::vector<anal
   std::vector<analytics::CheckpointValue> own;
   tryTo([&] { own = document_->database().values(newest.uuid); });
   const AttemptStanding standing = standingOf(newest, own, *fitting.front());
-  goal_->setText(standing.grade ? "Next goal: " + QString::fromStdString(analytics::nextGoal(*standing.grade).text)
+  goal_->setText(standing.grade ? "Next goal: " + QString::fromStdString(nextGoal(*standing.grade).text)
                                 : "No goal: " + QString::fromStdString(standing.verdict));
 }
 

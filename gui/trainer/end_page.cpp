@@ -9,9 +9,9 @@
 #include <utility>
 
 #include "analytics/assess.h"
-#include "analytics/checkpoints/replay_words.h"
 #include "analytics/checkpoints/checkpoint.h"
 #include "analytics/checkpoints/collector.h"
+#include "analytics/checkpoints/replay_words.h"
 #include "gui/attempt/figure_text.h"
 #include "gui/attempt/widget_parts.h"
 #include "gui/trainer/run_panel.h"
@@ -155,8 +155,7 @@ AttemptReport reportOf(AttemptFacts now, const std::optional<AttemptFacts>& prev
   std::optional<AttemptStanding> standing;
   if (!fitting.empty()) standing = standingOf(now.attempt, now.values, *fitting.front(), now.intervals);
   const bool judged = standing && standing->judged;
-  report.summary =
-      analytics::summaryOf(now.attempt, now.values, judged && standing->grade ? &*standing->grade : nullptr);
+  report.summary = summaryOf(now.attempt, now.values, judged && standing->grade ? &*standing->grade : nullptr);
   if (!standing)
     report.norm = "No norm for this task, device and mode.";
   else if (judged)
@@ -170,7 +169,7 @@ AttemptReport reportOf(AttemptFacts now, const std::optional<AttemptFacts>& prev
                              : QString("No earlier attempt at this task to compare with.");
   const bool judges = now.attempt.outcome == recorder::Outcome::completed && previous &&
                       previous->attempt.outcome == recorder::Outcome::completed;
-  for (const analytics::KeyFigure& figure : report.summary.figures) {
+  for (const KeyFigure& figure : report.summary.figures) {
     for (const analytics::CheckpointValue& value : figure.values) {
       FigureReport& line = report.figures.emplace_back();
       line.title = figureTitle(value.name, value.subject);

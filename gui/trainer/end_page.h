@@ -14,6 +14,7 @@
 #include "gui/attempt/long_work.h"
 #include "gui/attempt/replay_transport.h"
 #include "gui/trainer/training_session.h"
+#include "gui/words/attempt_summary.h"
 
 class QLabel;
 class QListWidget;
@@ -39,7 +40,7 @@ struct FigureReport {
 
 struct AttemptReport {
   AttemptFacts facts;
-  analytics::AttemptSummary summary;
+  AttemptSummary summary;
   QString norm;      ///< what it is held against, and what that finds; or why there is none
   QString previous;  ///< which attempt it is compared with, or why there is none
   std::vector<FigureReport> figures;

@@ -10,7 +10,6 @@
 
 #include "analytics/checkpoints/checkpoint.h"
 #include "analytics/checkpoints/collector.h"
-#include "analytics/checkpoints/force.h"
 #include "analytics/checkpoints/phases.h"
 #include "sim/math/random.h"
 #include "tests/bench/benchmarks.h"

@@ -113,7 +113,6 @@ std::vector<CheckpointEntry> attemptRows() {
       {.place = {CheckpointFamily::exactness, 10},
        .definition = {.name = "steps-missed",
                       .title = "Steps that missed a tolerance",
-                      .unit = "1",
                       .displayUnit = "%",
                       .definition = "#{steps whose linear solve or contact problem was left above its tolerance, or "
                                     "that held tissue back} / #{steps}",

@@ -202,7 +202,6 @@ std::vector<CheckpointEntry> cameraRows() {
       {.place = {CheckpointFamily::motion, 180},
        .definition = {.name = "camera-horizon",
                       .title = "Deviation of the horizon",
-                      .unit = "rad",
                       .displayUnit = "deg",
                       .direction = Direction::lower,
                       .window = whereItMoves,
@@ -214,7 +213,6 @@ std::vector<CheckpointEntry> cameraRows() {
       {.place = {CheckpointFamily::motion, 190},
        .definition = {.name = "camera-centring",
                       .title = "Time with the active tip in the middle of the picture",
-                      .unit = "1",
                       .displayUnit = "%",
                       .direction = Direction::higher,
                       .window = "steps with an active tip, where the camera moves in the attempt",
@@ -227,7 +225,6 @@ std::vector<CheckpointEntry> cameraRows() {
       {.place = {CheckpointFamily::motion, 200},
        .definition = {.name = "camera-path-length",
                       .title = "Path length of the endoscope's lens",
-                      .unit = "m",
                       .displayUnit = "mm",
                       .direction = Direction::lower,
                       .window = whereItMoves,
@@ -260,7 +257,6 @@ std::vector<CheckpointEntry> cameraRows() {
       {.place = {CheckpointFamily::safety, 120},
        .definition = {.name = "cut-out-of-view",
                       .title = "Clips, cuts and openings out of view",
-                      .unit = "1",
                       .direction = Direction::lower,
                       .definition = "#{clips set or dropped, vessels cut, burned through or torn, vessels' walls "
                                     "injured and organs opened at a place outside of the picture, or behind the lens}; "

@@ -209,7 +209,6 @@ std::vector<CheckpointEntry> contactRows() {
       {.place = {CheckpointFamily::contact, 41},
        .definition = {.name = "instrument-clashes",
                       .title = "Times that the instruments touched each other",
-                      .unit = "1",
                       .direction = Direction::lower,
                       .instruments = "both together",
                       .definition = "#{touches of both instruments}; contact that is interrupted for less than 0.1 s "

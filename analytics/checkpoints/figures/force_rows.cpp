@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Forces on each hand, and on each organ, vessel and body of fat.
-#include "analytics/checkpoints/force.h"
+#include "analytics/checkpoints/collector.h"
 
 #include <algorithm>
 #include <numeric>

@@ -119,7 +119,6 @@ std::vector<CheckpointEntry> smoothnessRows() {
       {.place = {CheckpointFamily::motion, 100},
        .definition = {.name = "sparc",
                       .title = "Spectral arc length (SPARC)",
-                      .unit = "1",
                       .direction = Direction::higher,
                       .minCoverage = minSparcCoverage,
                       .version = 3,
@@ -133,7 +132,6 @@ std::vector<CheckpointEntry> smoothnessRows() {
       {.place = {CheckpointFamily::motion, 110},
        .definition = {.name = "log-dimensionless-jerk",
                       .title = "Log dimensionless jerk (LDLJ of the speed profile)",
-                      .unit = "1",
                       .direction = Direction::higher,
                       .version = 2,
                       .definition = "-ln(T^3 / v_peak^2 * sum (v'')^2 dt), v'' = (v(k+1) - 2 v(k) + v(k-1)) / dt^2, T "
@@ -144,7 +142,6 @@ std::vector<CheckpointEntry> smoothnessRows() {
       {.place = {CheckpointFamily::motion, 120},
        .definition = {.name = "movement-jerk",
                       .title = "Log dimensionless jerk of a movement (mean)",
-                      .unit = "1",
                       .direction = Direction::higher,
                       .version = 2,
                       .definition = "mean over movements of log-dimensionless-jerk of each; movements as in movements, "

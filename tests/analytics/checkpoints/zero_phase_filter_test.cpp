@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "analytics/checkpoints/zero_phase_filter.h"
+#include "analytics/checkpoints/motion.h"
 
 #include <gtest/gtest.h>
 

@@ -13,7 +13,6 @@
 
 #include "analytics/cohort/cohort_database.h"
 #include "analytics/cohort/embedded.h"
-#include "analytics/cohort/merge.h"
 #include "analytics/cohort/registers.h"
 #include "analytics/cohort/withdraw.h"
 #include "analytics/regrade.h"

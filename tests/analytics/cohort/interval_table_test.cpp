@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "analytics/cohort/cohort_database.h"
-#include "analytics/cohort/merge.h"
 #include "recorder/base/errors.h"
 #include "tests/analytics/cohort/support/cohort_support.h"
 #include "tests/support/fault.h"

@@ -23,7 +23,7 @@ TEST(IntraclassCorrelation, threeOfShroutAndFleiss) {
   for (const Row& r : {Row{IccForm::twoSingle, .28976377952756, .018786513374712, .76108436964895},
                        Row{IccForm::twoAverage, .62005054759899, .071136815302503, .92723204016772},
                        Row{IccForm::threeAverage, .90931554237707, .675674713816305, .98589167816906}}) {
-    SCOPED_TRACE(nameOf(r.form));
+    SCOPED_TRACE(static_cast<int>(r.form));
     const auto icc = intraclassCorrelation(judges, r.form);
     ASSERT_TRUE(icc) << icc.reason();
     EXPECT_NEAR(icc->value, r.value, 5e-14);
@@ -79,10 +79,11 @@ TEST(IntraclassCorrelation, noInputGivesANan) {
     for (const IccForm form : {IccForm::twoSingle, IccForm::twoAverage, IccForm::threeAverage}) {
       const auto icc = intraclassCorrelation(t, form);
       if (!icc) continue;
-      ASSERT_TRUE(std::isfinite(icc->value)) << nameOf(form);
+      ASSERT_TRUE(std::isfinite(icc->value)) << static_cast<int>(form);
       if (icc->interval) {
-        ASSERT_TRUE(std::isfinite(icc->interval->lower) && std::isfinite(icc->interval->upper)) << nameOf(form);
-        ASSERT_LE(icc->interval->lower, icc->interval->upper) << nameOf(form);
+        ASSERT_TRUE(std::isfinite(icc->interval->lower) && std::isfinite(icc->interval->upper))
+            << static_cast<int>(form);
+        ASSERT_LE(icc->interval->lower, icc->interval->upper) << static_cast<int>(form);
       }
     }
   }

@@ -63,9 +63,7 @@ class NeverNan : public testing::Test {
     ContrastingGroupsOptions few;
     few.resamples = 99;
     const auto cut = contrastingGroups(x, y, Better::higher, few);
-    check("cut", cut, [](const ContrastingGroups& c) {
-      return Values{c.cut, c.falsePositives.theoretical, c.falseNegatives.theoretical};
-    });
+    check("cut", cut, [](const ContrastingGroups& c) { return Values{c.cut}; });
     if (cut) checkInterval("the cut's interval", cut->interval);
     BootstrapOptions resampling;
     resampling.resamples = 99;

@@ -41,6 +41,7 @@
 #include "gui/dashboard/ratings_page.h"
 #include "gui/dashboard/timeline.h"
 #include "gui/report/pdf_report.h"
+#include "gui/words/attempt_summary.h"
 #include "recorder/base/errors.h"
 #include "tests/gui/dashboard/support/assessed.h"
 #include "tests/gui/dashboard/support/cohort.h"
@@ -116,7 +117,7 @@ TEST_F(Instructor, FoldsCheckpointsByFamilyAndSortsThem) {
       analytics::CheckpointValue shown;
       shown.availability = analytics::Availability::notApplicable;
       shown.reason = model.index(row, CheckpointTableModel::valueColumn, family).data().toString().toStdString();
-      EXPECT_FALSE(analytics::sceneLacks(shown)) << shown.reason;
+      EXPECT_FALSE(gui::sceneLacks(shown)) << shown.reason;
     }
   }
   EXPECT_EQ(shown + model.leftOut(), page.figures().figures().rowCount());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What an instructor reads first of an attempt, and what a trainee aims at next.
-#include "analytics/assessment/grade.h"
+#include "gui/words/attempt_summary.h"
 
 #include <gtest/gtest.h>
 
@@ -32,7 +32,7 @@ TEST(AttemptSummary, saysVerdictCriticalViewErrorsAndTheFiguresThatCount) {
       of("speed-mean", "left", 0.01), of("organ-burned", "liver", 0.0), of("organ-burned", "gallbladder", 0.01),
       of("critical-view", "", 5.0),   of("clip-errors", "", 2.0),       of("organ-perforations", "liver", 0.0),
       of("critical-errors", "", 1.0)};
-  const AttemptSummary summary = summaryOf(completed(), values, nullptr);
+  const gui::AttemptSummary summary = gui::summaryOf(completed(), values, nullptr);
   EXPECT_EQ(summary.verdict, "The task was completed. It is not held against a norm.");
   EXPECT_EQ(summary.criticalView,
             "Critical view: satisfactory, 5 of 6 points (triangle 2, lower third 2, two structures 1).");
@@ -40,7 +40,7 @@ TEST(AttemptSummary, saysVerdictCriticalViewErrorsAndTheFiguresThatCount) {
             "Errors: 1 critical error, 2 clip errors, no perforation; a critical error fails the attempt.");
   ASSERT_EQ(summary.figures.size(), 5U);
   std::vector<std::string_view> shown{"critical-view"};
-  for (const KeyFigure& figure : summary.figures) shown.push_back(figure.checkpoint);
+  for (const gui::KeyFigure& figure : summary.figures) shown.push_back(figure.checkpoint);
   EXPECT_EQ(shown, countingCheckpoints()) << "those that count in a norm's short rule, and no others";
   EXPECT_EQ(summary.figures.back().values.size(), 2U) << "both hands";
 }
@@ -52,20 +52,20 @@ TEST(AttemptSummary, saysNothingOfWhatTheSceneDoesNotHave) {
       none("connective-remaining", Availability::notApplicable,
            "no connective tissue holds a gallbladder in this scene"),
       none("elapsed-time", Availability::notApplicable, "not completed: stopped at 4.000 s")};
-  const AttemptSummary summary = summaryOf(completed(), values, nullptr);
+  const gui::AttemptSummary summary = gui::summaryOf(completed(), values, nullptr);
   EXPECT_EQ(summary.criticalView, "");
   EXPECT_EQ(summary.errors, "Errors: none are judged in this scene.");
   ASSERT_EQ(summary.figures.size(), 1U);
   EXPECT_EQ(summary.figures[0].checkpoint, "elapsed-time") << "that is of the attempt, not of the scene";
-  EXPECT_TRUE(sceneLacks(values[2]));
-  EXPECT_FALSE(sceneLacks(values[3]));
+  EXPECT_TRUE(gui::sceneLacks(values[2]));
+  EXPECT_FALSE(gui::sceneLacks(values[3]));
 }
 
 TEST(AttemptSummary, anAttemptThatDivergedSaysSoFirst) {
   AttemptRow attempt = completed();
   attempt.verification.verdict = Verdict::diverged;
   attempt.outcome = recorder::Outcome::stopped;
-  EXPECT_EQ(summaryOf(attempt, {}, nullptr).verdict,
+  EXPECT_EQ(gui::summaryOf(attempt, {}, nullptr).verdict,
             "The task was not completed: stopped. The re-simulation differs: no figure can be relied on. It is not "
             "held against a norm.");
 }
@@ -90,16 +90,16 @@ TEST(NextGoal, isTheFirstFigureThatCountsAndFellShort) {
   grade.figures = {
       figure("elapsed-time", 80.0, 60.0, false, 20.0, true), figure("path-length", 0.5, 0.4, false, 10.0, true),
       figure("organ-burned", 0.0, 0.01, true, 50.0, true), figure("speed-mean", 0.0, 0.01, false, 1.0, false)};
-  EXPECT_EQ(nextGoal(grade).checkpoint, "path-length") << "the one that lies furthest behind the competent";
-  EXPECT_EQ(nextGoal(grade).text, "Path length of the instrument's tip: at most 400 mm (now 500 mm).");
+  EXPECT_EQ(gui::nextGoal(grade).checkpoint, "path-length") << "the one that lies furthest behind the competent";
+  EXPECT_EQ(gui::nextGoal(grade).text, "Path length of the instrument's tip: at most 400 mm (now 500 mm).");
   grade.figures[0].mark.reason = "no interval: fixed by A. Instructor";
-  EXPECT_EQ(nextGoal(grade).checkpoint, "elapsed-time") << "a fixed mark has to be passed";
+  EXPECT_EQ(gui::nextGoal(grade).checkpoint, "elapsed-time") << "a fixed mark has to be passed";
   grade.criticalErrors = 1.0;
-  EXPECT_EQ(nextGoal(grade).checkpoint, "critical-errors") << "first of all";
+  EXPECT_EQ(gui::nextGoal(grade).checkpoint, "critical-errors") << "first of all";
   grade.criticalErrors = 0.0;
   grade.figures.erase(grade.figures.begin(), grade.figures.begin() + 2);
   grade.passed = true;
-  EXPECT_EQ(nextGoal(grade).text, "Every figure that counts is passed: the next task, or another norm.");
+  EXPECT_EQ(gui::nextGoal(grade).text, "Every figure that counts is passed: the next task, or another norm.");
 }
 
 }  // namespace
