@@ -9,6 +9,7 @@
 
 #include "analytics/cohort/connection.h"
 #include "recorder/base/dates.h"
+#include "recorder/base/file_bytes.h"
 
 namespace calot::analytics {
 namespace {
@@ -118,7 +119,7 @@ std::string shownCell(const Cell& cell) {
   if (const auto* d = std::get_if<double>(&cell)) return fmt::format("{}", *d);
   if (const auto* s = std::get_if<std::string>(&cell)) return fmt::format("\"{}\"", *s);
   if (const auto* b = std::get_if<Blob>(&cell)) {
-    const std::string hex = hexOf(*b);
+    const std::string hex = recorder::hexOf(*b);
     return hex.size() > 16 ? hex.substr(0, 16) + "..." : hex;
   }
   return "nothing";
@@ -138,12 +139,6 @@ std::string joined(const std::vector<std::string>& parts, const char* between) {
   std::string text;
   for (const std::string& part : parts) text += (text.empty() ? "" : between) + part;
   return text;
-}
-
-std::string hexOf(const Blob& bytes) {
-  std::string hex;
-  for (const unsigned char byte : bytes) hex += fmt::format("{:02x}", byte);
-  return hex;
 }
 
 int execute(SQLite::Database& db, const std::string& sql, const std::vector<Cell>& parameters) {

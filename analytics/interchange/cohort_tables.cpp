@@ -13,6 +13,7 @@
 #include "analytics/interchange/folder_output.h"
 #include "recorder/attempt.h"
 #include "recorder/base/csv_writer.h"
+#include "recorder/base/file_bytes.h"
 
 namespace calot::analytics {
 namespace {
@@ -23,13 +24,13 @@ Json jsonOf(const Cell& cell) {
   if (const auto* s = std::get_if<std::string>(&cell)) return *s;
   if (const auto* i = std::get_if<std::int64_t>(&cell)) return *i;
   if (const auto* d = std::get_if<double>(&cell)) return *d;
-  if (const auto* b = std::get_if<Blob>(&cell)) return hexOf(*b);
+  if (const auto* b = std::get_if<Blob>(&cell)) return recorder::hexOf(*b);
   return nullptr;
 }
 
 std::string csvOf(const Cell& cell) {
   if (const auto* s = std::get_if<std::string>(&cell)) return csvCell(*s);
-  if (const auto* b = std::get_if<Blob>(&cell)) return hexOf(*b);
+  if (const auto* b = std::get_if<Blob>(&cell)) return recorder::hexOf(*b);
   return std::holds_alternative<std::monostate>(cell) ? "" : shownCell(cell);
 }
 

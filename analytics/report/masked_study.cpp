@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "recorder/attempt.h"
+#include "recorder/base/file_bytes.h"
 #include "sim/scene/version.h"
 
 namespace calot::analytics {
@@ -128,9 +129,7 @@ class CellHash {
   std::string hex() {
     std::array<unsigned char, crypto_hash_sha256_BYTES> digest{};
     crypto_hash_sha256_final(&state_, digest.data());
-    std::string text;
-    for (const unsigned char byte : digest) text += fmt::format("{:02x}", byte);
-    return text;
+    return recorder::hexOf(digest);
   }
 
  private:

@@ -14,6 +14,7 @@
 #include <system_error>
 
 #include "recorder/base/errors.h"
+#include "recorder/base/file_bytes.h"
 #include "recorder/base/nearest_word.h"
 #include "recorder/base/program_files.h"
 #include "recorder/base/text_words.h"
@@ -141,5 +142,12 @@ void stopOnSignals() {
 }
 
 std::atomic<bool>& stopRequested() { return requested; }
+
+std::array<std::byte, 32> keyOf(const std::string& text, const char* option) {
+  std::array<std::byte, 32> bytes{};
+  if (!recorder::readHex(text, bytes))
+    throw Error(ErrorKind::invalid, fmt::format("{}: 64 hexadecimal digits are expected", option));
+  return bytes;
+}
 
 }  // namespace calot::apps

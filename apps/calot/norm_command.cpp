@@ -110,7 +110,6 @@ Json normJson(const analytics::Norm& norm) {
          {"seed", fmt::format("{}", norm.seed)},
          {"use", analytics::useOf(norm)},
          {"checkpoints", Json::array()}};
-  const auto number = [](const std::optional<double>& v) { return v ? Json(*v) : Json(nullptr); };
   for (const analytics::NormCheckpoint& c : norm.checkpoints) {
     j["checkpoints"].push_back({{"checkpoint", c.checkpoint},
                                 {"subject", c.subject},
@@ -118,9 +117,9 @@ Json normJson(const analytics::Norm& norm) {
                                 {"direction", analytics::nameOf(c.direction)},
                                 {"log_scale", c.logScale},
                                 {"in_rule", c.inRule},
-                                {"cut_si", number(c.cut)},
-                                {"lower_si", number(c.lower)},
-                                {"upper_si", number(c.upper)},
+                                {"cut_si", c.cut},
+                                {"lower_si", c.lower},
+                                {"upper_si", c.upper},
                                 {"fixed", analytics::isFixed(c)},
                                 {"reason", c.reason}});
     if (c.metric) j["checkpoints"].back()["source_sha256"] = c.metric->sha256;
