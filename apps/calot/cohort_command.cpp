@@ -59,10 +59,9 @@ void handOut(const CohortExport& o) {
 Json mergeOne(const std::string& into, const std::string& from, bool json) {
   const analytics::CohortMerge m = analytics::mergeCohorts(into, from);
   if (!json && m.conflicts.empty()) {
-    std::cout << fmt::format("{}: {}: {} participants, {} attempts, {} extended, {} other rows, {} entries filled{}\n",
-                             into, m.changed() ? "merged" : "nothing new", m.participants, m.attempts, m.extended,
-                             m.rows, m.filled,
-                             m.withdrawn > 0 ? fmt::format("; {} withdrawn attempts stay out", m.withdrawn) : "");
+    fmt::print("{}: {}: {} participants, {} attempts, {} extended, {} other rows, {} entries filled{}\n", into,
+               m.changed() ? "merged" : "nothing new", m.participants, m.attempts, m.extended, m.rows, m.filled,
+               m.withdrawn > 0 ? fmt::format("; {} withdrawn attempts stay out", m.withdrawn) : "");
   }
   for (const std::string& conflict : m.conflicts) fmt::print(stderr, "calot: conflict: {}\n", conflict);
   return {{"merged", m.conflicts.empty()},
@@ -123,7 +122,7 @@ void scrub(const CohortOptions& o) {
 
 void upgrade(const CohortOptions& o) {
   const analytics::CohortDatabase database(o.cohort, analytics::CohortDatabase::Access::write);
-  std::cout << fmt::format("{}: schema {}\n", o.cohort, database.schemaVersion());
+  fmt::print("{}: schema {}\n", o.cohort, database.schemaVersion());
 }
 
 void listRegisters(const CohortOptions& o) {
@@ -171,7 +170,7 @@ void nameStation(const NameOptions& o) {
 
 void enterName(const NameOptions& o) {
   o.name(o);
-  std::cout << fmt::format("{}: {} {}\n", o.cohort, o.command->get_name(), o.who);
+  fmt::print("{}: {} {}\n", o.cohort, o.command->get_name(), o.who);
 }
 
 }  // namespace

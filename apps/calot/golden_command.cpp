@@ -381,9 +381,7 @@ void updateGolden(const GoldenOptions& o) {
   const std::filesystem::path folder = folderOf(o);
   const GoldenList list = readGoldenList(folder / listName);
   refuseUpdate(folder, list, o.reason);
-  GoldenList made;
-  made.simulationVersion = simulationVersion;
-  made.reason = o.reason;
+  GoldenList made{simulationVersion, o.reason, {}, {}};
   Temporary temporary;
   for (const GoldenEntry& entry : list.recordings) {
     temporary.files.push_back(folder / ("new." + entry.file));

@@ -120,12 +120,12 @@ void printRegrade(const analytics::Regrade& regrade) {
     table.print(std::cout);
     std::cout << '\n';
     for (const std::string& title : order)
-      std::cout << fmt::format("{}: changed in {} of {} attempts\n", title, attemptsOf[title], regrade.attempts.size());
+      fmt::print("{}: changed in {} of {} attempts\n", title, attemptsOf[title], regrade.attempts.size());
   }
-  std::cout << fmt::format("{} attempts: {} changed, {} unchanged", regrade.attempts.size(), counts[Regraded::changed],
-                           counts[Regraded::unchanged]);
+  fmt::print("{} attempts: {} changed, {} unchanged", regrade.attempts.size(), counts[Regraded::changed],
+             counts[Regraded::unchanged]);
   for (const Regraded how : {Regraded::missing, Regraded::motion, Regraded::unreadable, Regraded::conflict}) {
-    if (counts[how] > 0) std::cout << fmt::format(", {} {}", counts[how], regradedName(how));
+    if (counts[how] > 0) fmt::print(", {} {}", counts[how], regradedName(how));
   }
   std::cout << '\n';
   for (const Error& fault : regrade.notRead) std::cout << "not read: " << messageOf(fault) << '\n';

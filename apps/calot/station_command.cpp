@@ -14,7 +14,7 @@ struct StationOptions {
 };
 
 void printKey(const recorder::StationKey& key) {
-  std::cout << fmt::format("station {}\npublic key {}\n", key.station, recorder::hexOf(key.publicKey));
+  fmt::print("station {}\npublic key {}\n", key.station, recorder::hexOf(key.publicKey));
 }
 
 void initStation(const StationOptions& o) {
