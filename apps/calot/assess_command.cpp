@@ -137,10 +137,9 @@ ExitCode assess(const AssessOptions& o) {
   nlohmann::json list = nlohmann::json::array();
   std::size_t done = 0;
   Progress progress("assessing, recordings", o.json);
-  analytics::AssessSettings settings{.threads = o.threads.value_or(1)};
+  analytics::AssessSettings settings{
+      .threads = o.threads.value_or(1), .engine = {.apart = o.apart}, .metrics = &metrics};
   if (o.cutoff > 0.0) settings.cutoff = o.cutoff;
-  settings.engine.apart = o.apart;
-  settings.metrics = &metrics;
   recorder::WorkerPool pool(o.jobs);
   analytics::judgeAll(files, pool, settings, [&](std::size_t i, analytics::JudgedRecording judged) {
     Stored stored;

@@ -237,21 +237,15 @@ GoldenEntry recordEntry(const GoldenEntry& entry, const std::filesystem::path& f
   SourceOptions who;
   who.performer = entry.performer;
   const std::unique_ptr<recorder::SampleSource> source = makeSource(who, built.model->scene(), entry.seed);
-  recorder::AttemptSettings settings;
-  settings.purpose = "golden";
-  settings.seed = entry.seed;
-  const recorder::AttemptHeader header =
-      recorder::makeHeader(*built.model, std::move(scene.assets), source->provenance(), settings);
+  const recorder::AttemptHeader header = recorder::makeHeader(
+      *built.model, std::move(scene.assets), source->provenance(), {.purpose = "golden", .seed = entry.seed});
   recorder::RecordingWriter writer(file, header, {true});
   analytics::CheckpointCollector collector(header, built.model->scene());
   recorder::WorkerPool pool(1);
   recorder::Session session(*built.model, entry.seed, pool);
   session.join(writer);
   session.join(collector);
-  recorder::RunSettings run;
-  run.seconds = entry.seconds;
-  run.stop = &stopRequested();
-  recorder::runAttempt(session, *source, run);
+  recorder::runAttempt(session, *source, {.seconds = entry.seconds, .stop = &stopRequested()});
   writer.finish();
   if (stopRequested()) throw Error(ErrorKind::failure, "golden: stopped; nothing was replaced");
   GoldenEntry made = entry;

@@ -132,27 +132,17 @@ void record(const RecordOptions& o) {
   SourceOptions who = o.source;
   who.mode = o.mode == "assessment" ? recorder::Mode::assessment : recorder::Mode::practice;
   const std::unique_ptr<recorder::SampleSource> source = makeSource(who, model.scene(), o.seed);
-  recorder::AttemptSettings settings;
-  settings.participant = o.participant;
-  settings.station = stationOf(o.station, key);
-  settings.purpose = o.purpose;
-  settings.handedness = o.handedness;
-  settings.mode = who.mode;
-  settings.seed = o.seed;
   const recorder::AttemptHeader header =
-      recorder::makeHeader(model, std::move(scene.assets), source->provenance(), settings);
+      recorder::makeHeader(model, std::move(scene.assets), source->provenance(),
+                           {o.participant, stationOf(o.station, key), o.purpose, o.handedness, who.mode, o.seed});
   recorder::RecordingWriter writer(o.output, header, {o.force, std::move(key)});
   recorder::WorkerPool pool(o.threads);
   recorder::Session session(model, o.seed, pool, prepared->services(broadPhaseOf(o.broadPhase)));
   session.join(writer);
   Progress progress("recording, seconds", o.json);
-  recorder::RunSettings run;
-  run.seconds = o.seconds;
-  run.paced = o.paced;
-  run.live = o.live;
+  recorder::RunSettings run{.seconds = o.seconds, .paced = o.paced, .live = o.live, .stop = &stopRequested()};
   driveDevice(*source, run);
   recordDevice(*source, writer);
-  run.stop = &stopRequested();
   const double stepSeconds = model.stepSeconds();
   run.progress = [&](std::uint64_t step) {
     if (writer.failed()) stopRequested() = true;  // nothing more can be kept; finish() says why
@@ -223,12 +213,10 @@ void branch(const BranchOptions& o) {
 
   if (auto* const scope = source->scope(); scope != nullptr) scope->setOutFrom(pose.last.camera);
   recorder::BlendedSource blended(*source, pose.last);
-  recorder::RunSettings run;
-  run.seconds = o.seconds > 0.0 ? static_cast<double>(session.steps()) * model.stepSeconds() + o.seconds : 0.0;
-  run.live = o.live;
+  recorder::RunSettings run{.live = o.live, .stop = &stopRequested()};
+  if (o.seconds > 0.0) run.seconds = static_cast<double>(session.steps()) * model.stepSeconds() + o.seconds;
   driveDevice(*source, run);
   recordDevice(*source, writer, session.steps() * model.scene().ticksPerStep);
-  run.stop = &stopRequested();
   Progress progress("recording, steps", o.json);
   run.progress = [&](std::uint64_t step) {
     if (writer.failed()) stopRequested() = true;  // nothing more can be kept; finish() says why
