@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How the result of one replay enters the cohort database.
+// How the result of one replay, and motion without a scene, enter the cohort database.
 #pragma once
 
 #include <array>
@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
-#include <ostream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "analytics/checkpoints/checkpoint.h"
@@ -19,6 +19,7 @@
 #include "recorder/engine/observer.h"
 #include "recorder/recording/recording_facts.h"
 #include "recorder/replay.h"
+#include "recorder/sources/tracked_motion.h"
 
 namespace calot::analytics {
 
@@ -44,6 +45,10 @@ struct AssessSettings {
 /// its observables, where its content chain is intact. CohortDatabase::storeAttempt() stores record and values.
 JudgedRecording assessRecording(const std::string& file, const AssessSettings& settings = {});
 
+/// A replay's verdict as a database keeps it, and back.
+Verdict verdictOf(recorder::ReplayVerdict verdict);
+recorder::ReplayVerdict verdictOf(Verdict verdict);
+
 /// Does the cohort hold this recording's content, verified? Then there is nothing to assess.
 bool isVerified(const CohortDatabase& database, const recorder::RecordingIdentity& recording);
 
@@ -57,13 +62,40 @@ AttemptRecord recordOf(const recorder::AttemptHeader& header, const recorder::Re
 bool storeExternal(CohortDatabase& database, const std::string& attempt, MetricOutcomes& external,
                    const std::vector<MetricScript>& metrics);
 
-/// Every value of one attempt, in display units, or the reason why there is none; with intervals, two columns more: the
-/// interval, and what it is made of.
-void printValues(const std::vector<CheckpointValue>& values, const std::vector<ValueInterval>& intervals,
-                 std::ostream& out);
+/// Facts about motion files supplied by the caller.
+struct MotionDeclaration {
+  std::string task = "unnamed-task";  ///< what was done; attempts of different tasks are never compared
+  std::string participant;            ///< pseudonym, or empty
+  recorder::Mode mode = recorder::Mode::practice;
+  std::string purpose = "training";
+  std::string handedness = "unknown";
+  recorder::Outcome outcome = recorder::Outcome::stopped;
+  std::string startUtc;  ///< ISO 8601 with Z, or empty: not known
+};
 
-/// Closing table of `calot assess`: every attempt of the database with outcome, verification and the checkpoints that
-/// ask for columns there (CheckpointPlace::summaryTitle), without those that no attempt has; synthetic ones are marked.
-void printAttempts(const CohortDatabase& database, std::ostream& out);
+/// The row of the database: operator kind `kinematics`, no simulation, not checkable here (there is nothing to simulate
+/// again). The attempt's uuid (version 8 of RFC 9562) and chain head are the SHA-256 of the file's bytes, so the same
+/// file is the same attempt whatever its name.
+AttemptRecord recordOf(const recorder::TrackedMotion& motion, const MotionDeclaration& declaration);
+
+/// Computes the motion's checkpoints and stores them; one transaction, idempotent.
+/// @return what was stored, and whether it was there already. @throws Error (refused) on a conflict
+/// (CohortDatabase::storeAttempt).
+struct StoredMotion {
+  Imported imported = Imported::unchanged;
+  std::vector<CheckpointValue> values;
+};
+StoredMotion storeMotion(CohortDatabase& database, const recorder::TrackedMotion& motion,
+                         const MotionDeclaration& declaration);
+
+/// Values of external metrics for the motion.
+MetricOutcomes externalOf(const recorder::TrackedMotion& motion, const MotionDeclaration& declaration,
+                          const std::vector<MetricScript>& metrics);
+
+/// Sets one field of a declaration from its word: "task", "participant", "mode", "purpose", "handedness", "outcome" or
+/// "start". An empty word leaves the field as it is.
+/// @return empty, or what is wanted instead; then nothing is set
+/// @pre `field` is one of these.
+std::string declareMotion(MotionDeclaration& declaration, std::string_view field, const std::string& word);
 
 }  // namespace calot::analytics

@@ -8,6 +8,7 @@
 #include <map>
 #include <utility>
 
+#include "analytics/checkpoints/replay_words.h"
 #include "analytics/cohort_files.h"
 #include "recorder/recording/probe.h"
 
@@ -56,11 +57,11 @@ RegradedAttempt storeRegraded(CohortDatabase& database, const AttemptRow& row, c
   r.file = file;
   const recorder::ReplayReport& report = judged.report;
   r.fault = report.fault();
-  if (r.fault) r.message = report.message;
+  if (r.fault) r.message = wordsFor(report);
   r.remedies = report.remedies;
   if (!judged.record) {
     r.how = Regraded::unreadable;
-    r.message = fmt::format("{}: {}", r.file, report.message);
+    r.message = fmt::format("{}: {}", r.file, wordsFor(report));
     return r;
   }
   const std::vector<CheckpointValue> before = ownValues(database, r.uuid);
@@ -84,22 +85,6 @@ RegradedAttempt storeRegraded(CohortDatabase& database, const AttemptRow& row, c
     r.remedies = e.remedies();
   }
   return r;
-}
-
-/// Databases keep verdicts, replays report them.
-recorder::ReplayVerdict verdictOf(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::verified:
-      return recorder::ReplayVerdict::exact;
-    case Verdict::diverged:
-      return recorder::ReplayVerdict::diverged;
-    case Verdict::damaged:
-      return recorder::ReplayVerdict::damaged;
-    case Verdict::notCheckableHere:
-    case Verdict::notChecked:
-      break;
-  }
-  return recorder::ReplayVerdict::undecided;
 }
 
 }  // namespace
@@ -217,7 +202,7 @@ Regrade takeNewer(const std::string& into, const std::vector<std::string>& from)
     judged.report.path = other.fileName;
     judged.report.attempt = other.uuid;
     judged.report.verdict = verdictOf(other.verification.verdict);
-    judged.report.message = other.verification.text;
+    judged.report.error = other.verification.text;
     judged.record = other;
     judged.values = ownValues(*found->second.database, row.uuid);
     result.attempts.push_back(storeRegraded(database, row, other.fileName, std::move(judged)));

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 
+#include "analytics/checkpoints/replay_words.h"
 #include "python/bindings.h"
 #include "python/step_facts.h"
 #include "recorder/engine/state_fields.h"
@@ -83,7 +84,8 @@ py::dict reportOf(const recorder::ReplayReport& r) {
   return py::dict("file"_a = r.path.string(), "verdict"_a = recorder::wordFor(r.verdict), "attempt"_a = r.attempt,
                   "complete"_a = r.complete, "steps"_a = r.steps, "seconds"_a = r.seconds,
                   "wall_seconds"_a = r.wallSeconds, "simulation_version"_a = r.simulationVersion,
-                  "chain_intact"_a = r.chainIntact, "missed_tolerance"_a = r.misses.any, "message"_a = r.message);
+                  "chain_intact"_a = r.chainIntact, "missed_tolerance"_a = r.misses.any,
+                  "message"_a = analytics::wordsFor(r));
 }
 
 void bindReplay(py::module_& m) {

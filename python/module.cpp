@@ -5,13 +5,14 @@
 #include <exception>
 #include <system_error>
 
+#include "analytics/checkpoints/replay_words.h"
 #include "python/bindings.h"
-#include "recorder/attempt.h"
-#include "recorder/base/program_files.h"
+#include "recorder/base/files.h"
 #include "recorder/base/remedy_words.h"
 #include "recorder/compliance_cache.h"
 #include "recorder/formats/scene_file.h"
 #include "recorder/kept/engine_folders.h"
+#include "recorder/loop.h"
 #include "recorder/prepared_scene.h"
 #include "sim/instruments/instruments.h"
 #include "sim/scene/step_result.h"
@@ -26,7 +27,7 @@ namespace {
 /// A recording that is not what its re-simulation gives: diverged.
 struct ReplayFault : Error {
   explicit ReplayFault(const recorder::ReplayReport& of)
-      : Error(ErrorKind::refused, Where{of.path.string()}, of.message, of.remedies), report(of) {}
+      : Error(ErrorKind::refused, Where{of.path.string()}, analytics::wordsFor(of), of.remedies), report(of) {}
   recorder::ReplayReport report;
 };
 
@@ -104,7 +105,7 @@ std::vector<std::filesystem::path> assetFolders() { return recorder::ProgramFile
 void throwUnlessExact(const recorder::ReplayReport& report) {
   if (report.verdict == recorder::ReplayVerdict::diverged) throw ReplayFault(report);
   if (const std::optional<ErrorKind> fault = report.fault())
-    throw Error(*fault, Where{report.path.string()}, report.message, report.remedies);
+    throw Error(*fault, Where{report.path.string()}, analytics::wordsFor(report), report.remedies);
 }
 
 }  // namespace calot::python

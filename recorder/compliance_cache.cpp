@@ -12,8 +12,7 @@
 #include <span>
 
 #include "recorder/base/errors.h"
-#include "recorder/base/file_bytes.h"
-#include "recorder/base/secret_file.h"
+#include "recorder/base/files.h"
 #include "sim/math/fields.h"
 #include "sim/scene/version.h"
 
@@ -189,17 +188,11 @@ std::string complianceKey(const std::vector<Asset>& assets) {
 }
 
 std::optional<fs::path> userCacheFolder() {
-  const auto named = [](const char* variable) -> std::string {
-    const char* value = std::getenv(variable);
-    return value == nullptr ? "" : value;
-  };
-  if (const std::string own = named("CALOT_CACHE"); !own.empty()) {
-    return own == "off" ? std::nullopt : std::optional<fs::path>(own);
-  }
-  // The base directory specification has relative ones ignored.
-  if (const fs::path base = named("XDG_CACHE_HOME"); base.is_absolute()) return base / "calot";
-  if (const fs::path home = named("HOME"); home.is_absolute()) return home / ".cache" / "calot";
-  return std::nullopt;
+  const char* named = std::getenv("CALOT_CACHE");
+  const std::string own = named == nullptr ? "" : named;
+  if (!own.empty()) return own == "off" ? std::nullopt : std::optional<fs::path>(own);
+  const fs::path folder = userFolder("XDG_CACHE_HOME", ".cache");
+  return folder.empty() ? std::nullopt : std::optional(folder / "calot");
 }
 
 fs::path ComplianceCache::fileOf(const std::string& key) const { return folder_ / (key + extension); }

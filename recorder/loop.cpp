@@ -1,18 +1,83 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "recorder/loop.h"
 
+#include <fmt/format.h>
+#include <sodium.h>
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <optional>
 #include <utility>
 
+#include "recorder/base/dates.h"
 #include "recorder/base/errors.h"
+#include "recorder/base/files.h"
+#include "recorder/engine/session.h"
 #include "recorder/live/haptic_thread.h"
-#include "recorder/live/wrapped_sources.h"
 #include "recorder/recording/reader.h"
-#include "sim/math/fields.h"
+#include "recorder/replay.h"
+#include "recorder/sources/source.h"
+#include "sim/scene/version.h"
+
+#ifndef CALOT_VERSION
+#error "CALOT_VERSION is set by the build"
+#endif
 
 namespace calot::recorder {
+
+std::string newUuid() {
+  if (sodium_init() < 0) throw std::runtime_error("libsodium cannot be initialised");
+  std::array<unsigned char, 16> b{};
+  randombytes_buf(b.data(), b.size());
+  b[6] = static_cast<unsigned char>((b[6] & 0x0FU) | 0x40U);
+  b[8] = static_cast<unsigned char>((b[8] & 0x3FU) | 0x80U);
+  std::string text;
+  for (std::size_t i = 0; i < b.size(); ++i) {
+    if (i == 4 || i == 6 || i == 8 || i == 10) text += '-';
+    text += fmt::format("{:02x}", b[i]);
+  }
+  return text;
+}
+
+std::string softwareName() { return "calot " CALOT_VERSION; }
+
+std::string buildName() {
+  std::string compiler;
+#if defined(__clang__)
+  compiler = fmt::format("clang {}.{}.{}", __clang_major__, __clang_minor__, __clang_patchlevel__);
+#else
+  compiler = fmt::format("gcc {}.{}.{}", __GNUC__, __GNUC_MINOR__, __GNUC_PATCHLEVEL__);
+#endif
+  return fmt::format("{} {} {}", compiler, CALOT_BUILD_TYPE, CALOT_REVISION);
+}
+
+AttemptHeader makeHeader(const Model& model, std::vector<Asset> assets, const Provenance& provenance,
+                         const AttemptSettings& settings) {
+  AttemptHeader header;
+  static_cast<AttemptSettings&>(header) = settings;
+  header.attempt = newUuid();
+  header.startUtc = presentDate();
+  header.software = softwareName();
+  header.build = buildName();
+  header.simulationVersion = simulationVersion;
+  header.stepResultVersion = stepResultVersion;
+  header.provenance = provenance;
+  header.ticksPerStep = model.scene().ticksPerStep;
+  header.sceneName = model.scene().name;
+  header.sceneMajor = model.scene().majorVersion;
+  header.sceneMinor = model.scene().minorVersion;
+  header.assets = std::move(assets);
+  Tissues::forEach([&]<class Kind>(std::type_identity<Kind>, TissueId kind) {
+    if constexpr (Kind::hasStructures) {
+      for (const StructureModel& structure : model.structures()) {
+        if (structure.kind == kind) Kind::namesOf(header).push_back(structure.name);
+      }
+    }
+  });
+  header.layout = model.layout();
+  header.deviceSamples = !provenance.device.empty();
+  return header;
+}
 
 namespace {
 
@@ -38,11 +103,10 @@ void runInline(Session& session, SampleSource& source, const RunSettings& settin
   std::vector<TickSamples> samples(ticksPerStep);
   std::vector<TickOutcome> ticks(ticksPerStep);
   PacedClock clock(monotonicNow());
-  SourcePauses pauses;
   std::uint64_t tick = 0;
   while (true) {
     const SourceStatus status = waitWhilePaused(
-        source, [&] { return isStopped(settings); }, clock, pauses);
+        source, [&] { return isStopped(settings); }, clock, report.pauses);
     report.outcome = status == SourceStatus::failed ? Outcome::technicalFailure
                                                     : outcomeBefore(session.steps(), session.model(), settings);
     if (report.outcome != Outcome::running) break;
@@ -72,17 +136,6 @@ void runInline(Session& session, SampleSource& source, const RunSettings& settin
       break;
     }
   }
-  report.pauses = pauses.count;
-  report.paused = pauses.seconds;
-}
-
-/// Bit for bit.
-bool sameForces(const TickOutcome& a, const TickOutcome& b) {
-  const auto same = [](const Vec3& x, const Vec3& y) { return std::ranges::equal(bytesOf(x), bytesOf(y)); };
-  for (std::size_t h = 0; h < handCount; ++h) {
-    if (!same(a.hand[h].force, b.hand[h].force) || !same(a.hand[h].torque, b.hand[h].torque)) return false;
-  }
-  return true;
 }
 
 /// Ticks on the haptic thread, steps on this one.
@@ -111,21 +164,16 @@ void runLive(Session& session, SampleSource& source, const RunSettings& settings
     for (std::uint32_t i = 0; i < ticksPerStep; ++i) {
       const TickOutcome again =
           session.tick(samples[i], NamedSets{ticks[i].hand[0].contactSet, ticks[i].hand[1].contactSet});
-      if (!sameForces(ticks[i], again)) ++report.disagreements;
+      const bool same = sameForces(ticks[i].hand[0], again.hand[0]) && sameForces(ticks[i].hand[1], again.hand[1]);
+      if (!same) ++report.disagreements;
     }
     session.step(samples, ticks, late);  // with the forces that the hands felt
     if (settings.progress) settings.progress(session.steps());
     ranAway.store(watch.ranAway());
   }
   const HapticReport& seen = haptics.finish();
-  report.outcome = ranAway.load() ? Outcome::technicalFailure : seen.outcome;
-  static_cast<TickReport&>(report) = seen;
-  report.pauses = seen.pauses.count;
-  report.paused = seen.pauses.seconds;
-  report.realTime = seen.realTime;
-  report.tickMean = seen.cost.mean();
-  report.tickP999 = seen.cost.quantile(0.999);
-  report.tickLargest = seen.cost.largest();
+  static_cast<HapticReport&>(report) = seen;
+  if (ranAway.load()) report.outcome = Outcome::technicalFailure;
   report.arenasGrown = haptics.arenasGrown();
 }
 
@@ -147,7 +195,7 @@ RunReport runAttempt(Session& session, SampleSource& source, const RunSettings& 
     runInline(session, asked, settings, watch, report);
   }
   session.leave(watch);
-  report.fault = watch.fault(session.model());
+  report.runaway = watch.runaway(session.model());
   report.misses = watch.misses();
   report.steps = session.steps();
   if (watcher != nullptr) session.leave(*watcher);
@@ -228,6 +276,69 @@ void runOpenLoop(const Model& model, const AttemptInputs& inputs, std::span<Obse
     session.run({step, late, 0.0F});
   }
   session.end(inputs.outcome);
+}
+
+void refuseParent(const Recording& parent, const ChainVerdict& chain) {
+  const AttemptHeader& header = parent.header();
+  const std::string name = parent.path().string();
+  if (chain.intact && header.simulationVersion != simulationVersion) {
+    throw Error(ErrorKind::undecided, Where{name},
+                fmt::format("recorded with simulation version {}, this build has {}: it cannot be branched here",
+                            header.simulationVersion, simulationVersion));
+  }
+  if (!chain.intact) throw Error(ErrorKind::refused, Where{name}, fmt::format("content chain broken: {}", chain.what));
+  if (header.mode == Mode::assessment) {
+    throw Error(ErrorKind::refused, Where{name}, "made in assessment mode, which has no branches");
+  }
+}
+
+std::uint64_t forkStepAt(const Recording& parent, double time) {
+  const AttemptHeader& header = parent.header();
+  const double stepSeconds = header.tickSeconds * static_cast<double>(header.ticksPerStep);
+  // A time that was written in decimals means the step's end that is next to it, not the one before.
+  const double steps = std::floor(time / stepSeconds + 1e-6);
+  if (!(steps >= 1.0)) {
+    throw Error(ErrorKind::invalid, Where{parent.path().string(), fmt::format("fork at {} s", time)},
+                fmt::format("it lies at the end of the first step, {} s, or later", stepSeconds), {Remedy::moveFork});
+  }
+  if (steps > static_cast<double>(parent.stepCount())) {
+    throw Error(ErrorKind::invalid, Where{parent.path().string(), fmt::format("fork at {} s", time)},
+                fmt::format("the recording ends at {} s", parent.seconds()), {Remedy::moveFork});
+  }
+  return static_cast<std::uint64_t>(steps) - 1;
+}
+
+AttemptHeader branchHeader(const Recording& parent, const Model& model, std::uint64_t forkStep,
+                           const Provenance& provenance) {
+  const AttemptHeader& from = parent.header();
+  AttemptSettings settings = from;
+  settings.mode = Mode::practice;
+  AttemptHeader header = makeHeader(model, from.assets, provenance, settings);
+  header.parent = from.attempt;
+  header.forkStep = static_cast<std::int64_t>(forkStep);
+  return header;
+}
+
+std::optional<Divergence> takeParent(Recording& parent, Session& session, std::uint64_t forkStep,
+                                     const StepProgress& progress) {
+  LocalEngine engine(session);
+  return follow(parent, engine, forkStep + 1, {}, progress);
+}
+
+BranchFile::BranchFile(std::filesystem::path target, bool force) : target_(std::move(target)), force_(force) {
+  refuseOutput(target_, force_);
+  temporary_ = target_;
+  temporary_ += ".branch";
+}
+
+BranchFile::~BranchFile() {
+  std::error_code ignored;
+  if (!published_) std::filesystem::remove(temporary_, ignored);
+}
+
+void BranchFile::publish() {
+  recorder::publish(temporary_, target_, force_);
+  published_ = true;
 }
 
 }  // namespace calot::recorder

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The drivers of Session: an attempt from a source, at full speed or at the pace of the tick clock; an attempt that its
-// caller advances; and recorded motion in a scene that differs.
+// caller advances; recorded motion in a scene that differs; and a branch, which is the parent's samples up to the fork,
+// then another source: a whole recording of its own, from step 0.
 #pragma once
 
 #include <atomic>
@@ -12,17 +13,31 @@
 #include <string>
 #include <vector>
 
-#include "recorder/attempt.h"
+#include "recorder/base/identity.h"
 #include "recorder/engine/session.h"
-#include "recorder/live/paced_clock.h"
+#include "recorder/live/haptic_thread.h"
 #include "recorder/prepared_scene.h"
+#include "recorder/recording/reader.h"
 #include "recorder/recording/writer.h"
+#include "recorder/replay.h"
 #include "recorder/sources/controller.h"
 #include "recorder/sources/source.h"
-#include "recorder/step_watch.h"
 #include "sim/math/executor.h"
+#include "sim/scene/model.h"
 
 namespace calot::recorder {
+
+/// Random uuid (RFC 4122, version 4), lower case with hyphens.
+std::string newUuid();
+
+/// Header of a new attempt: a fresh uuid, the present time, this build.
+AttemptHeader makeHeader(const Model& model, std::vector<Asset> assets, const Provenance& provenance,
+                         const AttemptSettings& settings);
+
+/// "calot 0.1.0".
+std::string softwareName();
+/// Compiler, build type and revision.
+std::string buildName();
 
 struct RunSettings {
   double seconds = 0.0;                     ///< of attempt time after which it is stopped; 0: until the source ends
@@ -36,25 +51,18 @@ struct RunSettings {
 };
 
 /// Counts of ticks are those of this run's steps, as in the recording.
-struct RunReport : TickReport {
-  Outcome outcome = Outcome::completed;
-  std::uint64_t steps = 0;   ///< of the session
-  std::uint64_t pauses = 0;  ///< of the source
-  double paused = 0.0;       ///< s
+struct RunReport : HapticReport {
+  std::uint64_t steps = 0;  ///< of the session
   double wallSeconds = 0.0;
-  StepMisses misses;  ///< of this run's steps
-  std::string fault;  ///< why the attempt had to end, in one line: the simulation ran away (miss::runaway); or empty
-  // Live:
-  bool realTime = false;            ///< the haptic thread ran before all ordinary threads
-  double tickMean = 0.0;            ///< thread CPU time of a tick (both hands; s)
-  double tickP999 = 0.0;            ///< what 99.9 % of the ticks did not exceed (s)
-  double tickLargest = 0.0;         ///< s
-  std::uint64_t arenasGrown = 0;    ///< contact sets that were larger than any before them
-  std::uint64_t disagreements = 0;  ///< ticks whose forces were not those that the simulation's side computed again: 0
+  StepMisses misses;               ///< of this run's steps
+  std::optional<Runaway> runaway;  ///< why the attempt had to end
+  std::uint64_t arenasGrown = 0;   ///< live: contact sets that were larger than any before them
+  std::uint64_t disagreements =
+      0;  ///< live: ticks whose forces were not those that the simulation's side computed again: 0
 };
 
 /// Runs the session from the source until it ends or fails, the scene's time limit, `seconds`, or `stop`, or until a
-/// step says that the simulation ran away (Outcome::technicalFailure, and `fault` says where); then ends the
+/// step says that the simulation ran away (Outcome::technicalFailure, and `runaway` says where); then ends the
 /// session. A step begins only when the source gave all its ticks; what is left of a last, unfinished step is dropped.
 /// Where the session has steps already (a branch), the source begins with its tick 0 all the same.
 ///
@@ -132,5 +140,45 @@ AttemptInputs inputsOf(Recording& recording);
 /// thread, can have other forces on the hand. Then ends the observers with the recorded outcome.
 void runOpenLoop(const Model& model, const AttemptInputs& inputs, std::span<Observer* const> observers,
                  Executor& executor);
+
+/// Is this a recording that can be branched here? @throws Error: refused for a broken chain or one made in assessment
+/// mode; undecided (5) for another simulation version.
+void refuseParent(const Recording& parent, const ChainVerdict& chain);
+
+/// The last step that a branch shares with its parent: the one that is over at `time`.
+/// @param time of the parent's attempt (s) @throws Error (invalid) where that is not a number, before the end of the
+/// first step, or beyond the recording's end.
+std::uint64_t forkStepAt(const Recording& parent, double time);
+
+/// Header of a branch: the parent's scene, seed and participant, the new source's provenance, practice.
+AttemptHeader branchHeader(const Recording& parent, const Model& model, std::uint64_t forkStep,
+                           const Provenance& provenance);
+
+/// Re-simulates the parent's steps up to and with the fork step, with the contact sets and lateness that were logged,
+/// so that forces and events are the same. Observers of the session receive each.
+/// @returns the first difference from the parent's digests, forces, observables, events or keyframes, where it stops
+/// @pre the session is new, with the parent's model and seed
+[[nodiscard]] std::optional<Divergence> takeParent(Recording& parent, Session& session, std::uint64_t forkStep,
+                                                   const StepProgress& progress = {});
+
+/// The name that a branch has until the parent's part is taken: TARGET.branch, in the target's folder. Removed with
+/// this object unless publish() came before.
+class BranchFile {
+ public:
+  /// @throws Error (invalid) where the target is there and force is not set.
+  BranchFile(std::filesystem::path target, bool force);
+  ~BranchFile();
+  BranchFile(const BranchFile&) = delete;
+  BranchFile& operator=(const BranchFile&) = delete;
+
+  [[nodiscard]] const std::filesystem::path& path() const { return temporary_; }
+  /// Gives the file its name, while it is being written. @throws Error
+  void publish();
+
+ private:
+  std::filesystem::path target_, temporary_;
+  bool force_;
+  bool published_ = false;
+};
 
 }  // namespace calot::recorder

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "recorder/prepared_scene.h"
 
 #include <fmt/format.h>

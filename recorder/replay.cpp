@@ -2,23 +2,51 @@
 #include "recorder/replay.h"
 
 #include <fmt/format.h>
-
 #include <algorithm>
 #include <chrono>
 #include <stdexcept>
 #include <thread>
 
-#include "recorder/compare.h"
 #include "recorder/kept/engine_folders.h"
 #include "recorder/live/worker_pool.h"
 #include "recorder/recorded_results.h"
 #include "recorder/recording/layout.h"
 #include "recorder/recording/probe.h"
-#include "recorder/segments.h"
-#include "recorder/step_watch.h"
+#include "recorder/verification.h"
 #include "sim/scene/version.h"
 
 namespace calot::recorder {
+
+void StepMisses::add(std::uint32_t misses) {
+  ++steps;
+  any += misses != 0 ? 1U : 0U;
+  solver += (misses & miss::solver) != 0 ? 1U : 0U;
+  contact += (misses & miss::contact) != 0 ? 1U : 0U;
+  heldBack += (misses & miss::speed) != 0 ? 1U : 0U;
+}
+
+void StepMisses::add(const StepMisses& other) {
+  steps += other.steps;
+  any += other.any;
+  solver += other.solver;
+  contact += other.contact;
+  heldBack += other.heldBack;
+}
+
+void StepWatch::onStep(const StepRecord& record) {
+  misses_.add(record.result.misses);
+  if (ranAway_ || (record.result.misses & miss::runaway) == 0) return;
+  ranAway_ = true;
+  const std::vector<Event>& events = record.result.events;
+  const auto at =
+      std::find_if(events.begin(), events.end(), [](const Event& e) { return e.kind == EventKind::runaway; });
+  if (at != events.end()) event_ = *at;
+}
+
+std::optional<Runaway> StepWatch::runaway(const Model& model) const {
+  if (!event_) return std::nullopt;
+  return Runaway{event_->step, model.structures()[event_->subject].name, event_->value};
+}
 
 namespace {
 
@@ -55,8 +83,7 @@ std::uint64_t nextKeyframe(const Recording& recording, std::uint64_t step) {
 }  // namespace
 
 std::optional<Divergence> follow(Recording& recording, Engine& engine, std::uint64_t end,
-                                 const std::vector<Observer*>& observers,
-                                 const std::function<void(std::uint64_t step, std::uint64_t of)>& progress) {
+                                 const std::vector<Observer*>& observers, const StepProgress& progress) {
   StepComparison comparison(recording, engine);
   std::vector<TickSamples> samples;
   std::vector<TickOutcome> logged;
@@ -91,14 +118,6 @@ std::optional<Divergence> follow(Recording& recording, Engine& engine, std::uint
   return comparison.first();
 }
 
-std::string describe(const Divergence& d) {
-  std::string text = fmt::format("diverged at step {}", d.step);
-  if (d.tick) text += fmt::format(", tick {}", *d.tick);
-  text += fmt::format(": {} {}", d.component, d.field);
-  if (!d.detail.empty()) text += fmt::format(" ({})", d.detail);
-  return text;
-}
-
 namespace {
 
 void judge(Recording& recording, const ChainVerdict& chain, const ReplaySettings& settings, ReplayReport& report) {
@@ -111,6 +130,7 @@ void judge(Recording& recording, const ChainVerdict& chain, const ReplaySettings
   report.simulationVersion = header.simulationVersion;
   for (std::size_t i = 0; i < 32; ++i) report.chainHead[i] = static_cast<std::byte>(recording.status().back().chain[i]);
   report.chainIntact = chain.intact;
+  report.chainFault = chain.what;
   report.signature = recording.signature();
   const bool otherVersion = header.simulationVersion != simulationVersion;
   // A damaged recording may be compared with any engine: none can prove it.
@@ -122,13 +142,13 @@ void judge(Recording& recording, const ChainVerdict& chain, const ReplaySettings
   // Another version may have other components; digests of different layouts say nothing field by field.
   if (!choice.fits(header.layout)) {
     report.verdict = foreign && chain.intact ? ReplayVerdict::undecided : ReplayVerdict::diverged;
-    report.message = "the recorded digests have other components than this build's State: nothing to compare";
+    report.finding = ReplayFinding::otherLayout;
     return;
   }
-  if (const std::string fault = choice.nameFault(); !fault.empty()) {
+  report.error = choice.nameFault();
+  if (!report.error.empty()) {
     report.verdict = ReplayVerdict::diverged;
-    report.message = fault;
-    if (!chain.intact) report.message += fmt::format("; content chain broken: {}", chain.what);
+    report.finding = ReplayFinding::otherNames;
     return;
   }
   const bool sameResults = foreign || header.stepResultVersion == stepResultVersion;
@@ -161,27 +181,14 @@ void judge(Recording& recording, const ChainVerdict& chain, const ReplaySettings
     }
   }
   choice.save();
-  if (report.divergence) {
-    report.message = describe(*report.divergence) +
-                     (*report.reproducible ? "; reproducible: a second run differs in the same way"
-                                           : "; not deterministic here: a second run behaves differently");
-    if (!chain.intact) report.message += fmt::format("; content chain broken: {}", chain.what);
-  } else if (!chain.intact) {
-    report.message = fmt::format("content chain broken: {} (the re-simulation agrees)", chain.what);
-  } else if (settings.part) {
-    report.message =
-        fmt::format("segments {} to {} consistent (steps {} to {}); the rest was not looked at", settings.part->first,
-                    settings.part->second, segments.front().first, segments.back().end - 1);
-  } else {
-    report.message = "bit-exact";
-  }
+  report.finding = ReplayFinding::compared;
+  if (settings.part)
+    report.part = {{settings.part->first, settings.part->second}, {segments.front().first, segments.back().end - 1}};
   const bool differs = report.divergence || !chain.intact;
-  report.verdict = differs ? ReplayVerdict::diverged : settings.part ? ReplayVerdict::consistent : ReplayVerdict::exact;
-  if (foreign && chain.intact) {
-    report.verdict = ReplayVerdict::undecided;
-    report.message += fmt::format("; recorded with simulation version {}, this build has {}", header.simulationVersion,
-                                  simulationVersion);
-  }
+  report.verdict = foreign && chain.intact ? ReplayVerdict::undecided
+                   : differs               ? ReplayVerdict::diverged
+                   : settings.part         ? ReplayVerdict::consistent
+                                           : ReplayVerdict::exact;
 }
 
 }  // namespace
@@ -218,7 +225,7 @@ ReplayReport replayRecording(const std::filesystem::path& path, const ReplaySett
   } catch (const Error& e) {
     if (e.kind() != ErrorKind::damaged && e.kind() != ErrorKind::undecided) throw;
     report.verdict = e.kind() == ErrorKind::damaged ? ReplayVerdict::damaged : ReplayVerdict::undecided;
-    report.message = messageWithout(path, e);
+    report.error = messageWithout(path, e);
     report.remedies = e.remedies();
   }
   report.wallSeconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

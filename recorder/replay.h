@@ -14,11 +14,50 @@
 
 #include "recorder/base/errors.h"
 #include "recorder/engine/engine.h"
+#include "recorder/engine/observer.h"
 #include "recorder/prepared_scene.h"
 #include "recorder/recording/reader.h"
-#include "recorder/step_watch.h"
+#include "sim/scene/model.h"
 
 namespace calot::recorder {
+
+/// How many steps of a run missed a tolerance, and which (StepResult::misses): never silent.
+struct StepMisses {
+  std::uint64_t steps = 0;     ///< all that were added
+  std::uint64_t any = 0;       ///< of them, with a miss of whatever kind
+  std::uint64_t solver = 0;    ///< the linear solve of some body above its tolerance
+  std::uint64_t contact = 0;   ///< the contact problem above its tolerance
+  std::uint64_t heldBack = 0;  ///< tissue that would have moved faster than it can was held back
+
+  void add(std::uint32_t misses);
+  void add(const StepMisses& other);
+  bool operator==(const StepMisses&) const = default;
+};
+
+/// The simulation ran away (miss::runaway): an attempt ends there.
+struct Runaway {
+  std::uint64_t step = 0;
+  std::string structure;
+  double speed = 0.0;  ///< m/s
+};
+
+/// Watches a run: counts the steps that missed a tolerance, and notices the one after which nothing that is simulated
+/// means anything.
+class StepWatch final : public Observer {
+ public:
+  void onStep(const StepRecord& record) override;
+  void onEnd(Outcome /*outcome*/) override {}
+
+  [[nodiscard]] const StepMisses& misses() const { return misses_; }
+  [[nodiscard]] bool ranAway() const { return ranAway_; }
+  /// The structure that ran away first, if one did.
+  [[nodiscard]] std::optional<Runaway> runaway(const Model& model) const;
+
+ private:
+  StepMisses misses_;
+  bool ranAway_ = false;
+  std::optional<Event> event_;
+};
 
 /// First difference between a replay and its recording.
 struct Divergence {
@@ -43,6 +82,21 @@ inline constexpr const char* wordFor(ReplayVerdict verdict) {
   return words[static_cast<std::size_t>(verdict)];
 }
 
+/// How far a replay came.
+enum class ReplayFinding : std::uint8_t {
+  unread,       ///< `error` says why nothing was compared
+  otherLayout,  ///< the recorded digests have other components than this build's State
+  otherNames,   ///< `error` names the first structure, component or field that its scene calls otherwise
+  compared,     ///< divergence and chain say the rest
+};
+
+/// A part of a recording that was verified: numbers of the first and last segment, and of their steps.
+struct ReplayedPart {
+  std::array<std::size_t, 2> segments{};
+  std::array<std::uint64_t, 2> steps{};
+};
+
+/// Result of a replay, in fields; analytics/checkpoints/replay_words.h makes sentences of them.
 struct ReplayReport {
   std::filesystem::path path;
   ReplayVerdict verdict = ReplayVerdict::damaged;
@@ -56,11 +110,14 @@ struct ReplayReport {
   std::array<std::byte, 32> chainHead{};
   StepMisses misses;  ///< of the steps that were computed again
   bool chainIntact = false;
+  std::string chainFault;                      ///< one phrase, where it is broken
   std::optional<RecordedSignature> signature;  ///< as recorded; it fits where the chain is intact
   std::optional<Divergence> divergence;
   std::optional<bool> reproducible;  ///< a second run differed at the same place in the same way
-  std::string message;               ///< one line for people; does not name the recording
-  std::vector<Remedy> remedies;      ///< of what stands in the way
+  std::optional<ReplayedPart> part;  ///< where it was asked for
+  ReplayFinding finding = ReplayFinding::unread;
+  std::string error;             ///< does not name the recording
+  std::vector<Remedy> remedies;  ///< of what stands in the way
 
   /// Kind of error of a verdict other than exact.
   [[nodiscard]] std::optional<ErrorKind> fault() const;
@@ -79,7 +136,7 @@ struct ReplaySettings {
   /// proven equal to the computed ones, and none where they were not, with the forces as they were computed; there is
   /// no `keyframe`, no `view` and no digest of components then.
   std::function<std::vector<Observer*>(const AttemptHeader&, const SceneDescription&)> observers;
-  std::function<void(std::uint64_t step, std::uint64_t of)> progress;
+  StepProgress progress;
 };
 
 /// An error as the message of this recording's report, which names the recording itself. Another file that the error
@@ -93,11 +150,7 @@ ReplayReport replayRecording(const std::filesystem::path& path, const ReplaySett
 /// the recording. @param observers of each step, before it is compared @returns the first difference
 /// @pre the engine is at one of the recording's own States
 std::optional<Divergence> follow(Recording& recording, Engine& engine, std::uint64_t end,
-                                 const std::vector<Observer*>& observers,
-                                 const std::function<void(std::uint64_t step, std::uint64_t of)>& progress = {});
-
-/// "diverged at step 13: hand.right realPosition (...)".
-std::string describe(const Divergence& divergence);
+                                 const std::vector<Observer*>& observers, const StepProgress& progress = {});
 
 /// Goes anywhere in a recording: the nearest keyframe at or before, then re-simulation. The State is the one that
 /// running there gives, bit for bit.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "analytics/assessment/create_norm.h"
+#include "analytics/assessment/norm.h"
 
 #include <fmt/format.h>
 
@@ -8,21 +8,18 @@
 #include <utility>
 
 #include "analytics/assessment/grade.h"
-#include "analytics/assessment/norm_rule.h"
-#include "analytics/cohort/check.h"
+#include "analytics/cohort/cohort_database.h"
 
 namespace calot::analytics {
 
 Norm createNorm(const std::string& database, NormRequest request, const std::vector<std::string>& only,
                 const NormProgress& progress) {
-  using Access = CohortDatabase::Access;
   const auto tell = [&](double share, const char* doing) {
     if (progress) progress(share, doing);
   };
   tell(0.0, "checking the cohort");
-  AssessmentDatabase assessment(database, Access::write);
+  CohortDatabase cohort(database, CohortDatabase::Access::write);
   refuseUnsound(database);
-  const CohortDatabase cohort(database, Access::read);
   if (request.who.protocol) {
     for (const Participant& p : cohort.participants()) request.who.protocol->experience[p.pseudonym] = p.experience;
   }
@@ -44,9 +41,9 @@ Norm createNorm(const std::string& database, NormRequest request, const std::vec
   std::stable_sort(values.begin(), values.end(),
                    [](const AttemptValue& x, const AttemptValue& y) { return x.attempt < y.attempt; });
   tell(0.5, "finding pass marks");
-  const Norm norm = makeNorm(attempts, values, assessment.ratings(), request, database);
+  const Norm norm = makeNorm(attempts, values, cohort.ratings(), request, database);
   tell(1.0, "storing");
-  return assessment.norm(norm.name, assessment.storeNorm(norm));
+  return cohort.norm(norm.name, cohort.storeNorm(norm));
 }
 
 std::vector<std::string> normSummary(const Norm& norm) {

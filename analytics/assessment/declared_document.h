@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 
+#include "recorder/base/files.h"
 #include "sim/math/record.h"
 
 namespace calot::analytics {
@@ -33,6 +34,10 @@ inline constexpr TextRule plainName{maxName, "^[A-Za-z0-9_.-]+$",
 inline constexpr TextRule anyName{maxName}, anyText{maxText};
 
 /// Notes where a document was read from, its text and the hash of that.
-void keepText(std::span<const std::byte> bytes, const std::string& file, DeclaredDocument& document);
+inline void keepText(std::span<const std::byte> bytes, const std::string& file, DeclaredDocument& document) {
+  document.file = file;
+  document.text.assign(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  document.sha256 = recorder::sha256Hex(bytes);
+}
 
 }  // namespace calot::analytics

@@ -9,7 +9,7 @@
 #include <map>
 #include <string_view>
 
-#include "analytics/assessment/norm_rule.h"
+#include "analytics/assessment/norm.h"
 #include "analytics/checkpoints/checkpoint.h"
 #include "recorder/base/errors.h"
 

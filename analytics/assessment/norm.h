@@ -1,24 +1,75 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Makes a norm: who is in it, who of them is competent, and the pass mark of every figure, by contrasting groups or by
-// borderline regression on raters' scores.
+// borderline regression on raters' scores (norm.cpp), or set by people: fixed marks and judges' (Angoff;
+// norm_rule.cpp). Stores it, and puts it into words (create_norm.cpp).
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
-#include "analytics/assessment/norm_rule.h"
+#include "analytics/assessment/declared_document.h"
 #include "analytics/assessment/rating_form.h"
-#include "analytics/cohort/assessment_database.h"
 #include "analytics/cohort/cohort_database.h"
 #include "analytics/report/study.h"
 #include "analytics/statistics/expected.h"
+#include "analytics/statistics/standard_setting.h"
+#include "recorder/base/csv.h"
 
 namespace calot::analytics {
+
+/// A pass mark that an instructor sets for what is critical, whatever the members' spread.
+struct FixedCut {
+  std::string figure;    ///< "clip-errors", or one of several, "path-length left"
+  bool atLeast = false;  ///< else at most
+  double value = 0.0;    ///< in the unit that tables show
+};
+
+/// A figure is named whole, or by its checkpoint's name.
+inline bool isCalled(const std::string& wanted, const std::string& checkpoint, const std::string& subject) {
+  return wanted == checkpoint || wanted == figureName(checkpoint, subject);
+}
+
+/// "critical-view>=1", "clip-errors<=0". @throws Error (invalid)
+FixedCut parseFixedCut(const std::string& text);
+
+/// Does a checkpoint count where the rule names none? Few do: how long it took, how far the tips went, and what harms
+/// the patient. The others describe; hundreds of them would decide by what competent people happen to differ in.
+bool countsByDefault(std::string_view checkpoint);
+/// The six of them, harm first. The dashboard shows the same.
+const std::vector<std::string_view>& countingCheckpoints();
+
+/// Puts an instructor's marks in the place of those of the members' spread; these figures are in the rule.
+/// @throws Error (invalid) where no figure is called so, or its better side is the other one
+void setFixedCuts(Norm& norm, const std::vector<FixedCut>& fixed);
+/// Was the mark set by a person? Such a figure has to be passed whatever number of others is.
+bool isFixed(const NormCheckpoint& mark);
+
+/// True if the rule is met: by enough of its figures, and by each that is fixed.
+/// @param passed by Norm::checkpoints
+bool keepsRule(const Norm& norm, const std::vector<bool>& passed);
+
+/// Warning that names figures of harm which do not count, since they have no pass mark; or empty.
+std::string uncountedWarning(const Norm& norm);
+
+/// Judges' probabilities that a borderline trainee passes each figure, and the pass mark.
+struct AngoffJudgement {
+  std::vector<std::string> judges, items;
+  RatingTable probabilities;  ///< a row a judge
+  AngoffCut cut;
+  std::size_t needed = 0;  ///< least whole number of items at or above the cut
+};
+
+/// Reads a table with a column "judge" and a column for each item.
+/// @throws Error (invalid) without such a column; Error (damaged), naming line and column, for a judge without a name
+/// or named twice, and a cell that is no probability; Error (refused) where there is no cut.
+AngoffJudgement readAngoff(const CsvTable& table);
 
 /// Borderline regression: the form by which raters judged attempts, and its borderline mark.
 struct BorderlineMark {
@@ -99,5 +150,24 @@ struct RegressionCut {
 };
 Expected<RegressionCut> borderlineCut(const std::vector<double>& ratings, const std::vector<double>& values,
                                       double mark, Direction direction, bool logScale);
+
+/// How far it is, from 0 to 1, and what is being done. The last call comes before anything is stored; what it throws
+/// ends the making, and nothing is stored.
+using NormProgress = std::function<void(double share, const char* doing)>;
+
+/// Makes a norm of a cohort's attempts, after the whole cohort was checked, and stores it as the next version of its
+/// name. A protocol gets the participants' recorded experience.
+/// @param only uuids of the attempts that it may be made of; empty: all that the request allows
+/// @return as it is stored @throws Error as refuseUnsound(), makeNorm(), CohortDatabase::storeNorm() and
+/// CohortDatabase
+Norm createNorm(const std::string& database, NormRequest request, const std::vector<std::string>& only = {},
+                const NormProgress& progress = {});
+
+/// Members and author, its rule with the pass rates of the rule, and its permitted use: whole
+/// sentences.
+std::vector<std::string> normSummary(const Norm& norm);
+
+/// Competent members who fail, harm that does not count, intervals that are too narrow: whole sentences, or none.
+std::vector<std::string> normWarnings(const Norm& norm);
 
 }  // namespace calot::analytics

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-#include "analytics/assessment/norm_rule.h"
+#include "analytics/assessment/norm.h"
 
 #include <fmt/format.h>
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "analytics/assessment/norm.h"
 #include "analytics/checkpoints/checkpoint.h"
 #include "analytics/report/table_study.h"
 #include "recorder/base/errors.h"

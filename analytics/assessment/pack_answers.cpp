@@ -11,8 +11,8 @@
 #include <utility>
 
 #include "recorder/base/errors.h"
-#include "recorder/base/file_bytes.h"
-#include "recorder/base/record_reader.h"
+#include "recorder/base/files.h"
+#include "recorder/base/record_json.h"
 #include "recorder/base/text_words.h"
 
 namespace calot::analytics {

@@ -9,9 +9,8 @@
 
 #include "analytics/checkpoints/checkpoint.h"
 #include "recorder/base/errors.h"
-#include "recorder/base/file_bytes.h"
-#include "recorder/base/nearest_word.h"
-#include "recorder/base/record_reader.h"
+#include "recorder/base/files.h"
+#include "recorder/base/record_json.h"
 #include "recorder/base/text_words.h"
 
 namespace calot::analytics {

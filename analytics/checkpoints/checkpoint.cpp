@@ -265,11 +265,16 @@ CheckpointEntry phaseRow(const CheckpointEntry& whole, int rank, const char* pie
           .accumulate = std::move(accumulate)};
 }
 
+std::size_t positionOf(std::string_view name) {
+  const auto& registry = checkpointRegistry();
+  return static_cast<std::size_t>(
+      std::find_if(registry.begin(), registry.end(), [&](const auto& entry) { return entry.definition.name == name; }) -
+      registry.begin());
+}
+
 const CheckpointDefinition* findCheckpoint(std::string_view name) {
-  for (const CheckpointEntry& entry : checkpointRegistry()) {
-    if (entry.definition.name == name) return &entry.definition;
-  }
-  return nullptr;
+  const std::size_t position = positionOf(name);
+  return position < checkpointRegistry().size() ? &checkpointRegistry()[position].definition : nullptr;
 }
 
 const CheckpointDefinition* definitionOf(const CheckpointValue& value) {
@@ -277,10 +282,9 @@ const CheckpointDefinition* definitionOf(const CheckpointValue& value) {
 }
 
 std::optional<CheckpointFamily> familyOf(std::string_view name) {
-  for (const CheckpointEntry& entry : checkpointRegistry()) {
-    if (entry.definition.name == name) return entry.place.family;
-  }
-  return std::nullopt;
+  const std::size_t position = positionOf(name);
+  if (position == checkpointRegistry().size()) return std::nullopt;
+  return checkpointRegistry()[position].place.family;
 }
 
 bool isOfPhases(const CheckpointDefinition& definition) {

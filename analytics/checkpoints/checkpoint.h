@@ -293,6 +293,8 @@ const std::vector<CheckpointEntry>& checkpointRegistry();
 
 /// The definition of a name, or null.
 const CheckpointDefinition* findCheckpoint(std::string_view name);
+/// Its place in the registry, whose size stands for a name that is not in it.
+std::size_t positionOf(std::string_view name);
 
 /// The definition that a value stands on: the registry's, or of an external metric its script's; or null. It lives as
 /// long as the value.

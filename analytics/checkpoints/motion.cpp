@@ -8,7 +8,7 @@
 #include <cmath>
 #include <utility>
 
-#include "analytics/checkpoints/movements.h"
+#include "analytics/checkpoints/hand_motion.h"
 #include "analytics/checkpoints/zero_phase_filter.h"
 #include "recorder/sources/pointing.h"
 #include "sim/math/linear.h"

@@ -8,7 +8,6 @@
 #include <string_view>
 #include <utility>
 
-#include "analytics/cohort/connection.h"
 #include "analytics/cohort/tables.h"
 
 namespace calot::analytics::tables {
@@ -24,15 +23,15 @@ std::string selectAttempts(const std::string& clause) {
       "LEFT JOIN verification v ON v.attempt = a.id LEFT JOIN participant p ON p.id = a.participant "
       "LEFT JOIN exclusion e ON e.attempt = a.id LEFT JOIN recording_signature s ON s.attempt = a.id "
       "LEFT JOIN research_withdrawal w ON w.participant = a.participant {}",
-      memberColumns(attemptTable(), "a"), memberColumns(recordingTable(), "r"), memberColumns(verificationTable(), "v"),
-      memberColumns(signatureTable(), "s"), clause);
+      memberColumns(attemptTable, "a"), memberColumns(recordingTable, "r"), memberColumns(verificationTable, "v"),
+      memberColumns(signatureTable, "s"), clause);
 }
 
 AttemptRow attemptRow(SQLite::Statement& row) {
   AttemptRow a;
   int c = 0;
-  readMembers<AttemptRecord>(attemptTable(), row, c, a);
-  readMembers<AttemptRecord>(recordingTable(), row, c, a);
+  readMembers<AttemptRecord>(attemptTable, row, c, a);
+  readMembers<AttemptRecord>(recordingTable, row, c, a);
   for (std::string* joinedText : {&a.participant, &a.group, &a.arm, &a.site, &a.importedUtc, &a.verifiedUtc})
     *joinedText = text(row.getColumn(c++));
   a.withdrawn = !row.getColumn(c++).isNull();
@@ -44,9 +43,9 @@ AttemptRow attemptRow(SQLite::Statement& row) {
     a.exclusionReason = fmt::format("{} ({})", text(reason), text(by));
   }
   const bool verified = !row.getColumn(c++).isNull(), isSigned = !row.getColumn(c++).isNull();
-  readMembers(verificationTable(), row, c, a.verification);
+  readMembers(verificationTable, row, c, a.verification);
   if (!verified) a.verification.verdict = Verdict::notChecked;
-  if (isSigned) readMembers(signatureTable(), row, c, a.signature.emplace());
+  if (isSigned) readMembers(signatureTable, row, c, a.signature.emplace());
   return a;
 }
 
@@ -210,18 +209,18 @@ std::string contradiction(const AttemptRecord& known, const AttemptRecord& incom
 }
 
 void writeRecording(SQLite::Database& db, std::int64_t id, const AttemptRecord& a) {
-  InsertOf put(db, recordingTable(), {"attempt"}, orUpdateAllBut(recordingTable(), {"attempt", "step_seconds"}));
+  InsertOf put(db, recordingTable, {"attempt"}, orUpdateAllBut(recordingTable, {"attempt", "step_seconds"}));
   put(a, {id});
   execute(db, "UPDATE attempt SET outcome = ? WHERE id = ?", {static_cast<int>(a.outcome), id});
 }
 
 void writeVerification(SQLite::Database& db, std::int64_t id, const Verification& v) {
-  InsertOf put(db, verificationTable(), {"attempt", "verified_utc"}, orUpdateAllBut(verificationTable(), {"attempt"}));
+  InsertOf put(db, verificationTable, {"attempt", "verified_utc"}, orUpdateAllBut(verificationTable, {"attempt"}));
   put(v, {id, nowUtc()});
 }
 
 void writeSignature(SQLite::Database& db, std::int64_t id, const AttemptRecord& a) {
-  InsertOf put(db, signatureTable(), {"attempt", "chain_head"}, orUpdateAllBut(signatureTable(), {"attempt"}));
+  InsertOf put(db, signatureTable, {"attempt", "chain_head"}, orUpdateAllBut(signatureTable, {"attempt"}));
   put(*a.signature, {id, blobOf(a.chainHead)});
 }
 
@@ -246,7 +245,7 @@ void insertAttempt(SQLite::Database& db, const AttemptRecord& a, const std::vect
       audit(db, "participant-add", a.participant, "named by attempt " + a.uuid);
     }
   }
-  InsertOf put(db, attemptTable(), {"participant", "imported_utc"});
+  InsertOf put(db, attemptTable, {"participant", "imported_utc"});
   put(a, {participant >= 0 ? Cell(participant) : Cell(), nowUtc()});
   const std::int64_t id = db.getLastInsertRowid();
   writeRecording(db, id, a);

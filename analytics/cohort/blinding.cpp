@@ -8,9 +8,8 @@
 #include <set>
 #include <utility>
 
-#include "analytics/cohort/connection.h"
 #include "analytics/cohort/tables.h"
-#include "recorder/attempt.h"
+#include "recorder/loop.h"
 
 namespace calot::analytics {
 namespace {
@@ -23,7 +22,7 @@ std::optional<bool> findMask(SQLite::Database& db, const std::string& protocol) 
 }
 
 std::optional<AnalysisLock> findLock(SQLite::Database& db, const std::string& protocol) {
-  const auto locks = selectRows(db, analysisLockTable(), "WHERE protocol_sha256 = ?", {protocol});
+  const auto locks = selectRows(db, analysisLockTable, "WHERE protocol_sha256 = ?", {protocol});
   return locks.empty() ? std::nullopt : std::optional(locks.front());
 }
 
@@ -60,7 +59,7 @@ AnalysisLock storeAnalysisLock(const std::string& path, const AnalysisLock& lock
     if (known) return *known;
     AnalysisLock fresh = lock;
     fresh.lockedUtc = nowUtc();
-    InsertOf(db, analysisLockTable())(fresh);
+    InsertOf(db, analysisLockTable)(fresh);
     audit(db, "analysis-lock", fresh.protocol, fmt::format("values {} (by {})", fresh.valuesSha256, fresh.by));
     return fresh;
   });

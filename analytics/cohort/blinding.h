@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "analytics/cohort/assessment_database.h"
+#include "analytics/cohort/cohort_database.h"
 
 namespace calot::analytics {
 
@@ -59,7 +59,7 @@ std::optional<RatingPack> readRatingPack(const std::string& path, const std::str
 
 /// Stores what a rater answered, and that the answers were taken: one transaction.
 /// @throws Error (refused) where they were taken before, or an attempt was rated by this rater with this form, and
-/// `replace` is not set; as AssessmentDatabase::storeRating().
+/// `replace` is not set; as CohortDatabase::storeRating().
 void storePackAnswers(const std::string& path, const RatingPack& pack, const std::string& rater,
                       const std::vector<Rating>& ratings, bool replace);
 

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <utility>
 
+#include "analytics/cohort/embedded.h"
 #include "analytics/cohort/tables.h"
 
 namespace calot::analytics {
@@ -78,7 +79,7 @@ void CohortDatabase::setParticipant(const std::string& pseudonym, const Particip
 std::vector<Participant> CohortDatabase::participants() const {
   return connection_->read([](SQLite::Database& db) {
     std::map<std::string, Participant> people;  // by pseudonym, in the order of their bytes
-    for (Participant& p : selectRows(db, participantTable(), "")) people.emplace(p.pseudonym, p);
+    for (Participant& p : selectRows(db, participantTable, "")) people.emplace(p.pseudonym, p);
     const auto add = [&](const char* query, std::map<std::string, std::string> Participant::*details) {
       eachRow(db, query, {}, [&](SQLite::Statement& row) {
         (people.at(text(row.getColumn(0))).*details)[text(row.getColumn(1))] = text(row.getColumn(2));
@@ -94,21 +95,9 @@ std::vector<Participant> CohortDatabase::participants() const {
   });
 }
 
-std::optional<Participant> CohortDatabase::participant(const std::string& pseudonym) const {
-  for (Participant& p : participants()) {
-    if (p.pseudonym == pseudonym) return std::move(p);
-  }
-  return std::nullopt;
-}
-
 Imported CohortDatabase::storeAttempt(const AttemptRecord& attempt, const std::vector<CheckpointValue>& values) {
   checkAttempt(attempt, path());
   return connection_->change([&](SQLite::Database& db) { return importAttempt(db, path(), attempt, &values); });
-}
-
-Imported CohortDatabase::upsertAttempt(const AttemptRecord& attempt) {
-  checkAttempt(attempt, path());
-  return connection_->change([&](SQLite::Database& db) { return importAttempt(db, path(), attempt, nullptr); });
 }
 
 void CohortDatabase::storeValues(const std::string& attempt, const std::vector<CheckpointValue>& values) {
@@ -248,9 +237,9 @@ void addFields(Fields& fields, const DeclaredTable& table, const void* row) {
 
 Fields fieldsOf(const AttemptRow& a) {
   Fields fields;
-  addFields(fields, attemptTable(), static_cast<const AttemptRecord*>(&a));
-  addFields(fields, recordingTable(), static_cast<const AttemptRecord*>(&a));
-  addFields(fields, verificationTable(), &a.verification);
+  addFields(fields, attemptTable, static_cast<const AttemptRecord*>(&a));
+  addFields(fields, recordingTable, static_cast<const AttemptRecord*>(&a));
+  addFields(fields, verificationTable, &a.verification);
   const Fields others{{"participant", a.participant},
                       {"group", a.group},
                       {"arm", a.arm},
@@ -266,7 +255,7 @@ Fields fieldsOf(const AttemptRow& a) {
 
 Fields fieldsOf(const Participant& p) {
   Fields fields;
-  addFields(fields, participantTable(), &p);
+  addFields(fields, participantTable, &p);
   fields.emplace_back("experience", p.experience);
   fields.emplace_back("consent", p.consent);
   return fields;
@@ -274,8 +263,44 @@ Fields fieldsOf(const Participant& p) {
 
 Fields fieldsOf(const CheckpointValue& value) {
   Fields fields;
-  addFields(fields, checkpointValueTable(), &value);
+  addFields(fields, checkpointValueTable, &value);
   return fields;
+}
+
+CohortCheck checkCohort(const std::string& path) {
+  return CohortConnection(path, CohortDatabase::Access::read).read([](SQLite::Database& db) {
+    CohortCheck result;
+    result.schema = db.execAndGet("PRAGMA user_version").getInt();
+    for (const std::string& line : firstTexts(db, "PRAGMA integrity_check")) {
+      if (line != "ok") result.faults.push_back(printable(line));
+    }
+    if (!result.faults.empty()) return result;  // what else would be said of it means nothing
+    if (static_cast<std::size_t>(result.schema) == cohortMigrations().size()) result.faults = tables::schemaFaults(db);
+    for (const char* fault :
+         {"SELECT count(*) || ' rows of ' || \"table\" || ' refer to no row of ' || \"parent\" FROM "
+          "pragma_foreign_key_check GROUP BY \"table\", \"parent\"",
+          "SELECT 'attempt ' || uuid || ' has no recording' FROM attempt WHERE id NOT IN (SELECT attempt FROM "
+          "recording)",
+          "SELECT 'attempt ' || a.uuid || ': its signature is of another content' FROM recording_signature s JOIN "
+          "recording r USING (attempt) JOIN attempt a ON a.id = s.attempt WHERE s.chain_head <> r.chain_head"}) {
+      for (std::string& line : firstTexts(db, fault)) result.faults.push_back(std::move(line));
+    }
+    const auto count = [&](const char* table) {
+      return static_cast<std::uint64_t>(firstNumber(db, fmt::format("SELECT count(*) FROM {}", table)));
+    };
+    result.participants = count("participant");
+    result.attempts = count("attempt");
+    result.values = count("checkpoint_value");
+    return result;
+  });
+}
+
+void refuseUnsound(const std::string& path) {
+  const CohortCheck check = checkCohort(path);
+  if (check.faults.empty()) return;
+  throw Error(ErrorKind::damaged, Where{path},
+              fmt::format("{} faults, the first: {}; restore a copy, or assess the recordings into a new one",
+                          check.faults.size(), check.faults.front()));
 }
 
 }  // namespace calot::analytics

@@ -13,7 +13,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "analytics/cohort/declared_tables.h"
+#include "analytics/cohort/tables.h"
 
 namespace calot::analytics {
 
@@ -97,21 +97,29 @@ constexpr auto fieldReader() -> FieldValue (*)(const void* row) {
   }
 }
 
-/// The member of `Row` that the path leads to: at<Row, &Row::part, &Part::member>.
+/// The member of `Row` that the path leads to, through its base classes too.
 template <class Row, auto... Path>
-inline constexpr ColumnMember at{
+inline constexpr ColumnMember inRow{
     [](SQLite::Statement& s, int i, const void* row) { bindMember(s, i, (*static_cast<const Row*>(row).*....*Path)); },
     [](const SQLite::Column& from, void* row) { readMember(from, (*static_cast<Row*>(row).*....*Path)); },
     fieldReader<Row, Path...>()};
 
+template <class Row, class Member>
+Row classOf(Member Row::*);
+
+/// The same of the class that declares the first member: at<&Row::part, &Part::member>.
+template <auto First, auto... Path>
+inline constexpr ColumnMember at = inRow<decltype(classOf(First)), First, Path...>;
+
 /// An unsigned number of 64 bits as text in decimal: SQLite's integers are signed.
-template <class Row, auto Member>
-inline constexpr ColumnMember digits{[](SQLite::Statement& s, int i, const void* row) {
-                                       s.bind(i, std::to_string(static_cast<const Row*>(row)->*Member));
-                                     },
-                                     [](const SQLite::Column& from, void* row) {
-                                       static_cast<Row*>(row)->*Member = std::strtoull(from.getText(), nullptr, 10);
-                                     },
-                                     fieldReader<Row, Member>()};
+template <auto Member>
+inline constexpr ColumnMember digits{
+    [](SQLite::Statement& s, int i, const void* row) {
+      s.bind(i, std::to_string(static_cast<const decltype(classOf(Member))*>(row)->*Member));
+    },
+    [](const SQLite::Column& from, void* row) {
+      static_cast<decltype(classOf(Member))*>(row)->*Member = std::strtoull(from.getText(), nullptr, 10);
+    },
+    fieldReader<decltype(classOf(Member)), Member>()};
 
 }  // namespace calot::analytics

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-#include "analytics/cohort/connection.h"
+#include "analytics/cohort/tables.h"
 
 #include <fmt/format.h>
 #include <sqlite3.h>
@@ -10,7 +10,6 @@
 #include <thread>
 
 #include "analytics/cohort/embedded.h"
-#include "analytics/cohort/tables.h"
 #include "recorder/base/dates.h"
 
 namespace calot::analytics {

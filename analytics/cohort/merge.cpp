@@ -8,7 +8,6 @@
 #include <map>
 #include <set>
 
-#include "analytics/cohort/connection.h"
 #include "analytics/cohort/tables.h"
 #include "analytics/cohort/withdraw.h"
 

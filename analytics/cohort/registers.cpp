@@ -5,7 +5,6 @@
 
 #include <algorithm>
 
-#include "analytics/cohort/connection.h"
 #include "analytics/cohort/tables.h"
 
 namespace calot::analytics {
@@ -101,7 +100,7 @@ Registers readRegisters(const std::string& path) {
     named("site", r.sites);
     named("arm", r.arms);
     named("cohort", r.cohorts);
-    r.stations = selectRows(db, stationTable(), "ORDER BY name");
+    r.stations = selectRows(db, stationTable, "ORDER BY name");
     for (NamedCohort& cohort : r.cohorts) {
       cohort.participants = firstTexts(db,
                                        "SELECT p.pseudonym FROM cohort_participant c JOIN participant p ON p.id = "

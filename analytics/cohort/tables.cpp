@@ -7,9 +7,8 @@
 #include <algorithm>
 #include <set>
 
-#include "analytics/cohort/connection.h"
 #include "recorder/base/dates.h"
-#include "recorder/base/file_bytes.h"
+#include "recorder/base/files.h"
 
 namespace calot::analytics {
 namespace {
@@ -219,7 +218,7 @@ std::int64_t participantId(SQLite::Database& db, const std::string& pseudonym) {
 }
 
 std::int64_t insertParticipant(SQLite::Database& db, const Participant& p) {
-  InsertOf(db, participantTable(), {"created_utc"})(p, {nowUtc()});
+  InsertOf(db, participantTable, {"created_utc"})(p, {nowUtc()});
   return db.getLastInsertRowid();
 }
 

@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Access to single tables, which CohortDatabase and AssessmentDatabase combine: tables and rows as SQLite describes
-// them, for work that must reach every table, those of later migrations too; and the statements that follow from a
-// table's declaration. No function here begins a transaction.
+// What CohortDatabase builds on. Opening a database: which file it is, its schema, migrations (connection.cpp).
+// Single tables: tables and rows as SQLite describes them, for work that must reach every table, those of later
+// migrations too; and the statements that follow from a table's declaration. No function here begins a transaction.
+// The tables' declaration (declared_tables.cpp), each column declared once: name, SQLite's type, meaning, unit, values,
+// and the member of the struct that holds it. schemas/cohort/*.sql makes them; statements (tables.h), `cohort check`,
+// lists, codebook and exports follow from the declaration. A new column takes its line here, its member and a
+// migration.
 #pragma once
 
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <SQLiteCpp/VariadicBind.h>
 #include <array>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -16,15 +21,127 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <type_traits>
 #include <variant>
 #include <vector>
 
-#include "analytics/cohort/assessment_database.h"
+#include "analytics/cohort/blinding.h"
 #include "analytics/cohort/cohort_database.h"
-#include "analytics/cohort/connection.h"
-#include "analytics/cohort/declared_tables.h"
+#include "analytics/cohort/registers.h"
+#include "recorder/base/errors.h"
 
 namespace calot::analytics {
+
+/// An SQLite message, which may quote content of a damaged file, with '?' for non-ASCII characters.
+std::string printable(std::string words);
+
+/// One line for the user that explains an SQLite result code and names the file.
+Error databaseError(int sqliteCode, const std::string& message, const std::string& path);
+
+/// "Calo": application id of a cohort database in SQLite's header.
+inline constexpr int cohortApplicationId = 0x43616C6F;
+
+/// Between a database's name and the number of the schema that a migration's backup of it has.
+inline constexpr const char* backupMark = ".schema-";
+
+/// Opens, checks and (unless read-only) migrates. What an older schema held is kept beside it as
+/// PATH.schema-N.bak, N its number. @throws Error as CohortDatabase says.
+std::unique_ptr<SQLite::Database> openCohort(const std::string& path, CohortDatabase::Access access,
+                                             std::chrono::milliseconds patience);
+
+/// Runs `work` and turns SQLite's exceptions into calot::Error.
+template <class Work>
+auto guarded(const std::string& path, Work&& work) -> decltype(work()) {
+  try {
+    return work();
+  } catch (const SQLite::Exception& error) {
+    throw databaseError(error.getErrorCode(), error.what(), path);
+  }
+}
+
+/// An open cohort database. Errors of SQLite within `work` become calot::Error.
+struct CohortConnection {
+  explicit CohortConnection(const std::string& file, CohortDatabase::Access access,
+                            std::chrono::milliseconds patience = std::chrono::seconds(10))
+      : path(file), db(openCohort(file, access, patience)) {}
+
+  /// work(database).
+  template <class Work>
+  auto read(Work work) const {
+    return guarded(path, [&] { return work(*db); });
+  }
+  /// work(database) in one transaction, which an exception takes back.
+  template <class Work>
+  auto change(Work work) {
+    return read([&](SQLite::Database& database) {
+      SQLite::Transaction transaction(database, SQLite::TransactionBehavior::IMMEDIATE);
+      if constexpr (std::is_void_v<decltype(work(database))>) {
+        work(database);
+        transaction.commit();
+      } else {
+        auto result = work(database);
+        transaction.commit();
+        return result;
+      }
+    });
+  }
+
+  std::string path;
+  std::unique_ptr<SQLite::Database> db;
+};
+
+/// Now, ISO 8601 UTC in seconds: "2014-05-17T09:30:00Z".
+std::string nowUtc();
+
+/// Moves one member between its struct and a statement or a list; empty where no struct holds the column.
+struct ColumnMember {
+  void (*bind)(SQLite::Statement& statement, int index, const void* row) = nullptr;
+  void (*read)(const SQLite::Column& from, void* row) = nullptr;
+  FieldValue (*value)(const void* row) = nullptr;
+};
+
+struct DeclaredColumn {
+  const char* name;
+  const char* type;  ///< as in the schema: "REAL", or "REAL NOT NULL"
+  const char* meaning;
+  ColumnMember member = {};
+  const char* unit = "";
+  const char* allowed = "";  ///< empty: any value of the type
+  const char* missing = "";  ///< what stands where there is none; empty: never missing
+  const char* listed = "";   ///< its name in lists (fieldsOf()); empty: `name`
+};
+
+struct DeclaredTable {
+  const char* name;
+  std::vector<DeclaredColumn> columns;
+};
+
+/// A table whose members are of `Row`.
+template <class Row>
+struct TableOf : DeclaredTable {};
+
+extern const TableOf<Participant> participantTable;
+extern const TableOf<AttemptRecord> attemptTable;
+extern const TableOf<AttemptRecord> recordingTable;
+extern const TableOf<RecordingSignature> signatureTable;
+extern const TableOf<Verification> verificationTable;
+extern const TableOf<CheckpointValue> checkpointValueTable;
+extern const TableOf<ExternalMetric> externalMetricTable;
+extern const TableOf<CheckpointValue> externalValueTable;
+extern const TableOf<ValueInterval> valueIntervalTable;
+extern const TableOf<Station> stationTable;
+extern const TableOf<RegisteredProtocol> protocolTable;
+extern const TableOf<StoredDocument> formTable;
+extern const TableOf<AnalysisLock> analysisLockTable;
+extern const TableOf<Norm> normTable;
+extern const TableOf<NormCheckpoint> normCheckpointTable;
+extern const TableOf<NormEvidence> normEvidenceTable;
+
+/// All of them, with those that no struct holds.
+const std::vector<const DeclaredTable*>& cohortTables();
+/// A column of one of them; null where there is none.
+const DeclaredColumn* findColumn(std::string_view table, std::string_view column);
 
 struct ColumnFacts {
   std::string name, type;
@@ -156,7 +273,7 @@ std::size_t writeExternalValues(SQLite::Database& db, const std::string& path, s
 bool replaceValues(SQLite::Database& db, std::int64_t attempt, const std::vector<CheckpointValue>& values);
 
 /// A filled form, and the form itself where it is not there yet; begins no transaction. @throws Error as
-/// AssessmentDatabase::storeRating().
+/// CohortDatabase::storeRating().
 void putRating(SQLite::Database& db, const std::string& path, const StoredDocument& form, const Rating& rating,
                bool replace);
 

@@ -8,13 +8,12 @@
 #include <map>
 #include <utility>
 
-#include "analytics/cohort/connection.h"
 #include "analytics/cohort/tables.h"
 
 namespace calot::analytics::tables {
 
 std::vector<CheckpointValue> readValues(SQLite::Database& db, std::int64_t id) {
-  return selectRows(db, checkpointValueTable(), "WHERE attempt = ? ORDER BY position", {id});
+  return selectRows(db, checkpointValueTable, "WHERE attempt = ? ORDER BY position", {id});
 }
 
 bool replaceValues(SQLite::Database& db, std::int64_t id, const std::vector<CheckpointValue>& values) {
@@ -32,7 +31,7 @@ bool replaceValues(SQLite::Database& db, std::int64_t id, const std::vector<Chec
     if (same(i)) continue;
     execute(db, "DELETE FROM checkpoint_value WHERE attempt = ? AND position = ?", {id, static_cast<std::int64_t>(i)});
   }
-  InsertOf put(db, checkpointValueTable(), {"attempt", "position"});
+  InsertOf put(db, checkpointValueTable, {"attempt", "position"});
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (!same(i)) put(values[i], {id, static_cast<std::int64_t>(i)});
   }
@@ -48,17 +47,17 @@ void readAllValues(SQLite::Database& db, const std::vector<std::string>& without
   eachRow(db,
           fmt::format("SELECT a.uuid, {}{} FROM checkpoint_value c JOIN attempt a ON a.id = c.attempt {} "
                       "WHERE c.name NOT IN ({}) ORDER BY a.uuid, c.position",
-                      memberColumns(checkpointValueTable(), "c"),
-                      intervals ? ", i.attempt, " + memberColumns(valueIntervalTable(), "i") : "",
+                      memberColumns(checkpointValueTable, "c"),
+                      intervals ? ", i.attempt, " + memberColumns(valueIntervalTable, "i") : "",
                       intervals ? "LEFT JOIN value_interval i ON " + intervalIsOfValue() : "",
                       joined(std::vector<std::string>(names.size(), "?"), ", ")),
           names, [&](SQLite::Statement& row) {
             int c = 0;
             value.attempt = text(row.getColumn(c++));
-            readMembers(checkpointValueTable(), row, c, value.value);
+            readMembers(checkpointValueTable, row, c, value.value);
             value.interval.reset();
             if (intervals && !row.getColumn(c++).isNull())
-              readMembers(valueIntervalTable(), row, c, value.interval.emplace());
+              readMembers(valueIntervalTable, row, c, value.interval.emplace());
             take(value);
           });
 }
@@ -75,10 +74,10 @@ std::vector<ValueInterval> readIntervals(SQLite::Database& db, std::int64_t id) 
   eachRow(db,
           fmt::format("SELECT {} FROM value_interval i JOIN checkpoint_value c ON {} WHERE c.attempt = ? "
                       "ORDER BY c.position",
-                      memberColumns(valueIntervalTable(), "i"), intervalIsOfValue()),
+                      memberColumns(valueIntervalTable, "i"), intervalIsOfValue()),
           {id}, [&](SQLite::Statement& row) {
             int c = 0;
-            readMembers(valueIntervalTable(), row, c, intervals.emplace_back());
+            readMembers(valueIntervalTable, row, c, intervals.emplace_back());
           });
   return intervals;
 }
@@ -86,7 +85,7 @@ std::vector<ValueInterval> readIntervals(SQLite::Database& db, std::int64_t id) 
 bool replaceIntervals(SQLite::Database& db, std::int64_t id, const std::vector<ValueInterval>& intervals) {
   if (readIntervals(db, id) == intervals) return false;
   execute(db, "DELETE FROM value_interval WHERE attempt = ?", {id});
-  InsertOf put(db, valueIntervalTable(), {"attempt", "method"});
+  InsertOf put(db, valueIntervalTable, {"attempt", "method"});
   for (const ValueInterval& i : intervals) put(i, {id, std::int64_t{intervalMethod}});
   return true;
 }
@@ -98,11 +97,11 @@ using MetricById = std::map<std::int64_t, ExternalMetricRef>;
 /// Each is one object, which its values share.
 MetricById metricsById(SQLite::Database& db) {
   MetricById metrics;
-  eachRow(db, fmt::format("SELECT id, {} FROM external_metric", memberColumns(externalMetricTable())), {},
+  eachRow(db, fmt::format("SELECT id, {} FROM external_metric", memberColumns(externalMetricTable)), {},
           [&](SQLite::Statement& row) {
             ExternalMetric m;
             int c = 1;
-            readMembers(externalMetricTable(), row, c, m);
+            readMembers(externalMetricTable, row, c, m);
             CheckpointDefinition& d = m.definition;
             d.displayUnit = d.unit;
             d.window = "whole attempt";
@@ -127,12 +126,12 @@ std::vector<AttemptValue> externalValues(SQLite::Database& db, const std::string
                       "JOIN attempt a ON a.id = e.attempt WHERE {} AND NOT EXISTS (SELECT 1 FROM external_value l JOIN "
                       "external_metric n ON n.id = l.metric WHERE l.attempt = e.attempt AND n.name = m.name AND "
                       "n.version > m.version) ORDER BY a.uuid, m.name",
-                      memberColumns(externalValueTable(), "e"), condition),
+                      memberColumns(externalValueTable, "e"), condition),
           parameters, [&](SQLite::Statement& row) {
             CheckpointValue v;
             v.metric = metrics.at(row.getColumn(1).getInt64());
             int c = 2;
-            readMembers(externalValueTable(), row, c, v);
+            readMembers(externalValueTable, row, c, v);
             const CheckpointDefinition& d = v.metric->definition;
             v.name = d.name;
             v.version = d.version;
@@ -150,7 +149,7 @@ std::int64_t registered(SQLite::Database& db, const std::string& path, const Ext
   const std::int64_t known =
       firstNumber(db, "SELECT id FROM external_metric WHERE name = ? AND version = ?", {d.name, d.version});
   if (known >= 0) return known;
-  InsertOf(db, externalMetricTable(), {"registered_utc"})(metric, {nowUtc()});
+  InsertOf(db, externalMetricTable, {"registered_utc"})(metric, {nowUtc()});
   const std::int64_t id = db.getLastInsertRowid();
   audit(db, "metric-add", fmt::format("{} {}", d.name, d.version), "SHA-256 " + metric.sha256);
   return id;
@@ -173,7 +172,7 @@ std::vector<ExternalMetric> readExternalMetrics(SQLite::Database& db) {
 void checkExternalMetric(SQLite::Database& db, const std::string& path, const ExternalMetric& metric) {
   const CheckpointDefinition& d = metric.definition;
   for (const ExternalMetric& known : selectRows(
-           db, externalMetricTable(), "WHERE name = ? AND version >= ? ORDER BY version DESC", {d.name, d.version})) {
+           db, externalMetricTable, "WHERE name = ? AND version >= ? ORDER BY version DESC", {d.name, d.version})) {
     const std::uint32_t version = known.definition.version;
     if (version > d.version) {
       throw Error(ErrorKind::refused,
@@ -203,9 +202,9 @@ std::size_t writeExternalValues(SQLite::Database& db, const std::string& path, s
   std::size_t added = 0;
   for (const CheckpointValue& v : values) {
     const std::int64_t metric = registered(db, path, *v.metric);
-    const auto known = selectRows(db, externalValueTable(), "WHERE attempt = ? AND metric = ?", {attempt, metric});
+    const auto known = selectRows(db, externalValueTable, "WHERE attempt = ? AND metric = ?", {attempt, metric});
     if (known.empty()) {
-      InsertOf(db, externalValueTable(), {"attempt", "metric"})(v, {attempt, metric});
+      InsertOf(db, externalValueTable, {"attempt", "metric"})(v, {attempt, metric});
       ++added;
       continue;
     }

@@ -11,9 +11,8 @@
 #include <system_error>
 #include <tuple>
 
-#include "analytics/cohort/connection.h"
 #include "analytics/cohort/tables.h"
-#include "recorder/attempt.h"
+#include "recorder/loop.h"
 
 namespace calot::analytics {
 namespace {

@@ -142,8 +142,7 @@ std::optional<Spearman> scatterOf(const FigurePairs& pairs) {
     size.push_back(0.5 * (pairs.first[i] + pairs.second[i]));
     apart.push_back(std::abs(pairs.first[i] - pairs.second[i]));
   }
-  const Expected<Spearman> r = spearman(apart, size);
-  return r ? std::optional(*r) : std::nullopt;
+  return spearman(apart, size).optional();
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <map>
 #include <set>
+#include <span>
 
 #include "analytics/checkpoints/checkpoint.h"
 #include "analytics/design/design_data.h"
@@ -92,7 +93,6 @@ void addFigures(DesignData& data, const std::vector<AttemptValue>& values, const
   const std::set<std::string> aside(unasked.begin(), unasked.end());
   std::map<std::pair<std::size_t, std::string>, DesignFigure> figures;
   std::map<std::string, std::set<std::uint32_t>> versions;
-  const auto& registry = checkpointRegistry();
   for (const AttemptValue& item : values) {
     const auto at = placed.find(item.attempt);
     const CheckpointDefinition* d = findCheckpoint(item.value.name);
@@ -102,11 +102,7 @@ void addFigures(DesignData& data, const std::vector<AttemptValue>& values, const
     if (!d->notOutcome.empty() && !named(choices.against) &&
         std::none_of(choices.family.begin(), choices.family.end(), named))
       continue;
-    const auto place =
-        static_cast<std::size_t>(std::find_if(registry.begin(), registry.end(),
-                                              [&](const CheckpointEntry& e) { return e.definition.name == d->name; }) -
-                                 registry.begin());
-    DesignFigure& figure = figures[{place, full}];
+    DesignFigure& figure = figures[{positionOf(d->name), full}];
     figure.name = full;
     figure.unit = d->displayUnit == "1" ? "" : d->displayUnit;
     figure.direction = d->direction;
@@ -116,14 +112,7 @@ void addFigures(DesignData& data, const std::vector<AttemptValue>& values, const
       figure.values.push_back({at->second.person, at->second.occasion, at->second.order, at->second.completed, shown});
   }
   for (auto& [key, figure] : figures) {
-    if (versions[figure.name].size() > 1) {
-      if (!options.mixKeys)
-        throw Error(ErrorKind::refused, Where{name},
-                    fmt::format("checkpoint {} has values of {} versions", figure.name, versions[figure.name].size()),
-                    {Remedy::assessAgain, Remedy::mixKeys});
-      data.remarks.push_back(
-          fmt::format("Values of {} versions of {} are mixed, as asked.", versions[figure.name].size(), figure.name));
-    }
+    askForOneVersion(figure.name, versions[figure.name].size(), options, name, data.remarks);
     sortValues(figure);
     data.figures.push_back(std::move(figure));
   }
@@ -216,11 +205,7 @@ DesignData populated(const std::vector<AttemptRow>& recruited, const std::vector
                       {choices.attemptRule, entryOf(choices.design).oneEach, byDevice}, name, data.flow);
   data.attemptRule = people.rule;
   placed = place(data, people.units, options, choices);
-  for (const std::string& key : keyList) {
-    std::string words = comparabilityWords(key);
-    if (!words.empty() && words[0] == 't') words[0] = 'T';
-    data.head.push_back(words + ".");
-  }
+  for (const std::string& key : keyList) data.head.push_back(keySentence(key));
   const std::string first = setting.firstStartUtc.substr(0, 10), last = setting.lastStartUtc.substr(0, 10);
   data.head.push_back(first.empty()
                           ? "The dates of the attempts are not known."
@@ -241,19 +226,16 @@ DesignData cohortDesignData(const std::vector<AttemptRow>& attempts, const std::
   return data;
 }
 
-DesignData cohortDesignData(const CohortDatabase& database, const AssessmentDatabase& assessment,
-                            const StudyOptions& asked, const DesignChoices& choices) {
-  StudyOptions options = asked;
+DesignData cohortDesignData(const CohortDatabase& database, const StudyOptions& asked, const DesignChoices& choices) {
+  StudyOptions options = withCohortData(database, asked);
   options.family = choices.family;
-  if (options.cohort) options.cohort->participants = participantsOf(database.path(), options.cohort->name);
   PlacedAttempts placed;
   DesignData data = populated(database.listAttempts(), database.allValues(unaskedPhases(options)), options, choices,
                               database.path(), placed);
   if (choices.design != Design::timeToCriterion) {
-    const std::vector<Rating> ratings = assessment.ratings();
-    for (const StoredDocument& stored : assessment.forms()) {
-      const auto* bytes = reinterpret_cast<const std::byte*>(stored.text.data());
-      const RatingForm form = parseRatingForm({bytes, stored.text.size()}, stored.name);
+    const std::vector<Rating> ratings = database.ratings();
+    for (const StoredDocument& stored : database.forms()) {
+      const RatingForm form = parseRatingForm(std::as_bytes(std::span(stored.text)), stored.name);
       if (form.ofAttempts) addForm(data, form, ratings, placed);
     }
   }

@@ -5,13 +5,14 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <map>
 #include <set>
 
 #include "analytics/report/study_population.h"
+#include "analytics/report/table_study.h"
 #include "analytics/statistics/descriptive.h"
 #include "recorder/base/errors.h"
-#include "recorder/base/nearest_word.h"
 #include "recorder/base/text_words.h"
 
 namespace calot::analytics {
@@ -141,6 +142,183 @@ std::vector<std::vector<double>> byGroup(const DesignData& data, const OneEach& 
   for (std::size_t i = 0; i < values.person.size(); ++i)
     groups[data.people[values.person[i]].group].push_back(values.value[i]);
   return groups;
+}
+
+namespace {
+
+using recorder::shown;
+
+/// One row that is taken.
+struct TakenRow {
+  const TableRecord* record = nullptr;
+  std::string stratum;
+  bool finished = true;
+};
+
+std::optional<std::size_t> columnIfNamed(const CsvTable& table, const std::string& name) {
+  return name.empty() ? std::nullopt : std::optional(table.column(name));
+}
+
+bool finishedIn(const CsvTable& table, const CsvRow& row, const std::optional<std::size_t>& column) {
+  if (!column) return true;
+  const std::string& cell = row.cells[*column];
+  for (const char* yes : {"1", "yes", "true", "TRUE"}) {
+    if (cell == yes) return true;
+  }
+  for (const char* no : {"0", "no", "false", "FALSE"}) {
+    if (cell == no) return false;
+  }
+  failAt(table, row.line, table.columns[*column],
+         fmt::format("\"{}\" is neither 1, yes nor true, nor 0, no or false", shown(cell)));
+}
+
+/// By occasion in the order of the table, or by number where all are numbers.
+void orderOccasions(DesignData& data, const std::vector<TakenRow>& rows) {
+  std::map<std::string, double> numbers;
+  for (const TakenRow& row : rows) {
+    const std::string& name = row.record->occasion;
+    if (std::find(data.occasions.begin(), data.occasions.end(), name) == data.occasions.end())
+      data.occasions.push_back(name);
+    std::string fault;
+    const double number = recorder::readFiniteNumber(name, fault);
+    if (fault.empty()) numbers[name] = number;
+  }
+  data.numbered = numbers.size() == data.occasions.size();
+  if (!data.numbered) return;
+  std::sort(data.occasions.begin(), data.occasions.end(),
+            [&](const std::string& a, const std::string& b) { return numbers[a] < numbers[b]; });
+}
+
+/// Rows of each participant in the table's order; without an occasion column they are numbered.
+/// @throws Error (refused) for one in two groups or strata, and of designs with one value each for several rows without
+/// a rule.
+std::map<std::string, std::vector<TakenRow>> rowsByPerson(DesignData& data, const std::vector<TakenRow>& taken,
+                                                          const CsvTable& table, const DesignChoices& choices) {
+  const DesignEntry& entry = entryOf(choices.design);
+  const bool byOccasion = choices.design == Design::agreement && choices.against.empty();
+  std::map<std::string, std::vector<TakenRow>> people;
+  for (const TakenRow& row : taken) people[row.record->participant].push_back(row);
+  std::uint64_t later = 0;
+  bool several = false;
+  for (auto& [person, list] : people) {
+    std::set<std::string> seen;
+    std::vector<TakenRow> first;
+    for (const TakenRow& row : list) {
+      const Where where{table.path, fmt::format("line {}", row.record->line)};
+      if (!data.groups.empty() && row.record->group != list[0].record->group)
+        throw Error(ErrorKind::refused, where,
+                    fmt::format("participant \"{}\" is in two groups ({}, {}), which must be independent",
+                                shown(person), shown(list[0].record->group), shown(row.record->group)));
+      if (row.stratum != list[0].stratum)
+        throw Error(ErrorKind::refused, where,
+                    fmt::format("participant \"{}\" is in two strata ({}, {})", shown(person), shown(list[0].stratum),
+                                shown(row.stratum)));
+      if (seen.insert(byOccasion ? row.record->occasion : std::string()).second) {
+        first.push_back(row);
+      } else if (entry.oneEach && !choices.attemptRule) {
+        throw Error(ErrorKind::refused, where,
+                    fmt::format("participant \"{}\" has several rows{}, which are not independent", shown(person),
+                                byOccasion ? " at " + shown(row.record->occasion) : ""),
+                    {Remedy::chooseOccasion, Remedy::chooseAttemptRule});
+      }
+    }
+    if (!entry.oneEach || first.size() == list.size()) continue;
+    several = true;
+    if (choices.attemptRule != AttemptRule::first) continue;
+    later += list.size() - first.size();
+    list = first;
+  }
+  data.attemptRule = !entry.oneEach                              ? "all rows of each"
+                     : !several                                  ? "one row each"
+                     : choices.attemptRule == AttemptRule::first ? "the first of a participant's rows in the table"
+                                                                 : "the mean of a participant's rows";
+  if (later > 0) data.flow.push_back({"later row of a participant (the first counts)", later});
+  return people;
+}
+
+std::size_t placeOf(const std::vector<std::string>& names, const std::string& name) {
+  return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+}
+
+}  // namespace
+
+DesignData tableDesignData(const CsvTable& table, const TableStudyOptions& asked, const DesignChoices& choices) {
+  TableStudyOptions options = asked;
+  const GroupsNeeded needed = entryOf(choices.design).groups;
+  checkColumns(options, needed == GroupsNeeded::two || needed == GroupsNeeded::several);
+  if (options.groupColumn.empty() && !choices.groups.empty())
+    throw Error(ErrorKind::invalid, "study: groups need the column that names them", {Remedy::nameGroupColumn});
+  DesignChoices kept = choices;
+  if (!choices.against.empty()) {
+    if (table.has(choices.against) || choices.against.find(':') != std::string::npos) {
+      const std::size_t colon = choices.against.rfind(':');
+      kept.against = table.has(choices.against) ? choices.against : choices.against.substr(0, colon);
+    }
+    if (std::none_of(options.outcomes.begin(), options.outcomes.end(),
+                     [&](const std::string& o) { return o == kept.against || o.rfind(kept.against + ":", 0) == 0; }))
+      options.outcomes.push_back(choices.against);
+  }
+  const std::vector<Outcome> outcomes = outcomesOf(table, options);
+  const std::vector<TableRecord> records = recordsOf(table, options, outcomes);
+  askForOccasion(table, records, options.occasion);
+  DesignData data;
+  data.source = "table";
+  data.counted = "rows";
+  data.where = std::filesystem::path(table.path).filename().string();
+  data.recruited = records.size();
+  data.head.push_back(fmt::format("Table {}.", data.where));
+  const std::optional<std::size_t> stratum = columnIfNamed(table, choices.strata);
+  const std::optional<std::size_t> finished = columnIfNamed(table, choices.finishedColumn);
+  std::uint64_t otherGroup = 0, otherOccasion = 0, without = 0;
+  const RowsByGroup byGroup = rowsByGroup(records);
+  if (!options.groupColumn.empty()) data.groups = groupsOfDesign(byGroup.present, choices, table.path, byGroup.left);
+  if (data.groups.size() == 2) data.better = betterOf({data.groups[0], data.groups[1]}, choices);
+  std::vector<TakenRow> taken;
+  std::set<std::string> strata;
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    const TableRecord& r = records[i];
+    if (!data.groups.empty() && placeOf(data.groups, r.group) == data.groups.size()) {
+      if (!r.group.empty()) ++otherGroup;
+    } else if (!options.occasion.empty() && r.occasion != options.occasion) {
+      ++otherOccasion;
+    } else if (stratum && table.rows[i].cells[*stratum].empty()) {
+      ++without;
+    } else {
+      taken.push_back(
+          {&r, stratum ? table.rows[i].cells[*stratum] : std::string(), finishedIn(table, table.rows[i], finished)});
+      if (stratum) strata.insert(taken.back().stratum);
+    }
+  }
+  data.strata.assign(strata.begin(), strata.end());
+  addReasons(data.flow, {{"no group", data.groups.empty() ? 0 : byGroup.ungrouped},
+                         {"another group", otherGroup},
+                         {"another occasion", otherOccasion},
+                         {"no " + choices.strata, without}});
+  const bool named = !options.occasionColumns.empty();
+  data.occasionWord = named ? options.occasionColumns[0] : "row";
+  if (named) orderOccasions(data, taken);
+  for (const Outcome& outcome : outcomes) data.figures.push_back({outcome.name, "", outcome.direction, {}});
+  for (const auto& [person, list] : rowsByPerson(data, taken, table, choices)) {
+    DesignPerson p{person, 0, 0};
+    if (!data.groups.empty()) p.group = placeOf(data.groups, list[0].record->group);
+    if (stratum) p.stratum = placeOf(data.strata, list[0].stratum);
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      const TakenRow& row = list[i];
+      ++data.analysed;
+      const std::size_t occasion = named ? placeOf(data.occasions, row.record->occasion) : i;
+      if (!named && occasion == data.occasions.size()) data.occasions.push_back(fmt::format("{}", i + 1));
+      for (std::size_t o = 0; o < outcomes.size(); ++o) {
+        if (!row.record->values[o]) continue;
+        data.figures[o].values.push_back({data.people.size(), occasion,
+                                          static_cast<double>(named && data.numbered ? occasion + 1 : i + 1),
+                                          row.finished, *row.record->values[o]});
+      }
+    }
+    data.people.push_back(std::move(p));
+  }
+  for (DesignFigure& figure : data.figures) sortValues(figure);
+  keepNamedFigures(data, kept);
+  return data;
 }
 
 }  // namespace calot::analytics

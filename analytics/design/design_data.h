@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "analytics/cohort/assessment_database.h"
+#include "analytics/cohort/cohort_database.h"
 #include "analytics/report/study.h"
 #include "analytics/report/table_study.h"
 #include "recorder/base/csv.h"
@@ -86,20 +86,13 @@ struct DesignFigure {
   std::vector<DesignValue> values;  ///< those that there are, by person, then by order
 };
 
-struct DesignData {
-  std::string source, where, counted;  ///< as of a Study
-  std::uint64_t recruited = 0, analysed = 0;
-  std::vector<FlowRow> flow;
-  std::vector<std::string> head;     ///< device, calibration, versions in words; dates
-  std::vector<std::string> remarks;  ///< what a reader must know
-  bool synthetic = false;
+struct DesignData : AnalysedData {
+  std::vector<std::string> head;    ///< device, calibration, versions in words; dates
   std::vector<std::string> groups;  ///< compared; empty: everybody is in one
-  std::string better;               ///< the group that is expected to do better, or empty
   std::vector<std::string> strata;  ///< by name; empty: none
   std::vector<std::string> occasions;
   bool numbered = true;      ///< occasions are numbers, one after the other
   std::string occasionWord;  ///< "attempt", "device", or the column
-  std::string attemptRule;   ///< a clause
   std::vector<DesignPerson> people;
   std::vector<DesignFigure> figures;
   std::vector<DesignFigure>
@@ -112,8 +105,7 @@ struct DesignData {
 /// site or arm, the occasion the attempt's number, of an agreement without `against` the device class. A form's rating
 /// is the mean of its items and of its raters, without incomplete forms. @throws Error as makeStudy(), and (refused)
 /// where the groups are not those that the design needs.
-DesignData cohortDesignData(const CohortDatabase& database, const AssessmentDatabase& assessment,
-                            const StudyOptions& options, const DesignChoices& choices);
+DesignData cohortDesignData(const CohortDatabase& database, const StudyOptions& options, const DesignChoices& choices);
 
 /// The same of attempts at hand, without ratings, site and arm.
 DesignData cohortDesignData(const std::vector<AttemptRow>& attempts, const std::vector<AttemptValue>& values,

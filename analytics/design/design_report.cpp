@@ -8,10 +8,10 @@
 #include <cmath>
 #include <utility>
 
-#include "analytics/report/report_document.h"
+#include "analytics/report/study_output.h"
 #include "analytics/statistics/rank_tests.h"
-#include "recorder/attempt.h"
 #include "recorder/base/errors.h"
+#include "recorder/loop.h"
 
 namespace calot::analytics {
 namespace {
@@ -35,16 +35,6 @@ std::string populationOf(const DesignData& data) {
   return text;
 }
 
-ReportTable flowOfDesign(const DesignData& data) {
-  ReportTable table = tableOf("Flow", {data.counted, "="});
-  table.rows.push_back({fmt::format("{}", data.recruited), "in the " + data.source});
-  for (const FlowRow& row : data.flow)
-    table.rows.push_back({fmt::format("{}", row.attempts), "left out: " + row.reason});
-  table.rows.push_back(
-      {fmt::format("{}", data.analysed), fmt::format("analysed: {}; {}", populationOf(data), data.attemptRule)});
-  return table;
-}
-
 /// At most ten with their reasons, then their number.
 void noteRefused(DesignReport& report) {
   constexpr std::size_t most = 10;
@@ -62,7 +52,7 @@ DesignReport makeDesignReport(const DesignData& data, const DesignChoices& choic
   report.title = fmt::format("Study (exploratory), {}: {}?", entry.name, entry.question);
   report.synthetic = data.synthetic;
   report.head = data.head;
-  report.flow = flowOfDesign(data);
+  report.flow = flowTable(data, populationOf(data));
   report.attempts = data.attempts;
   report.json = {
       {"design", entry.name},

@@ -30,7 +30,7 @@
 #include "analytics/external/metric_input.h"
 #include "recorder/base/child_process.h"
 #include "recorder/base/errors.h"
-#include "recorder/base/file_bytes.h"
+#include "recorder/base/files.h"
 #include "recorder/base/text_words.h"
 
 namespace calot::analytics {

@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "analytics/checkpoints/motion.h"
+#include "analytics/checkpoints/replay_words.h"
 #include "analytics/cohort/cohort_database.h"
 #include "recorder/recording/recording_facts.h"
 #include "sim/scene/version.h"
@@ -162,7 +163,7 @@ std::optional<IntakeItem> Intake::take(const Candidate& c, IntakeRest& rest, con
   IntakeItem item{.file = c.file, .judged = std::move(judged), .attempt = identity.attempt};
   if (!item.judged.record) {
     item.how = TakenIn::damaged;
-    item.fault = Error(ErrorKind::damaged, Where{c.file}, item.judged.report.message, item.judged.report.remedies);
+    item.fault = Error(ErrorKind::damaged, Where{c.file}, wordsFor(item.judged.report), item.judged.report.remedies);
     return item;
   }
   const Imported imported = database.storeAttempt(*item.judged.record, item.judged.values);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-#include "analytics/intake/intake_journal.h"
+#include "analytics/intake/intake.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -20,7 +20,7 @@
 #include <utility>
 
 #include "recorder/base/errors.h"
-#include "recorder/base/file_bytes.h"
+#include "recorder/base/files.h"
 #include "sim/math/fields.h"
 
 namespace calot::analytics {

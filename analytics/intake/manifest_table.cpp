@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "analytics/intake/manifest_table.h"
+#include "analytics/intake/manifests.h"
 
 #include <fmt/format.h>
 

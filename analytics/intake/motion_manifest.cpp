@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-#include "analytics/intake/motion_manifest.h"
+#include "analytics/intake/manifests.h"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -9,8 +9,7 @@
 #include <string_view>
 #include <utility>
 
-#include "analytics/import_motion.h"
-#include "analytics/intake/manifest_table.h"
+#include "analytics/assess.h"
 #include "recorder/base/text_words.h"
 
 namespace calot::analytics {

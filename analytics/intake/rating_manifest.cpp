@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "analytics/intake/rating_manifest.h"
+#include "analytics/intake/manifests.h"
 
 #include <fmt/format.h>
 
@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "analytics/assessment/rating_form.h"
-#include "analytics/intake/manifest_table.h"
 #include "recorder/base/text_words.h"
 
 namespace calot::analytics {
@@ -190,7 +189,7 @@ RatingManifest readRatingManifest(const std::string& path, const std::string& fo
   return manifest;
 }
 
-StoredRatings storeRatings(AssessmentDatabase& database, const RatingManifest& manifest, bool replace,
+StoredRatings storeRatings(CohortDatabase& database, const RatingManifest& manifest, bool replace,
                            std::vector<Error>& faults) {
   std::map<RatingKey, Rating> before;
   for (Rating& r : database.ratings()) {

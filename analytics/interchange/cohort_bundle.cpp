@@ -12,16 +12,16 @@
 #include <utility>
 
 #include "analytics/checkpoints/checkpoint.h"
-#include "analytics/cohort/assessment_database.h"
-#include "analytics/cohort/declared_tables.h"
+#include "analytics/cohort/cohort_database.h"
 #include "analytics/cohort/registers.h"
+#include "analytics/cohort/tables.h"
 #include "analytics/cohort/withdraw.h"
 #include "analytics/interchange/bundle_names.h"
-#include "analytics/interchange/cohort_tables.h"
-#include "recorder/attempt.h"
-#include "recorder/base/csv_writer.h"
+#include "analytics/interchange/export_tables.h"
+#include "recorder/base/csv.h"
 #include "recorder/base/errors.h"
 #include "recorder/base/text_words.h"
+#include "recorder/loop.h"
 
 namespace calot::analytics {
 namespace {
@@ -117,14 +117,13 @@ struct BundleSource {
 };
 
 BundleSource readBundleSource(const std::string& path) {
-  const auto read = CohortDatabase::Access::read;
-  const CohortDatabase cohort(path, read);
+  const CohortDatabase cohort(path, CohortDatabase::Access::read);
   BundleSource source;
   source.attempts = cohort.listAttempts();
   for (Participant& p : cohort.participants()) source.participants.emplace(p.pseudonym, std::move(p));
   for (AttemptValue& v : cohort.allValues()) source.values[v.attempt].push_back(std::move(v.value));
   source.metrics = cohort.externalMetrics();
-  source.ratings = AssessmentDatabase(path, read).ratings();
+  source.ratings = cohort.ratings();
   source.registers = readRegisters(path);
   return source;
 }

@@ -10,8 +10,7 @@
 #include <system_error>
 
 #include "recorder/base/errors.h"
-#include "recorder/base/file_bytes.h"
-#include "recorder/base/text_output.h"
+#include "recorder/base/files.h"
 
 namespace calot::analytics {
 namespace fs = std::filesystem;

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "analytics/assessment/create_norm.h"
+#include "analytics/assessment/norm.h"
 #include "analytics/report/plots.h"
 
 namespace calot::analytics {

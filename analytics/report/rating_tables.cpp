@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "analytics/report/rating_tables.h"
+#include "analytics/report/ratings.h"
 
 #include <fmt/format.h>
 

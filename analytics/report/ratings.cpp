@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <set>
+#include <span>
 #include <utility>
 
 #include "analytics/statistics/descriptive.h"
@@ -24,10 +25,6 @@ std::string participantOf(const std::string& subject, const Attempts& attempts) 
   return at == attempts.end() || at->second.participant.empty() ? subject : at->second.participant;
 }
 
-std::optional<double> taken(const Expected<double>& answer) {
-  return answer ? std::optional<double>(*answer) : std::nullopt;
-}
-
 ItemSummary summary(const Scores& scores) {
   ItemSummary s;
   std::vector<double> values;
@@ -43,11 +40,7 @@ ItemSummary summary(const Scores& scores) {
       values.push_back(*mean(means));
     }
   }
-  s.n = values.size();
-  s.median = taken(median(values));
-  s.lowerQuartile = taken(quantile(values, 0.25));
-  s.upperQuartile = taken(quantile(values, 0.75));
-  s.mean = taken(mean(values));
+  static_cast<Summary&>(s) = summaryOf(values);
   return s;
 }
 
@@ -233,14 +226,12 @@ FormReport reportForm(const RatingForm& form, const std::vector<Rating>& ratings
   return report;
 }
 
-std::vector<FormReport> reportForms(const AssessmentDatabase& database,
-                                    const std::map<std::string, std::string>& groupOf,
+std::vector<FormReport> reportForms(const CohortDatabase& database, const std::map<std::string, std::string>& groupOf,
                                     const std::vector<std::string>& groups, const Attempts& attemptOf) {
   const std::vector<Rating> ratings = database.ratings();
   std::vector<FormReport> reports;
   for (const StoredDocument& stored : database.forms()) {
-    const auto* bytes = reinterpret_cast<const std::byte*>(stored.text.data());
-    const RatingForm form = parseRatingForm({bytes, stored.text.size()}, stored.name);
+    const RatingForm form = parseRatingForm(std::as_bytes(std::span(stored.text)), stored.name);
     reports.push_back(reportForm(form, ratings, groupOf, groups, attemptOf));
   }
   return reports;

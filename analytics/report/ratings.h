@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Results of completed forms: ratings by group, internal consistency and agreement between raters.
+// Results of completed forms: ratings by group, internal consistency and agreement between raters; and these as one
+// tree of values, tables and sentences (rating_tables.cpp).
 #pragma once
 
 #include <array>
@@ -10,7 +11,10 @@
 #include <vector>
 
 #include "analytics/assessment/rating_form.h"
-#include "analytics/cohort/assessment_database.h"
+#include "analytics/cohort/cohort_database.h"
+#include "analytics/report/report_document.h"
+#include "analytics/report/value_tree.h"
+#include "analytics/statistics/descriptive.h"
 #include "analytics/statistics/expected.h"
 #include "analytics/statistics/reliability.h"
 
@@ -23,10 +27,9 @@ struct AttemptOf {
 
 /// One group's ratings of an item, one value per participant: the mean of an attempt's raters, of a participant's
 /// several attempts the mean of these.
-struct ItemSummary {
-  std::uint64_t n = 0, blank = 0;
+struct ItemSummary : Summary {
+  std::uint64_t blank = 0;
   std::map<int, std::uint64_t> counts;  ///< how often each score was given
-  std::optional<double> median, lowerQuartile, upperQuartile, mean;
 };
 
 struct ItemReport {
@@ -82,9 +85,18 @@ FormReport reportForm(const RatingForm& form, const std::vector<Rating>& ratings
                       const std::map<std::string, AttemptOf>& attemptOf = {});
 
 /// Reports of every form that a cohort holds, by name and version.
-std::vector<FormReport> reportForms(const AssessmentDatabase& database,
-                                    const std::map<std::string, std::string>& groupOf,
+std::vector<FormReport> reportForms(const CohortDatabase& database, const std::map<std::string, std::string>& groupOf,
                                     const std::vector<std::string>& groups,
                                     const std::map<std::string, AttemptOf>& attemptOf);
+
+/// Remarks: population of the figures, warnings about intervals with low coverage, and the items' source; none without
+/// a form.
+std::vector<std::string> ratingNotes(const FormReport& report);
+
+/// Ratings, consistency and agreement of one form, without empty tables.
+std::vector<ReportTable> ratingTables(const FormReport& report);
+
+/// Every report with all of its numbers; missing numbers are null, with a reason if there is one.
+ValueTree ratingsTree(const std::vector<FormReport>& reports);
 
 }  // namespace calot::analytics

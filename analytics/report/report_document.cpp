@@ -9,7 +9,7 @@
 #include <sstream>
 #include <vector>
 
-#include "recorder/base/file_bytes.h"
+#include "recorder/base/files.h"
 
 namespace calot::analytics {
 namespace {

@@ -218,27 +218,13 @@ Study studyOf(const std::vector<AttemptRow>& recruited, const std::function<void
       for (const double world : item.interval->worlds()) value.worlds.push_back(world * factor);
     }
   });
-  const auto rankOf = [](const std::string& checkpoint) {
-    const auto& registry = checkpointRegistry();
-    return std::find_if(registry.begin(), registry.end(),
-                        [&](const CheckpointEntry& e) { return e.definition.name == checkpoint; }) -
-           registry.begin();
-  };
   std::stable_sort(order.begin(), order.end(),
-                   [&](const auto& a, const auto& b) { return rankOf(a.first) < rankOf(b.first); });
+                   [](const auto& a, const auto& b) { return positionOf(a.first) < positionOf(b.first); });
   study.coverage = coverage.rows();
   std::array<std::map<std::string, double>, 2> duration;
   for (const ColumnKey& key : order) {
     const Column& column = columns[key];
-    if (column.versions.size() > 1) {
-      if (!options.mixKeys) {
-        throw Error(ErrorKind::refused, Where{name},
-                    fmt::format("checkpoint {} has values of {} versions", key.first, column.versions.size()),
-                    {Remedy::assessAgain, Remedy::mixKeys});
-      }
-      study.remarks.push_back(
-          fmt::format("Values of {} versions of {} are mixed, as asked.", column.versions.size(), key.first));
-    }
+    askForOneVersion(key.first, column.versions.size(), options, name, study.remarks);
     StudyRow& row = study.rows.emplace_back(describedRow(key, column));
     if (options.protocol) declareRow(row, study, options.protocol->protocol);
     if (row.hypothesis || isNamed(row, options.family)) row.notOutcome.clear();
@@ -286,7 +272,7 @@ Study makeStudy(const std::vector<AttemptRow>& recruited, const std::vector<Atte
   return studyOf(recruited, each, asked, name, progress);
 }
 
-void addRatings(Study& study, const AssessmentDatabase& database) {
+void addRatings(Study& study, const CohortDatabase& database) {
   study.ratings = reportForms(database, study.groupOf, {study.groups[0], study.groups[1]}, study.attemptOf);
 }
 

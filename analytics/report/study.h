@@ -15,7 +15,6 @@
 
 #include "analytics/assessment/protocol.h"
 #include "analytics/checkpoints/checkpoint.h"
-#include "analytics/cohort/assessment_database.h"
 #include "analytics/cohort/cohort_database.h"
 #include "analytics/report/ratings.h"
 #include "analytics/statistics/descriptive.h"
@@ -112,15 +111,10 @@ struct StudyLock {
 };
 
 /// A report's information about its protocol.
-struct StudyProtocol {
-  std::string name, title, question, sha256;
-  std::uint32_t version = 1;
-  double level = 0.05;
-  MissingRule missing = MissingRule::completeCases;
-  std::array<std::string, 2> populations;  ///< definitions
-  std::string registeredUtc;               ///< empty: never
-  std::string firstAttemptUtc;             ///< earliest start among the data; empty: not known
-  std::string whyExploratory;              ///< empty: it was registered before the first attempt
+struct StudyProtocol : Protocol {
+  std::string registeredUtc;    ///< empty: never
+  std::string firstAttemptUtc;  ///< earliest start among the data; empty: not known
+  std::string whyExploratory;   ///< empty: it was registered before the first attempt
   std::vector<ProtocolVersion> versions;
   std::vector<std::string> deviations;  ///< whole sentences
   bool masked = false;                  ///< the groups have drawn names, hypotheses no directions
@@ -134,13 +128,11 @@ struct FlowRow {
 };
 
 /// One group's values of one checkpoint, one per participant, in the checkpoint's display unit.
-struct GroupSummary {
-  std::uint64_t n = 0;
+struct GroupSummary : Summary {
   std::uint64_t missing = 0;                                 ///< participants without any value
   std::string missingReason;                                 ///< the commonest
   std::array<std::uint64_t, availabilityCount> missingOf{};  ///< the same participants by Availability
   std::uint64_t partial = 0;                                 ///< participants whose mean lacks some of their attempts
-  std::optional<double> mean, standardDeviation, median, lowerQuartile, upperQuartile;
 };
 
 /// The outcome adjusted for its baseline, for those who have both.
@@ -216,27 +208,31 @@ struct AbsentRow {
   std::string participant, group, occasion;
 };
 
-struct Study {
-  std::string heading;  ///< "confirmatory": a protocol was registered before the first attempt; else "exploratory"
-  std::optional<StudyProtocol> protocol;
-  std::string source;      ///< "cohort" or "table"
-  std::string counted;     ///< what the flow counts: "attempts" or "rows"
-  std::string where;       ///< the file's name without its folder
-  StudySetting setting;    ///< of a cohort
-  std::string cohort;      ///< the named cohort whose attempts alone were taken, or empty: all
-  bool synthetic = false;  ///< contains what performers made: watermarked everywhere
-  std::array<std::string, 2> groups;
-  std::string better;  ///< the group that is expected to do better, or empty: no hypothesis
-  std::array<std::uint64_t, 2> participants{}, attempts{};
-  std::string attemptRule;        ///< how a participant's attempts were reduced to one value, a clause
-  std::vector<std::string> keys;  ///< comparability keys of the attempts in it
-  std::uint64_t recruited = 0;    ///< attempts in the database, rows in the table
+/// Data of a study of any design.
+struct AnalysedData {
+  std::string source;           ///< "cohort" or "table"
+  std::string counted;          ///< what the flow counts: "attempts" or "rows"
+  std::string where;            ///< the file's name without its folder
+  bool synthetic = false;       ///< contains what performers made: watermarked everywhere
+  std::string better;           ///< the group that is expected to do better, or empty: no hypothesis
+  std::string attemptRule;      ///< how a participant's attempts were reduced to one value, a clause
+  std::uint64_t recruited = 0;  ///< attempts in the database, rows in the table
   std::vector<FlowRow> flow;
   std::uint64_t analysed = 0;        ///< attempts
-  std::vector<AbsentRow> absent;     ///< of a table with occasions, by participant
   std::vector<std::string> remarks;  ///< what a reader must know, whole sentences
-  bool phasesLeftOut = false;        ///< checkpoints of single phases, other than how long the phases lasted
-  std::string family;                ///< which p values are adjusted for each other, a sentence
+};
+
+struct Study : AnalysedData {
+  std::string heading;  ///< "confirmatory": a protocol was registered before the first attempt; else "exploratory"
+  std::optional<StudyProtocol> protocol;
+  StudySetting setting;  ///< of a cohort
+  std::string cohort;    ///< the named cohort whose attempts alone were taken, or empty: all
+  std::array<std::string, 2> groups;
+  std::array<std::uint64_t, 2> participants{}, attempts{};
+  std::vector<std::string> keys;  ///< comparability keys of the attempts in it
+  std::vector<AbsentRow> absent;  ///< of a table with occasions, by participant
+  bool phasesLeftOut = false;     ///< checkpoints of single phases, other than how long the phases lasted
+  std::string family;             ///< which p values are adjusted for each other, a sentence
   std::vector<StudyRow> rows;
   std::vector<CoverageRow> coverage;  ///< of figures of samples, by subject
   std::string publishedSource;        ///< of the paper's means
@@ -268,6 +264,6 @@ Study makeStudy(const std::vector<AttemptRow>& attempts, const std::vector<Attem
                 const StudyOptions& options, const std::string& name, const StudyProgress& progress = {});
 
 /// Adds results of forms completed by or about the analysed participants.
-void addRatings(Study& study, const AssessmentDatabase& database);
+void addRatings(Study& study, const CohortDatabase& database);
 
 }  // namespace calot::analytics

@@ -8,10 +8,11 @@
 #include <utility>
 #include <vector>
 
-#include "analytics/report/rating_tables.h"
+#include "analytics/report/ratings.h"
 #include "analytics/report/study_output.h"
+#include "analytics/report/study_population.h"
 #include "analytics/report/study_rows.h"
-#include "recorder/attempt.h"
+#include "recorder/loop.h"
 
 namespace calot::analytics {
 namespace {
@@ -256,7 +257,7 @@ std::string studyMethods(const Study& study) {
     text += fmt::format("The study followed protocol {} version {}{}. ", study.protocol->name, study.protocol->version,
                         study.heading == "confirmatory" ? ", registered before the first attempt" : "");
     for (std::size_t g = 0; g < 2; ++g)
-      text += fmt::format("{}: {}. ", study.groups[g], study.protocol->populations[g]);
+      text += fmt::format("{}: {}. ", study.groups[g], study.protocol->populations[g].definition);
   }
   if (study.synthetic) text += "Attempts were made by performers, which are programs. ";
   if (!study.cohort.empty())
@@ -293,11 +294,7 @@ std::vector<std::string> studyHead(const Study& study) {
   if (study.source == "table") {
     lines.push_back(fmt::format("Table {}.", study.where));
   } else {
-    for (const std::string& key : study.keys) {
-      std::string words = comparabilityWords(key);
-      if (!words.empty() && words[0] == 't') words[0] = 'T';
-      lines.push_back(words + ".");
-    }
+    for (const std::string& key : study.keys) lines.push_back(keySentence(key));
     lines.push_back(fmt::format("{} Cohort {}{}.", datesOf(study.setting), study.where,
                                 study.cohort.empty() ? "" : fmt::format(", participants of \"{}\"", study.cohort)));
   }

@@ -11,11 +11,11 @@
 #include <vector>
 
 #include "analytics/report/plots.h"
-#include "analytics/report/rating_tables.h"
+#include "analytics/report/ratings.h"
 #include "analytics/report/study_rows.h"
 #include "analytics/statistics/descriptive.h"
 #include "recorder/base/errors.h"
-#include "recorder/base/text_output.h"
+#include "recorder/base/files.h"
 
 namespace calot::analytics {
 namespace {
@@ -97,7 +97,7 @@ ValueTree protocolTree(const std::optional<StudyProtocol>& protocol) {
           {"why_exploratory", p.whyExploratory},
           {"level", p.level},
           {"missing", p.missing == MissingRule::worstRank ? "worst-rank" : "complete-cases"},
-          {"populations", p.populations},
+          {"populations", {p.populations[0].definition, p.populations[1].definition}},
           {"versions", versions},
           {"deviations", p.deviations},
           {"masked", p.masked},

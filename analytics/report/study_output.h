@@ -55,6 +55,8 @@ std::string studyMethods(const Study& study);
 
 /// Flow: numbers included, excluded with reasons, and analysed.
 ReportTable flowTable(const Study& study);
+/// The same of any design. @param whom how many of which group were analysed
+ReportTable flowTable(const AnalysedData& data, const std::string& whom);
 /// The first result: the primary hypotheses; without a protocol the rows that lead (StudyRow::leading). With n, shift,
 /// A, their intervals, p, adjusted p and the smallest adjusted p that the groups can give.
 ReportTable primaryTable(const Study& study);

@@ -181,6 +181,23 @@ void askForOneKey(const std::vector<std::string>& keys, const StudyOptions& opti
                   keys.size()));
 }
 
+void askForOneVersion(const std::string& checkpoint, std::size_t versions, const StudyOptions& options,
+                      const std::string& name, std::vector<std::string>& remarks) {
+  if (versions < 2) return;
+  if (!options.mixKeys) {
+    throw Error(ErrorKind::refused, Where{name},
+                fmt::format("checkpoint {} has values of {} versions", checkpoint, versions),
+                {Remedy::assessAgain, Remedy::mixKeys});
+  }
+  remarks.push_back(fmt::format("Values of {} versions of {} are mixed, as asked.", versions, checkpoint));
+}
+
+std::string keySentence(const std::string& key) {
+  std::string words = comparabilityWords(key);
+  if (!words.empty() && words[0] == 't') words[0] = 'T';
+  return words + ".";
+}
+
 std::vector<std::string> unaskedPhases(const StudyOptions& options) {
   std::vector<std::string> unasked;
   if (options.includePhases) return unasked;

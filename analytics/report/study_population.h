@@ -63,6 +63,13 @@ AttemptsOfUnits attemptsOfUnits(const std::vector<const AttemptRow*>& taken, std
 void askForOneKey(const std::vector<std::string>& keys, const StudyOptions& options, const std::string& name,
                   std::vector<std::string>& remarks);
 
+/// The same of versions of a checkpoint. @throws Error (refused)
+void askForOneVersion(const std::string& checkpoint, std::size_t versions, const StudyOptions& options,
+                      const std::string& name, std::vector<std::string>& remarks);
+
+/// What is compared within a key: "Task touch-liver 1, device falcon, ...".
+std::string keySentence(const std::string& key);
+
 /// The checkpoint of a phase's duration, which is always reported.
 inline constexpr const char* phaseDurationName = "phase-duration";
 /// Checkpoints of phases that were not requested.

@@ -32,18 +32,6 @@ void dropRounding(std::array<std::vector<double>, 2>& values) {
   }
 }
 
-void summarise(GroupSummary& s, const std::vector<double>& values) {
-  s.n = values.size();
-  const auto take = [](const Expected<double>& answer) {
-    return answer ? std::optional<double>(*answer) : std::nullopt;
-  };
-  s.mean = take(mean(values));
-  s.standardDeviation = take(standardDeviation(values));
-  s.median = take(median(values));
-  s.lowerQuartile = take(quantile(values, 0.25));
-  s.upperQuartile = take(quantile(values, 0.75));
-}
-
 /// Counts who has no value at all and why, and whose mean lacks some attempts.
 void countMissing(GroupSummary& s, const std::vector<std::string>& present,
                   const std::map<std::string, std::vector<MissingValue>>& missing) {
@@ -202,7 +190,7 @@ void fillRow(StudyRow& row, const StudySample& sample) {
         }));
   }
   dropRounding(row.values);
-  for (std::size_t g = 0; g < 2; ++g) summarise(row.group[g], row.values[g]);
+  for (std::size_t g = 0; g < 2; ++g) static_cast<Summary&>(row.group[g]) = summaryOf(row.values[g]);
 }
 
 void addSimulationRange(StudyRow& row, const StudySample& sample) {

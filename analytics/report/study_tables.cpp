@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-#include "analytics/report/rating_tables.h"
+#include "analytics/report/ratings.h"
 #include "analytics/report/study_output.h"
 
 #include <fmt/format.h>
@@ -141,16 +141,20 @@ std::string rowName(const StudyRow& row) { return figureOfRow(row) + (row.source
 
 std::string figureOfRow(const StudyRow& row) { return figureName(row.checkpoint, row.subject); }
 
-ReportTable flowTable(const Study& study) {
-  ReportTable table = tableOf("Flow", {study.counted, "="});
-  table.rows.push_back({fmt::format("{}", study.recruited), "in the " + study.source});
-  for (const FlowRow& row : study.flow)
+ReportTable flowTable(const AnalysedData& data, const std::string& whom) {
+  ReportTable table = tableOf("Flow", {data.counted, "="});
+  table.rows.push_back({fmt::format("{}", data.recruited), "in the " + data.source});
+  for (const FlowRow& row : data.flow)
     table.rows.push_back({fmt::format("{}", row.attempts), "left out: " + row.reason});
-  table.rows.push_back({fmt::format("{}", study.analysed),
-                        fmt::format("analysed: {} {} ({} {}), {} {} ({} {}); {}", study.participants[0],
-                                    study.groups[0], study.attempts[0], study.counted, study.participants[1],
-                                    study.groups[1], study.attempts[1], study.counted, study.attemptRule)});
+  table.rows.push_back({fmt::format("{}", data.analysed), fmt::format("analysed: {}; {}", whom, data.attemptRule)});
   return table;
+}
+
+ReportTable flowTable(const Study& study) {
+  const auto group = [&](std::size_t g) {
+    return fmt::format("{} {} ({} {})", study.participants[g], study.groups[g], study.attempts[g], study.counted);
+  };
+  return flowTable(study, group(0) + ", " + group(1));
 }
 
 bool hasNoValue(const StudyRow& row) { return row.group[0].n == 0 && row.group[1].n == 0; }

@@ -5,7 +5,7 @@
 
 #include <sstream>
 
-#include "recorder/base/csv_writer.h"
+#include "recorder/base/csv.h"
 
 namespace calot::analytics {
 namespace {

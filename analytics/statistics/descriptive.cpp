@@ -57,6 +57,15 @@ Expected<double> quantile(std::span<const double> values, double p) {
 
 Expected<double> median(std::span<const double> values) { return quantile(values, 0.5); }
 
+Summary summaryOf(std::span<const double> values) {
+  return {values.size(),
+          mean(values).optional(),
+          standardDeviation(values).optional(),
+          median(values).optional(),
+          quantile(values, 0.25).optional(),
+          quantile(values, 0.75).optional()};
+}
+
 bool allFinite(std::span<const double> values) {
   return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
 }

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -28,6 +29,13 @@ double quantileOfSorted(std::span<const double> sorted, double p);
 
 /// Quantile of type 7 at 1/2.
 Expected<double> median(std::span<const double> values);
+
+/// Without values, or with one that is not finite, their number alone.
+struct Summary {
+  std::uint64_t n = 0;
+  std::optional<double> mean, standardDeviation, median, lowerQuartile, upperQuartile;
+};
+Summary summaryOf(std::span<const double> values);
 
 /// Neither NaN nor infinite.
 bool allFinite(std::span<const double> values);

@@ -32,6 +32,7 @@ class Expected {
     assert(value_.has_value());
     return &*value_;
   }
+  [[nodiscard]] const std::optional<T>& optional() const { return value_; }
   /// One line; empty exactly when there is a result.
   [[nodiscard]] const std::string& reason() const { return reason_; }
 

@@ -11,7 +11,7 @@
 
 #include "apps/common/program.h"
 #include "recorder/base/errors.h"
-#include "recorder/base/text_output.h"
+#include "recorder/base/files.h"
 #include "tests/bench/benchmarks.h"
 #include "tests/bench/figures.h"
 

@@ -11,7 +11,7 @@
 #include "apps/calot-organs/organ_shapes.h"
 #include "apps/common/program.h"
 #include "recorder/base/errors.h"
-#include "recorder/base/file_bytes.h"
+#include "recorder/base/files.h"
 #include "recorder/formats/mesh_file.h"
 #include "sim/geometry/surface_report.h"
 
@@ -43,7 +43,7 @@ int run(const std::filesystem::path& folder, bool check, bool force) {
                1e6 * report.volume, size[0], size[1], size[2]);
     const std::filesystem::path path = folder / organ.file;
     if (!check) {
-      recorder::writeObj(path, organ.mesh, organ.head, force);
+      recorder::writeText(path, recorder::formatObj(organ.mesh, organ.head), force);
       continue;
     }
     const std::string wanted = recorder::formatObj(organ.mesh, organ.head);

@@ -20,12 +20,12 @@
 #include "apps/calot/source_options.h"
 #include "apps/common/program.h"
 #include "apps/window/window_start.h"
-#include "gui/attempt/theme.h"
+#include "gui/attempt/widget_parts.h"
 #include "gui/trainer/end_page.h"
 #include "gui/trainer/operation_view.h"
+#include "gui/trainer/run_panel.h"
 #include "gui/trainer/trainer_window.h"
 #include "gui/trainer/training_session.h"
-#include "gui/trainer/voice.h"
 #include "recorder/base/dates.h"
 #include "recorder/base/errors.h"
 #include "recorder/compliance_cache.h"
@@ -214,7 +214,7 @@ void takePictures(gui::TrainerWindow& window, std::optional<recorder::LoadedScen
     const quint64 shown = window.view()->shown();
     return waitFor([&] { return status().figures.time > 4.0 && window.view()->shown() > shown + 10; }, 240);
   };
-  window.begin(*scene, gui::TrainerWindow::Purpose::controls);
+  window.begin(*scene, gui::Purpose::controls);
   wanted(runs(), "nothing is running");
   save("controls");
   window.begin(std::move(*scene));

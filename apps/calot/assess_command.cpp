@@ -10,6 +10,7 @@
 #include "apps/calot/command.h"
 #include "apps/calot/import_command.h"
 #include "apps/calot/replay_report.h"
+#include "gui/words/attempt_tables.h"
 #include "recorder/recording/probe.h"
 #include "recorder/replay.h"
 
@@ -85,7 +86,7 @@ void storeJudged(const std::string& file, const AssessOptions& o, analytics::Coh
     judged.report = {};
     judged.report.path = file;
     judged.report.verdict = recorder::ReplayVerdict::diverged;
-    judged.report.message = recorder::messageWithout(file, e);
+    judged.report.error = recorder::messageWithout(file, e);
     judged.report.remedies = e.remedies();
   }
 }
@@ -104,7 +105,7 @@ void printAssessed(const recorder::ReplayReport& report, const Stored& stored, b
   if (!stored.keyFault.empty()) fmt::print(stderr, "calot: warning: {}: {}\n", report.path.string(), stored.keyFault);
   if (!everyValue) return;
   std::fflush(stdout);
-  analytics::printValues(stored.values, stored.intervals, std::cout);
+  gui::printValues(stored.values, stored.intervals, std::cout);
   std::cout << '\n' << std::flush;
 }
 
@@ -160,7 +161,7 @@ ExitCode assess(const AssessOptions& o) {
     progress.show(++done, files.size());
   });
   printResult(o.json, "assess", {{"recordings", list}}, [&](std::ostream& out) {
-    if (database) analytics::printAttempts(*database, out);
+    if (database) gui::printAttempts(*database, out);
   });
   return worstOf(codes);
 }

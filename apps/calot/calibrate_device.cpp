@@ -12,7 +12,8 @@
 #include "apps/calot/source_options.h"
 #include "gui/film/overlay.h"
 #include "gui/render/image.h"
-#include "recorder/base/text_output.h"
+#include "recorder/base/errors.h"
+#include "recorder/base/files.h"
 #include "recorder/sources/devices/calibration.h"
 #include "recorder/sources/devices/camera/camera_calibration.h"
 #include "recorder/sources/devices/camera/camera_device.h"
@@ -97,7 +98,7 @@ struct Step {
 /// Records the device through the steps that a person is guided through.
 class GuidedRecording {
  public:
-  explicit GuidedRecording(recorder::Device& device) : device_(device), pump_(device) {
+  explicit GuidedRecording(recorder::Device& device) : device_(device), pump_(device, true) {
     stream_.name = device.info().identity;
     stream_.file = device.info().name;
     stream_.rate = device.info().capabilities.rate;

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // calot cohort: a cohort database as a whole.
 
-#include "analytics/cohort/check.h"
+#include "analytics/cohort/cohort_database.h"
 #include "analytics/cohort/merge.h"
 #include "analytics/cohort/registers.h"
 #include "analytics/cohort/withdraw.h"
 #include "analytics/interchange/cohort_bundle.h"
-#include "analytics/interchange/cohort_tables.h"
+#include "analytics/interchange/export_tables.h"
 #include "apps/calot/command.h"
 #include "apps/calot/replay_report.h"
-#include "recorder/base/file_bytes.h"
+#include "recorder/base/files.h"
 
 namespace calot::apps {
 namespace {

@@ -9,7 +9,6 @@
 #include <iostream>
 #include <sstream>
 
-#include "recorder/base/nearest_word.h"
 #include "recorder/base/text_words.h"
 
 namespace calot::apps {

@@ -4,8 +4,8 @@
 
 #include "apps/calot/command.h"
 #include "apps/calot/source_options.h"
-#include "recorder/attempt.h"
-#include "recorder/base/text_output.h"
+#include "recorder/base/files.h"
+#include "recorder/loop.h"
 #include "recorder/sources/devices/force/force_server.h"
 #include "recorder/sources/devices/openigtlink_device.h"
 #ifdef CALOT_PDF

@@ -6,9 +6,9 @@
 #include <cstring>
 #include <set>
 
+#include "analytics/checkpoints/replay_words.h"
 #include "apps/calot/command.h"
-#include "recorder/base/program_files.h"
-#include "recorder/base/text_output.h"
+#include "recorder/base/files.h"
 #include "recorder/kept/engine_folders.h"
 #include "recorder/kept/engine_process.h"
 #include "recorder/kept/transcript.h"
@@ -63,7 +63,7 @@ bool isSound(const recorder::KeptEngine& engine) {
     settings.engine.file = engine.file;
     const recorder::ReplayReport report = recorder::replayRecording(golden, settings);
     const bool exact = report.verdict == recorder::ReplayVerdict::exact;
-    good = say(golden.filename().string(), exact ? "" : report.message) && good;
+    good = say(golden.filename().string(), exact ? "" : analytics::wordsFor(report)) && good;
   }
   return good;
 }

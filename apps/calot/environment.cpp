@@ -14,9 +14,7 @@
 #include <system_error>
 
 #include "recorder/base/errors.h"
-#include "recorder/base/file_bytes.h"
-#include "recorder/base/nearest_word.h"
-#include "recorder/base/program_files.h"
+#include "recorder/base/files.h"
 #include "recorder/base/text_words.h"
 #include "recorder/formats/scene_file.h"
 

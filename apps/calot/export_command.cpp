@@ -2,7 +2,7 @@
 
 #include "analytics/checkpoints/collector.h"
 #include "analytics/cohort/withdraw.h"
-#include "analytics/interchange/motion_tables.h"
+#include "analytics/interchange/export_tables.h"
 #include "apps/calot/command.h"
 #include "apps/calot/import_command.h"
 #include "recorder/recording/layout.h"

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// calot golden: recordings that every build of their simulation version must replay bit for bit.
+// calot golden: recordings that every build of their simulation version must replay bit for bit, and long runs kept as
+// digests, which a performer must repeat.
 // assets/golden/golden.json says how each is made and gives the values of its checkpoints; docs/how-to/golden.md says
 // how to review a change of it.
 
 #include <algorithm>
-#include <bit>
 #include <cstdio>
 #include <set>
 
@@ -13,13 +13,13 @@
 #include "apps/calot/command.h"
 #include "apps/calot/replay_report.h"
 #include "apps/calot/source_options.h"
-#include "recorder/base/file_bytes.h"
-#include "recorder/base/record_reader.h"
-#include "recorder/base/record_writer.h"
-#include "recorder/base/text_output.h"
+#include "recorder/base/files.h"
+#include "recorder/base/record_json.h"
 #include "recorder/formats/scene_file.h"
 #include "recorder/live/worker_pool.h"
 #include "recorder/loop.h"
+#include "recorder/prepared_scene.h"
+#include "recorder/recording/block.h"
 #include "recorder/recording/writer.h"
 #include "sim/math/record.h"
 #include "sim/scene/version.h"
@@ -32,28 +32,30 @@ constexpr const char* listName = "golden.json";
 
 /// A checkpoint's value when the recording was made; in SI units.
 struct GoldenValue {
-  std::string name, subject;
+  std::string name;
+  std::optional<std::string> subject;
   std::uint32_t version = 0;  ///< of the checkpoint's definition
   double value = 0.0;
   static std::vector<Field> fields();
   bool operator==(const GoldenValue&) const = default;
 };
 
-/// One recording and how to make it: a performer in a scene, for at most `seconds`.
+/// One golden and how to make it: a performer in a scene, for at most `seconds`.
 struct GoldenEntry {
-  std::string file;  ///< base name, beside the list
+  std::string file;  ///< base name, beside the list: a recording (.h5), or digests (.json)
   std::string scene, performer;
   std::uint32_t seed = 1;
   double seconds = 0.0;  ///< 0: until the performer ends
   std::vector<GoldenValue> values;
 
+  [[nodiscard]] bool isDigests() const { return file.ends_with(".json"); }
   static std::vector<Field> fields();
 };
 
 struct GoldenList {
-  std::uint32_t simulationVersion = 0;  ///< of all recordings
-  std::string reason;                   ///< why they were made again
-  std::string valuesReason;             ///< why values were taken over since; empty: they were not
+  std::uint32_t simulationVersion = 0;      ///< of all recordings
+  std::string reason;                       ///< why they were made again
+  std::optional<std::string> valuesReason;  ///< why values were taken over since
   std::vector<GoldenEntry> recordings;
 
   static std::vector<Field> fields();
@@ -98,14 +100,18 @@ std::vector<Field> GoldenList::fields() {
   };
 }
 
-/// @throws Error (damaged) naming file and place; a name of a file that is no base name, or is given twice, is refused.
+/// @throws Error (damaged) naming file and place
+nlohmann::json readJson(const std::filesystem::path& file) {
+  return recorder::parseStrictJson(recorder::readFileBytes(file, file.string(), maxBytes), file.string());
+}
+
+/// @throws Error as readJson(); a name of a file that is no base name, or is given twice, is refused.
 GoldenList readGoldenList(const std::filesystem::path& file) {
-  const std::vector<std::byte> bytes = recorder::readFileBytes(file, file.string(), maxBytes);
-  const nlohmann::json json = recorder::parseStrictJson(bytes, file.string());
+  const nlohmann::json json = readJson(file);
   const recorder::JsonPlace root(json, file.string());
   GoldenList list;
   recorder::readRecord(root, list);
-  std::set<std::string> names;
+  std::set<std::string> names{listName};
   for (std::size_t i = 0; i < list.recordings.size(); ++i) {
     const recorder::JsonPlace place = root.at("recordings").at(i);
     const std::string& base = list.recordings[i].file;
@@ -114,19 +120,6 @@ GoldenList readGoldenList(const std::filesystem::path& file) {
     if (!names.insert(base).second) place.fail("names a file that stands above already");
   }
   return list;
-}
-
-/// The list as JSON; every number reads back as the same bits.
-std::string toJson(const GoldenList& list) {
-  Json json = recorder::writeRecord(list);
-  const auto omitEmpty = [](Json& row, const char* name) {
-    if (row[name] == "") row.erase(name);
-  };
-  omitEmpty(json, "values_reason");
-  for (Json& recording : json["recordings"]) {
-    for (Json& value : recording["checkpoints"]) omitEmpty(value, "subject");
-  }
-  return json.dump(1) + "\n";
 }
 
 std::string shownValue(const GoldenValue& v) {
@@ -141,15 +134,15 @@ const GoldenValue* sameOf(const std::vector<GoldenValue>& values, const GoldenVa
   return found == values.end() ? nullptr : &*found;
 }
 
-std::string titleOf(const GoldenValue& v) { return v.subject.empty() ? v.name : v.name + " " + v.subject; }
-
-bool sameBits(double a, double b) { return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b); }
+std::string titleOf(const GoldenValue& v) { return v.subject ? v.name + " " + *v.subject : v.name; }
 
 /// The values that there are.
 std::vector<GoldenValue> goldenValues(const std::vector<analytics::CheckpointValue>& values) {
   std::vector<GoldenValue> kept;
   for (const analytics::CheckpointValue& v : values) {
-    if (v.value) kept.push_back({v.name, v.subject, v.version, *v.value});
+    if (!v.value) continue;
+    kept.push_back({v.name, std::nullopt, v.version, *v.value});
+    if (!v.subject.empty()) kept.back().subject = v.subject;
   }
   return kept;
 }
@@ -161,7 +154,7 @@ std::vector<std::string> changedValues(const std::vector<GoldenValue>& before, c
     const GoldenValue* n = sameOf(now, b);
     if (n == nullptr) {
       lines.push_back(fmt::format("{}: {} -> none", titleOf(b), shownValue(b)));
-    } else if (!sameBits(n->value, b.value)) {
+    } else if (n->value != b.value) {
       const std::string why =
           n->version == b.version ? "" : fmt::format(" (definition version {} -> {})", b.version, n->version);
       lines.push_back(fmt::format("{}: {} -> {}{}", titleOf(b), shownValue(b), shownValue(*n), why));
@@ -173,30 +166,168 @@ std::vector<std::string> changedValues(const std::vector<GoldenValue>& before, c
   return lines;
 }
 
-/// A replay of a golden recording.
+/// A chain of XXH3-64: each link digests the one before and what a step adds. A line of text holds 100 links: the last
+/// 4 hexadecimal digits of each, and all 16 of the line's last and of the run's.
+struct DigestChain {
+  static constexpr std::size_t stepsPerLine = 100, digits = 4, shortLinks = digits * (stepsPerLine - 1);
+  std::uint64_t link = 0;
+  std::vector<std::string> lines;
+
+  void add(std::uint64_t digest, bool last = false) {
+    const std::array<std::uint64_t, 2> both{link, digest};
+    link = digest64(std::as_bytes(std::span(both)));
+    if (lines.empty() || lines.back().size() > shortLinks) lines.emplace_back();
+    const bool whole = last || lines.back().size() == shortLinks;
+    lines.back() += whole ? fmt::format("{:016x}", link) : fmt::format("{:04x}", link & 0xFFFFU);
+  }
+};
+
+/// First step of which two chains have other links; none: they are the same.
+std::optional<std::uint64_t> firstDifference(const recorder::JsonPlace& kept, const recorder::JsonPlace& now) {
+  constexpr std::size_t line = DigestChain::shortLinks + 16, lastOfLine = DigestChain::stepsPerLine - 1;
+  std::string before, after;
+  for (const recorder::JsonPlace& place : kept.list(1, 100000)) before += place.text(line);
+  for (const recorder::JsonPlace& place : now.list(1, 100000)) after += place.text(line);
+  if (before == after) return std::nullopt;
+  const auto differing = std::mismatch(before.begin(), before.end(), after.begin(), after.end());
+  const auto at = static_cast<std::size_t>(differing.first - before.begin());
+  return at / line * DigestChain::stepsPerLine + std::min(at % line / DigestChain::digits, lastOfLine);
+}
+
+/// Digests a run: each step's samples, as State digests them, apart from what comes of them.
+struct RunDigests final : recorder::Observer {
+  const DigestLayout& layout;
+  DigestChain samples, steps;
+
+  explicit RunDigests(const DigestLayout& of) : layout(of) {}
+  void onStep(const recorder::StepRecord& record) override {
+    std::vector<std::byte> given, made;
+    for (std::size_t f = 0; f < layout.fields.size(); ++f)
+      if (layout.fields[f].name.ends_with("/inputs")) recorder::appendValue(given, record.digest.field[f]);
+    for (const std::uint64_t component : record.digest.component) recorder::appendValue(made, component);
+    recorder::appendValue(made, recorder::forceDigest(record.ticks));
+    for (const Event& event : record.result.events) recorder::appendRow(event, made);
+    samples.add(digest64(given));
+    steps.add(digest64(made));
+  }
+  void onEnd(recorder::Outcome outcome) override {
+    for (DigestChain* chain : {&samples, &steps}) chain->add(static_cast<std::uint64_t>(outcome), true);
+  }
+};
+
+/// A golden, replayed or run again.
 struct GoldenReplay {
   recorder::ReplayReport report;
-  std::vector<GoldenValue> values;   ///< where it is bit-exact
+  std::vector<GoldenValue> values;   ///< of a replay, where it is bit-exact
   std::vector<std::string> changed;  ///< changedValues() from the list's; the verdict is then `diverged`
+  Json digests;                      ///< of a run: as the golden's file has them, but for the reason
 };
+
+/// Runs a golden's performer. @param recording where it is recorded, or empty @throws Error; (failure) where it was
+/// stopped
+GoldenReplay perform(const GoldenEntry& entry, const std::filesystem::path& recording, unsigned threads) {
+  recorder::LoadedScene scene = recorder::loadScene(recorder::findScene(entry.scene, assetFolders()));
+  const auto prepared = recorder::prepareScene(scene.assets, Where{"scene " + entry.scene});
+  const Model& model = prepared->model();
+  SourceOptions who;
+  who.performer = entry.performer;
+  const std::unique_ptr<recorder::SampleSource> source = makeSource(who, model.scene(), entry.seed);
+  recorder::AttemptSettings settings;
+  settings.purpose = "golden";
+  settings.seed = entry.seed;
+  const recorder::AttemptHeader header =
+      recorder::makeHeader(model, std::move(scene.assets), source->provenance(), settings);
+  RunDigests digests(header.layout);
+  analytics::CheckpointCollector collector(header, model.scene());
+  recorder::WorkerPool pool(threads);
+  recorder::Session session(model, entry.seed, pool, prepared->services());
+  std::optional<recorder::RecordingWriter> writer;
+  if (!recording.empty()) session.join(writer.emplace(recording, header, recorder::WriterOptions{true}));
+  session.join(digests);
+  session.join(collector);
+  recorder::RunSettings run;
+  run.seconds = entry.seconds;
+  run.stop = &stopRequested();
+  const recorder::RunReport report = recorder::runAttempt(session, *source, run);
+  if (writer) writer->finish();
+  if (stopRequested()) throw Error(ErrorKind::failure, "golden: stopped; nothing was replaced");
+  prepared->save();
+  std::string files;
+  for (const recorder::Asset& asset : header.assets)
+    files += fmt::format("{} {}\n", recorder::sha256Hex(asset.bytes), asset.name);
+  GoldenReplay made;
+  made.digests = {
+      {"simulation_version", simulationVersion},
+      {"build", header.build},
+      {"scene", fmt::format("{}, SHA-256 {}", entry.scene, recorder::sha256Hex(std::as_bytes(std::span(files))))},
+      {"performer", fmt::format("{} {}, seed {}", entry.performer, header.provenance.profileVersion, entry.seed)},
+      {"samples", digests.samples.lines},
+      {"steps", digests.steps.lines}};
+  made.values = goldenValues(collector.values());
+  made.report.complete = true;
+  made.report.steps = report.steps;
+  made.report.seconds = static_cast<double>(report.steps) * model.stepSeconds();
+  made.report.wallSeconds = report.wallSeconds;
+  made.report.misses = report.misses;
+  made.report.simulationVersion = simulationVersion;
+  return made;
+}
+
+/// The verdict of a run: its steps changed, or else what they were made of, scene or performer.
+/// @param file with the golden's digests @throws Error (damaged)
+void judge(GoldenReplay& run, const std::filesystem::path& file) {
+  const nlohmann::json before = readJson(file), after = run.digests;
+  const recorder::JsonPlace kept(before, file.string()), now(after, file.string());
+  const auto samples = firstDifference(kept.at("samples"), now.at("samples"));
+  const auto steps = firstDifference(kept.at("steps"), now.at("steps"));
+  const auto wasAndIs = [&](const char* key) {
+    return fmt::format("({} -> {})", kept.at(key).text(1000), now.at(key).text(1000));
+  };
+  recorder::ReplayReport& report = run.report;
+  report.path = file;
+  report.verdict = recorder::ReplayVerdict::diverged;
+  if (const auto version = kept.at("simulation_version").integer(positive); version != simulationVersion) {
+    report.verdict = recorder::ReplayVerdict::undecided;
+    report.message = fmt::format("made by simulation version {}; this build has {}", version, simulationVersion);
+  } else if (kept.at("scene").text(1000) != now.at("scene").text(1000)) {
+    report.message = "the scene changed " + wasAndIs("scene");
+  } else if (steps && (!samples || *steps < *samples)) {
+    report.divergence = {*steps, {}, "step", "digest", ""};
+    report.message = describe(*report.divergence);
+  } else if (samples) {  // all that the performer perceived was as before
+    report.divergence = {*samples, {}, "performer", "samples", ""};
+    report.message =
+        fmt::format("the performer changed: its samples differ from step {} on, and no step before does {}", *samples,
+                    wasAndIs("performer"));
+  } else {
+    report.verdict = recorder::ReplayVerdict::exact;
+  }
+}
 
 GoldenReplay replayGolden(const std::filesystem::path& file, const GoldenEntry& entry, unsigned threads) {
   GoldenReplay replay;
-  std::unique_ptr<analytics::CheckpointCollector> collector;
-  recorder::ReplaySettings settings;
-  settings.threads = threads;
-  settings.observers = [&](const recorder::AttemptHeader& h, const SceneDescription& scene) {
-    collector = std::make_unique<analytics::CheckpointCollector>(h, scene);
-    return std::vector<recorder::Observer*>{collector.get()};
-  };
-  replay.report = recorder::replayRecording(file, settings);
+  if (entry.isDigests()) {
+    readJson(file);  // before the minutes of a run
+    replay = perform(entry, {}, threads);
+    judge(replay, file);
+  } else {
+    std::unique_ptr<analytics::CheckpointCollector> collector;
+    recorder::ReplaySettings settings;
+    settings.threads = threads;
+    settings.observers = [&](const recorder::AttemptHeader& h, const SceneDescription& scene) {
+      collector = std::make_unique<analytics::CheckpointCollector>(h, scene);
+      return std::vector<recorder::Observer*>{collector.get()};
+    };
+    replay.report = recorder::replayRecording(file, settings);
+    if (replay.report.verdict == recorder::ReplayVerdict::exact) replay.values = goldenValues(collector->values());
+  }
   if (replay.report.verdict != recorder::ReplayVerdict::exact) return replay;
-  replay.values = goldenValues(collector->values());
   replay.changed = changedValues(entry.values, replay.values);
   if (replay.changed.empty()) return replay;
   // The simulation is the same; what is computed over it is not.
   replay.report.verdict = recorder::ReplayVerdict::diverged;
-  replay.report.message =
+  replay.report.finding = recorder::ReplayFinding::unread;
+  replay.report.error =
       fmt::format("bit-exact, but {} checkpoints have other values: {}", replay.changed.size(), replay.changed.front());
   return replay;
 }
@@ -207,7 +338,7 @@ void refuseValues(const GoldenEntry& entry, const std::vector<GoldenValue>& now)
   for (const GoldenValue& before : entry.values) {
     const GoldenValue* after = sameOf(now, before);
     const analytics::CheckpointDefinition* definition = analytics::findCheckpoint(before.name);
-    if (after != nullptr ? sameBits(after->value, before.value) || after->version > before.version
+    if (after != nullptr ? after->value == before.value || after->version > before.version
                          : definition == nullptr || definition->version > before.version)
       continue;
     throw Error(ErrorKind::refused,
@@ -216,41 +347,6 @@ void refuseValues(const GoldenEntry& entry, const std::vector<GoldenValue>& now)
                             entry.file, titleOf(before), shownValue(before),
                             after == nullptr ? "none" : shownValue(*after), before.version));
   }
-}
-
-/// Changes of a work tree outside of this folder; nothing where git fails or is not there.
-std::optional<std::string> changesOutside(const std::filesystem::path& folder) {
-  std::string quoted;
-  for (const char c : folder.string()) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  const std::string command = "git -C '" + quoted + "' status --porcelain -- :/ ':(exclude).' 2>/dev/null";
-  std::FILE* const pipe = popen(command.c_str(), "r");
-  if (pipe == nullptr) return std::nullopt;
-  std::string text;
-  for (int c = 0; (c = std::fgetc(pipe)) != EOF;) text += static_cast<char>(c);
-  return pclose(pipe) == 0 ? std::optional(text) : std::nullopt;
-}
-
-GoldenEntry recordEntry(const GoldenEntry& entry, const std::filesystem::path& file) {
-  recorder::LoadedScene scene = recorder::loadScene(recorder::findScene(entry.scene, assetFolders()));
-  const Model::Built built = Model::build(scene.description);
-  if (!built.model) throw Error(ErrorKind::damaged, fmt::format("scene {}: {}", entry.scene, built.error));
-  SourceOptions who;
-  who.performer = entry.performer;
-  const std::unique_ptr<recorder::SampleSource> source = makeSource(who, built.model->scene(), entry.seed);
-  const recorder::AttemptHeader header = recorder::makeHeader(
-      *built.model, std::move(scene.assets), source->provenance(), {.purpose = "golden", .seed = entry.seed});
-  recorder::RecordingWriter writer(file, header, {true});
-  analytics::CheckpointCollector collector(header, built.model->scene());
-  recorder::WorkerPool pool(1);
-  recorder::Session session(*built.model, entry.seed, pool);
-  session.join(writer);
-  session.join(collector);
-  recorder::runAttempt(session, *source, {.seconds = entry.seconds, .stop = &stopRequested()});
-  writer.finish();
-  if (stopRequested()) throw Error(ErrorKind::failure, "golden: stopped; nothing was replaced");
-  GoldenEntry made = entry;
-  made.values = goldenValues(collector.values());
-  return made;
 }
 
 /// Removes what was made and not taken over.
@@ -269,27 +365,23 @@ const std::string& requiredReason(const std::string& reason) {
   return reason;
 }
 
-/// @throws Error (invalid): the reason is empty; or all recordings are there and of this build's simulation version; or
-/// `folder` is in no work tree, or in one with changes outside of it.
-void refuseUpdate(const std::filesystem::path& folder, const GoldenList& list, const std::string& reason) {
-  requiredReason(reason);
-  const bool complete = std::all_of(list.recordings.begin(), list.recordings.end(),
-                                    [&](const GoldenEntry& e) { return std::filesystem::exists(folder / e.file); });
-  if (complete && list.simulationVersion >= simulationVersion) {
-    throw Error(ErrorKind::invalid,
-                fmt::format("golden: the recordings are of simulation version {} and so is this build: what changes "
-                            "them raises simulationVersion (sim/scene/version.h) first",
-                            list.simulationVersion));
-  }
-  const std::optional<std::string> changes = changesOutside(folder);  // a recording's header names a revision
-  if (!changes) {
+/// A golden names a revision. @throws Error (invalid): `folder` is in no work tree, or in one with changes outside of
+/// it
+void refuseChanges(const std::filesystem::path& folder) {
+  std::string quoted;
+  for (const char c : folder.string()) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  const std::string command = "git -C '" + quoted + "' status --porcelain -- :/ ':(exclude).' 2>/dev/null";
+  std::FILE* const pipe = popen(command.c_str(), "r");
+  std::string changes;
+  for (int c = 0; pipe != nullptr && (c = std::fgetc(pipe)) != EOF;) changes += static_cast<char>(c);
+  if (pipe == nullptr || pclose(pipe) != 0) {
     throw Error(ErrorKind::invalid, fmt::format("golden: {} lies in no git work tree, or git is not there: golden "
                                                 "recordings belong to a revision",
                                                 folder.string()));
   }
-  if (!changes->empty()) {
+  if (!changes.empty()) {
     throw Error(ErrorKind::invalid, fmt::format("golden: the work tree has changes ({}): commit them first",
-                                                changes->substr(0, changes->find('\n'))));
+                                                changes.substr(0, changes.find('\n'))));
   }
 }
 
@@ -365,27 +457,63 @@ ExitCode takeValues(const GoldenOptions& o) {
     printChanges(entry.file, replay.values.size(), replay.changed);
     entry.values = replay.values;
   }
-  recorder::writeText(folder / listName, toJson(list), true);
+  recorder::writeText(folder / listName, recorder::writeRecord(list).dump(1) + "\n", true);
   return ExitCode::yes;
 }
 
-/// Runs every recording of the list again, then replaces files and list together. @throws Error with nothing replaced.
+/// Makes every golden of the list again after a change of the simulation; within a simulation version those that are
+/// not there, and digests whose performer or scene changed. Then replaces files and list together.
+/// @throws Error with nothing replaced; (invalid) where nothing is to be made; (refused) where a step changed
 void updateGolden(const GoldenOptions& o) {
   stopOnSignals();
   const std::filesystem::path folder = folderOf(o);
-  const GoldenList list = readGoldenList(folder / listName);
-  refuseUpdate(folder, list, o.reason);
-  GoldenList made{simulationVersion, o.reason, {}, {}};
+  GoldenList list = readGoldenList(folder / listName);
+  requiredReason(o.reason);
+  refuseChanges(folder);
+  const bool all = list.simulationVersion < simulationVersion;
   Temporary temporary;
-  for (const GoldenEntry& entry : list.recordings) {
-    temporary.files.push_back(folder / ("new." + entry.file));
-    const GoldenEntry& now = made.recordings.emplace_back(recordEntry(entry, temporary.files.back()));
-    printChanges(now.file, now.values.size(), changedValues(entry.values, now.values));
+  std::vector<std::filesystem::path> replaced;
+  for (GoldenEntry& entry : list.recordings) {
+    const std::filesystem::path file = folder / entry.file, fresh = folder / ("new." + entry.file);
+    const bool kept = !all && std::filesystem::exists(file);
+    if (kept && !entry.isDigests()) continue;  // no performer changes it: it carries its samples
+    temporary.files.push_back(fresh);
+    GoldenReplay made = perform(entry, entry.isDigests() ? std::filesystem::path() : fresh, 1);
+    if (kept) {
+      judge(made, file);
+      if (made.report.verdict == recorder::ReplayVerdict::exact) {
+        temporary.files.pop_back();
+        continue;
+      }
+      if (made.report.divergence && made.report.divergence->component == "step") {
+        throw Error(ErrorKind::refused, fmt::format("golden: {}: {}: what changes a step raises simulationVersion "
+                                                    "(sim/scene/version.h) first",
+                                                    entry.file, made.report.message));
+      }
+      fmt::print("{}: {}\n", entry.file, made.report.message);
+    }
+    if (entry.isDigests()) {
+      made.digests["reason"] = o.reason;
+      recorder::writeText(fresh, made.digests.dump(1) + "\n", true);
+    }
+    replaced.push_back(file);
+    printChanges(entry.file, made.values.size(), changedValues(entry.values, made.values));
+    entry.values = std::move(made.values);
   }
-  for (std::size_t i = 0; i < made.recordings.size(); ++i)
-    std::filesystem::rename(temporary.files[i], folder / made.recordings[i].file);
+  if (replaced.empty()) {
+    throw Error(ErrorKind::invalid,
+                fmt::format("golden: the goldens are of simulation version {} and so is this build, and no performer "
+                            "changed: what changes them raises simulationVersion (sim/scene/version.h) first",
+                            list.simulationVersion));
+  }
+  for (std::size_t i = 0; i < replaced.size(); ++i) std::filesystem::rename(temporary.files[i], replaced[i]);
   temporary.files.clear();
-  recorder::writeText(folder / listName, toJson(made), true);
+  if (all) {
+    list.reason = o.reason;
+    list.valuesReason.reset();
+  }
+  list.simulationVersion = simulationVersion;
+  recorder::writeText(folder / listName, recorder::writeRecord(list).dump(1) + "\n", true);
 }
 
 }  // namespace

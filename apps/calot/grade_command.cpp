@@ -4,13 +4,11 @@
 #include <algorithm>
 
 #include "analytics/assessment/grade.h"
-#include "analytics/cohort/assessment_database.h"
-#include "analytics/cohort/check.h"
+#include "analytics/cohort/cohort_database.h"
 #include "analytics/report/grade_sheet.h"
 #include "apps/calot/command.h"
 #include "apps/calot/study_command.h"
-#include "recorder/base/file_bytes.h"
-#include "recorder/base/text_output.h"
+#include "recorder/base/files.h"
 #include "recorder/base/text_words.h"
 #include "recorder/recording/probe.h"
 #include "recorder/recording/reader.h"
@@ -43,7 +41,7 @@ analytics::AttemptRow attemptOf(const std::vector<analytics::AttemptRow>& attemp
 }
 
 /// The named norm, or the only one that there is.
-analytics::Norm normOf(const analytics::AssessmentDatabase& database, const GradeOptions& o) {
+analytics::Norm normOf(const analytics::CohortDatabase& database, const GradeOptions& o) {
   if (!o.norm.empty()) return database.norm(o.norm, o.version);
   std::vector<analytics::Norm> norms = database.norms();
   if (norms.empty())
@@ -108,7 +106,7 @@ void grade(const GradeOptions& o) {
   const analytics::CohortDatabase cohort(o.database, Access::read);
   const std::vector<analytics::AttemptRow> attempts = cohort.listAttempts();
   const analytics::AttemptRow attempt = attemptOf(attempts, o);
-  const analytics::Norm norm = normOf(analytics::AssessmentDatabase(o.database, Access::read), o);
+  const analytics::Norm norm = normOf(cohort, o);
   analytics::Grade result = analytics::gradeAttempt(attempt, attempts, cohort.allValues(), norm, o.mixKeys, o.database);
   const fs::path recording = recordingOf(attempt, o);
   lookAtRecording(result, recording, o);

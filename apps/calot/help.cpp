@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "apps/calot/command.h"
-#include "recorder/base/nearest_word.h"
 #include "recorder/base/text_words.h"
 
 namespace calot::apps {

@@ -9,10 +9,11 @@
 
 #include "analytics/assess.h"
 #include "analytics/checkpoints/collector.h"
-#include "analytics/import_motion.h"
-#include "analytics/intake/motion_manifest.h"
+#include "analytics/intake/manifests.h"
 #include "apps/calot/command.h"
 #include "apps/calot/replay_report.h"
+#include "gui/words/attempt_tables.h"
+#include "recorder/base/errors.h"
 #include "recorder/sources/tracked_motion.h"
 
 namespace calot::apps {
@@ -197,13 +198,13 @@ ExitCode importFiles(const ImportOptions& o) {
       fmt::print("{}: {}, {:.2f} s, {} rows\n", file, o.cohort.empty() ? "shown" : result.how,
                  result.motion->time.back(), result.motion->time.size());
       if (o.files.size() == 1 || o.cohort.empty()) {
-        analytics::printValues(result.values, {}, std::cout);
+        gui::printValues(result.values, {}, std::cout);
         std::cout << '\n';
       }
     }
   }
   printResult(o.json, "import", {{"files", import.list}}, [&](std::ostream& out) {
-    if (import.database) analytics::printAttempts(*import.database, out);
+    if (import.database) gui::printAttempts(*import.database, out);
   });
   return worstOf(import.codes);
 }

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "analytics/assess.h"
 #include "analytics/cohort/cohort_database.h"
 #include "analytics/external/metric_script.h"
-#include "analytics/import_motion.h"
 #include "apps/calot/command.h"
 #include "recorder/sources/tracked_motion.h"
 

@@ -5,13 +5,13 @@
 #include <map>
 
 #include "apps/calot/command.h"
-#include "recorder/base/file_bytes.h"
+#include "recorder/base/files.h"
 #include "recorder/recording/layout.h"
 #include "recorder/recording/probe.h"
 #include "recorder/recording/reader.h"
 #include "recorder/recording/recording_facts.h"
 #include "recorder/recording/recover.h"
-#include "recorder/step_watch.h"
+#include "recorder/replay.h"
 #include "sim/scene/version.h"
 
 namespace calot::apps {

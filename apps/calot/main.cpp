@@ -2,8 +2,8 @@
 #include <algorithm>
 
 #include "apps/calot/command.h"
-#include "recorder/attempt.h"
 #include "recorder/compliance_cache.h"
+#include "recorder/loop.h"
 #include "recorder/prepared_scene.h"
 #include "sim/scene/version.h"
 

@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "apps/calot/command.h"
-#include "recorder/base/text_output.h"
+#include "apps/calot/mesh_report.h"
+#include "recorder/base/files.h"
 #include "recorder/formats/mesh_file.h"
-#include "recorder/formats/mesh_report.h"
 #include "sim/geometry/isosurface_stuffing.h"
 #include "sim/geometry/mesh_to_count.h"
 #include "sim/geometry/triangle_mesh.h"
@@ -105,13 +105,13 @@ void checkUnit(const MeshOptions& o, const SurfaceReport& found) {
 }
 
 /// Explains why a surface has no interior; empty if it has one.
-std::string openFault(const MeshOptions& o, const recorder::MeshReport& report, const SurfaceReport& now) {
+std::string openFault(const MeshOptions& o, const MeshReport& report, const SurfaceReport& now) {
   if (now.openEdges > 0) {
     std::string holes;
     std::size_t left = 0;
     for (const SurfaceHole& hole : report.holes) {
       if (hole.area > 0.0) continue;
-      if (++left <= 3) holes += (holes.empty() ? ": " : "; ") + recorder::describe(hole);
+      if (++left <= 3) holes += (holes.empty() ? ": " : "; ") + wordsFor(hole);
     }
     if (left > 3) holes += "; ...";
     return fmt::format("the surface is open: {} edges, {} holes{}{}", now.openEdges, left, holes,
@@ -123,7 +123,8 @@ std::string openFault(const MeshOptions& o, const recorder::MeshReport& report, 
   return {};
 }
 
-void writeOutputs(const MeshOptions& o, const TriangleMesh& surface, recorder::MeshReport& report) {
+void writeOutputs(const MeshOptions& o, const TriangleMesh& surface, MeshReport& report) {
+  const std::string title = "calot mesh of " + o.input + ", metres";
   TriangleMesh written = surface;
   if (o.surfaceTriangles > 0) {
     CoarseSurface coarse = coarseSurface(surface, o.surfaceTriangles);
@@ -139,11 +140,11 @@ void writeOutputs(const MeshOptions& o, const TriangleMesh& surface, recorder::M
       report.faults.push_back(report.stuffed.error);
       return;
     }
-    recorder::writeVtk(o.output, report.stuffed.mesh, "calot mesh of " + o.input + ", metres", o.force);
+    recorder::writeText(o.output, recorder::formatVtk(report.stuffed.mesh, title), o.force);
     report.output = o.output;
   }
   if (o.surfaceOutput.empty()) return;
-  recorder::writeObj(o.surfaceOutput, written, "calot mesh of " + o.input + ", metres", o.force);
+  recorder::writeText(o.surfaceOutput, recorder::formatObj(written, title), o.force);
   report.surfaceOutput = o.surfaceOutput;
   report.surfaceTriangles = written.triangles();
   report.surfaceOutputVolume = signedVolume(written);
@@ -151,7 +152,7 @@ void writeOutputs(const MeshOptions& o, const TriangleMesh& surface, recorder::M
 
 void meshSurface(const MeshOptions& o) {
   checkFiles(o);
-  recorder::MeshReport report;
+  MeshReport report;
   report.input = o.input;
   report.unit = o.unit;
   const TriangleMesh surface = recorder::readSurface(o.input, recorder::parseLengthUnit(o.unit));
@@ -175,8 +176,8 @@ void meshSurface(const MeshOptions& o) {
     report.crossing = findSelfCrossing(whole);
     writeOutputs(o, whole, report);
   }
-  printResult(o.json, "mesh", Json::parse(recorder::meshReportJson(report)), recorder::meshReportText(report));
-  for (const std::string& warning : recorder::meshWarnings(report))
+  printResult(o.json, "mesh", Json::parse(meshReportJson(report)), meshReportText(report));
+  for (const std::string& warning : meshWarnings(report))
     fmt::print(stderr, "calot: warning: {}: {}\n", o.input, warning);
   if (!report.faults.empty()) throw Error(ErrorKind::refused, o.input + ": " + report.faults.front());
 }

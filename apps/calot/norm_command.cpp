@@ -2,16 +2,17 @@
 // calot norm: named, versioned cohorts that others are held against.
 #include <algorithm>
 
-#include "analytics/assessment/create_norm.h"
 #include "analytics/assessment/grade.h"
 #include "analytics/assessment/norm.h"
-#include "analytics/assessment/norm_rule.h"
 #include "analytics/checkpoints/checkpoint.h"
-#include "analytics/cohort/assessment_database.h"
+#include "analytics/cohort/cohort_database.h"
+#include "analytics/report/report_document.h"
 #include "analytics/report/study_output.h"
 #include "analytics/report/value_tree.h"
 #include "apps/calot/command.h"
-#include "recorder/base/file_bytes.h"
+#include "apps/calot/environment.h"
+#include "recorder/base/errors.h"
+#include "recorder/base/files.h"
 #include "recorder/base/text_words.h"
 
 namespace calot::apps {
@@ -169,7 +170,7 @@ void createNorm(NormOptions& o) {
 void listNorms(NormOptions& o) {
   Json rows = Json::array();
   std::string text;
-  for (const analytics::Norm& norm : analytics::AssessmentDatabase(o.database, Access::read).norms()) {
+  for (const analytics::Norm& norm : analytics::CohortDatabase(o.database, Access::read).norms()) {
     rows.push_back(normJson(norm));
     const analytics::PassRate own = analytics::passRates(norm).first;
     text += fmt::format("{} version {}, {}: {} members, judged by {}{}{}{}\n", norm.name, norm.version, norm.createdUtc,
@@ -183,7 +184,7 @@ void listNorms(NormOptions& o) {
 }
 
 void showNorm(NormOptions& o) {
-  const analytics::Norm norm = analytics::AssessmentDatabase(o.database, Access::read).norm(o.name, o.version);
+  const analytics::Norm norm = analytics::CohortDatabase(o.database, Access::read).norm(o.name, o.version);
   printResult(o.json, "norm", normJson(norm), [&](std::ostream& out) { printNorm(norm, out); });
 }
 
@@ -191,7 +192,7 @@ void attachEvidence(NormOptions& o) {
   const std::filesystem::path file(o.file);
   const std::string name = file.filename().string();
   const std::string hash = recorder::sha256Hex(recorder::readFileBytes(file, name, maxEvidence));
-  analytics::AssessmentDatabase database(o.database, Access::write);
+  analytics::CohortDatabase database(o.database, Access::write);
   const analytics::Norm norm = database.norm(o.name, o.version);
   database.attachEvidence(norm, {o.statement, name, hash, o.by, ""});
   std::cout << analytics::useOf(database.norm(norm.name, norm.version)) << '\n';

@@ -4,9 +4,9 @@
 #include <algorithm>
 
 #include "analytics/assessment/protocol.h"
-#include "analytics/cohort/assessment_database.h"
 #include "analytics/cohort/blinding.h"
-#include "analytics/report/masked_study.h"
+#include "analytics/cohort/cohort_database.h"
+#include "analytics/report/study_protocol.h"
 #include "analytics/statistics/two_groups.h"
 #include "apps/calot/command.h"
 #include "apps/calot/study_command.h"
@@ -37,7 +37,7 @@ void checkProtocol(const ProtocolOptions& o) {
 
 void registerProtocol(const ProtocolOptions& o) {
   const analytics::Protocol p = analytics::readProtocol(findAsset(o.protocol, "protocols", "protocol"));
-  analytics::AssessmentDatabase database(o.database, Access::create);
+  analytics::CohortDatabase database(o.database, Access::create);
   bool added = false;
   const analytics::RegisteredProtocol stored =
       database.registerProtocol({p.name, p.version, p.sha256, p.text}, o.by, added);
@@ -46,10 +46,10 @@ void registerProtocol(const ProtocolOptions& o) {
 }
 
 void lockAnalysis(const ProtocolOptions& o) {
-  const analytics::AssessmentDatabase assessment(o.database, Access::read);
+  const analytics::CohortDatabase cohort(o.database, Access::read);
   StudySource source = o.study;
   source.protocol = o.protocol;
-  const analytics::StudyOptions options = protocolStudyOptions(source, assessment);
+  const analytics::StudyOptions options = protocolStudyOptions(source, cohort);
   const analytics::Protocol& protocol = options.protocol->protocol;
   const auto& registered = options.protocol->registered;
   if (std::none_of(registered.begin(), registered.end(), [&](const auto& r) { return r.sha256 == protocol.sha256; })) {
@@ -58,10 +58,9 @@ void lockAnalysis(const ProtocolOptions& o) {
                             "protocol register)",
                             protocol.name, protocol.version));
   }
-  const analytics::CohortDatabase cohort(o.database, Access::read);
   // An analysis that the study would refuse cannot be locked.
-  static_cast<void>(analytics::makeMaskedStudy(cohort, assessment, options, false));
-  analytics::AnalysisLock present = analytics::presentAnalysis(cohort, assessment, options);
+  static_cast<void>(analytics::makeMaskedStudy(cohort, options, false));
+  analytics::AnalysisLock present = analytics::presentAnalysis(cohort, options);
   present.by = o.by;
   bool added = false;
   const analytics::AnalysisLock stored = analytics::storeAnalysisLock(o.database, present, added);
@@ -88,7 +87,7 @@ void listProtocols(const ProtocolOptions& o) {
   if (o.database.empty()) return listShipped(o);
   Json rows = Json::array();
   std::string text;
-  for (const auto& p : analytics::AssessmentDatabase(o.database, Access::read).protocols()) {
+  for (const auto& p : analytics::CohortDatabase(o.database, Access::read).protocols()) {
     rows.push_back({{"name", p.name},
                     {"version", p.version},
                     {"sha256", p.sha256},

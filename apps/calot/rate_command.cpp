@@ -9,19 +9,17 @@
 
 #include "analytics/assessment/pack_answers.h"
 #include "analytics/assessment/rating_form.h"
-#include "analytics/cohort/assessment_database.h"
 #include "analytics/cohort/blinding.h"
 #include "analytics/cohort/withdraw.h"
-#include "analytics/intake/manifest_table.h"
-#include "analytics/intake/rating_manifest.h"
+#include "analytics/intake/manifests.h"
 #include "analytics/interchange/folder_output.h"
 #include "analytics/report/rater_page.h"
-#include "analytics/report/rating_tables.h"
+#include "analytics/report/ratings.h"
 #include "apps/calot/command.h"
 #include "apps/calot/import_command.h"
 #include "gui/film/film.h"
 #include "gui/film/film_writer.h"
-#include "recorder/base/file_bytes.h"
+#include "recorder/base/files.h"
 #include "recorder/base/json_reader.h"
 #include "recorder/base/text_words.h"
 #include "recorder/recording/probe.h"
@@ -106,7 +104,7 @@ void storeAnswers(const RateOptions& o) {
   rating.participant = o.participant;
   rating.answers =
       analytics::answersOf(form, o.answersFile.empty() ? readAnswers(o.answers) : readAnswers(o.answersFile));
-  analytics::AssessmentDatabase database(o.database, Access::write);
+  analytics::CohortDatabase database(o.database, Access::write);
   database.storeRating({form.name, form.version, form.sha256, form.text}, rating, o.force);
   fmt::print("{}: {} version {} of {}, {} of {} items answered\n", o.database, form.name, form.version,
              form.ofAttempts ? "attempt " + o.attempt : "participant " + o.participant, rating.answers.size(),
@@ -115,7 +113,6 @@ void storeAnswers(const RateOptions& o) {
 
 void showRatings(const RateOptions& o) {
   const analytics::CohortDatabase cohort(o.database, Access::read);
-  const analytics::AssessmentDatabase database(o.database, Access::read);
   std::map<std::string, std::string> groupOf;
   std::set<std::string> groups;
   for (const analytics::Participant& p : cohort.participants()) groupOf[p.pseudonym] = p.group;
@@ -124,12 +121,12 @@ void showRatings(const RateOptions& o) {
     groupOf[a.uuid] = a.group;
     attemptOf[a.uuid] = {a.participant, a.startUtc};
   }
-  for (const analytics::Rating& r : database.ratings()) {
+  for (const analytics::Rating& r : cohort.ratings()) {
     const auto at = groupOf.find(r.attempt.empty() ? r.participant : r.attempt);
     if (at != groupOf.end()) groups.insert(at->second);
   }
   const std::vector<analytics::FormReport> reports =
-      analytics::reportForms(database, groupOf, {groups.begin(), groups.end()}, attemptOf);
+      analytics::reportForms(cohort, groupOf, {groups.begin(), groups.end()}, attemptOf);
   printResult(o.json, "ratings", {{"forms", analytics::ratingsTree(reports)}}, [&](std::ostream& out) {
     if (reports.empty()) out << "no ratings\n";
     for (const analytics::FormReport& report : reports) {
@@ -146,7 +143,7 @@ ExitCode storeRatingManifest(const RateOptions& o) {
   const analytics::RatingManifest read = analytics::readRatingManifest(
       o.manifest, o.form, find, analytics::CohortDatabase(o.database, Access::read), faults);
   if (!faults.empty()) return refuseRows(faults);
-  analytics::AssessmentDatabase database(o.database, Access::write);
+  analytics::CohortDatabase database(o.database, Access::write);
   const analytics::StoredRatings stored = analytics::storeRatings(database, read, o.force, faults);
   if (!faults.empty()) return refuseRows(faults);
   const Json row{{"manifest", o.manifest},

@@ -3,20 +3,20 @@
 
 #include <cmath>
 
+#include "analytics/checkpoints/replay_words.h"
 #include "apps/calot/command.h"
 #include "apps/calot/replay_report.h"
 #include "apps/calot/source_options.h"
-#include "recorder/base/text_output.h"
-#include "recorder/branch.h"
+#include "recorder/base/files.h"
 #include "recorder/formats/scene_file.h"
 #include "recorder/live/worker_pool.h"
-#include "recorder/live/wrapped_sources.h"
 #include "recorder/loop.h"
 #include "recorder/prepared_scene.h"
 #include "recorder/recording/probe.h"
 #include "recorder/recording/writer.h"
 #include "recorder/replay.h"
 #include "recorder/sources/scope/scope_source.h"
+#include "recorder/sources/source.h"
 
 namespace calot::apps {
 namespace {
@@ -44,14 +44,14 @@ Json runJson(const FinishedRun& run, double seconds) {
            {"missed_deadlines", r.missedDeadlines},
            {"largest_lateness_s", r.maxLateness},
            {"clock_stretched_s", r.stretched},
-           {"pauses", r.pauses},
-           {"paused_s", r.paused}};
+           {"pauses", r.pauses.count},
+           {"paused_s", r.pauses.seconds}};
   if (!run.why.empty()) out["source_status"] = run.why;
   if (run.live) {
     out["real_time_thread"] = r.realTime;
-    out["tick_cpu_mean_s"] = r.tickMean;
-    out["tick_cpu_p999_s"] = r.tickP999;
-    out["tick_cpu_largest_s"] = r.tickLargest;
+    out["tick_cpu_mean_s"] = r.cost.mean();
+    out["tick_cpu_p999_s"] = r.cost.quantile(0.999);
+    out["tick_cpu_largest_s"] = r.cost.largest();
     out["arenas_grown"] = r.arenasGrown;
     out["force_disagreements"] = r.disagreements;
   }
@@ -63,7 +63,7 @@ std::string runText(const FinishedRun& run, double seconds) {
   const bool failed = r.outcome == recorder::Outcome::technicalFailure && !run.why.empty();
   std::string text = fmt::format("{}: attempt {}, {:.2f} s, {}{}{}\n", run.file, run.attempt, seconds,
                                  wordFor(r.outcome), failed ? ": " : "", failed ? run.why : "");
-  if (r.misses.any > 0) text += fmt::format("{}: {}\n", run.file, describe(r.misses));
+  if (r.misses.any > 0) text += fmt::format("{}: {}\n", run.file, analytics::wordsFor(r.misses));
   if (run.paced) {
     text +=
         fmt::format("{}: {} of {} ticks missed their deadline, at most {:.1f} ms late, clock stretched by {:.3f} s\n",
@@ -72,10 +72,11 @@ std::string runText(const FinishedRun& run, double seconds) {
   if (run.live) {
     text += fmt::format(
         "haptic tick: {:.1f} us of CPU on average, {:.1f} us at 99.9 %, {:.1f} us at most; {}; {} arenas grown\n",
-        1e6 * r.tickMean, 1e6 * r.tickP999, 1e6 * r.tickLargest,
+        1e6 * r.cost.mean(), 1e6 * r.cost.quantile(0.999), 1e6 * r.cost.largest(),
         r.realTime ? "real-time thread" : "ordinary thread (no permission for real time)", r.arenasGrown);
   }
-  if (r.pauses > 0) text += fmt::format("{} pauses of the source, {:.1f} s in all\n", r.pauses, r.paused);
+  if (r.pauses.count > 0)
+    text += fmt::format("{} pauses of the source, {:.1f} s in all\n", r.pauses.count, r.pauses.seconds);
   return text;
 }
 
@@ -90,8 +91,8 @@ void reportRun(const FinishedRun& run, bool json) {
                     "will not replay",
                     run.file, run.report.disagreements));
   }
-  if (!run.report.fault.empty()) {
-    throw Error(ErrorKind::failure, fmt::format("{}: {}", run.file, run.report.fault));
+  if (run.report.runaway) {
+    throw Error(ErrorKind::failure, fmt::format("{}: {}", run.file, analytics::wordsFor(*run.report.runaway)));
   }
 }
 
@@ -200,7 +201,7 @@ void branch(const BranchOptions& o) {
   session.join(pose);
   {
     Progress progress("taking the parent's steps", o.json);
-    recorder::takeParent(parent, session, forkStep, [&](std::uint64_t step, std::uint64_t of) {
+    const auto divergence = recorder::takeParent(parent, session, forkStep, [&](std::uint64_t step, std::uint64_t of) {
       if (writer.failed()) {
         session.end(recorder::Outcome::technicalFailure);
         writer.finish();  // says why
@@ -208,6 +209,7 @@ void branch(const BranchOptions& o) {
       if (stopRequested()) throw Error(ErrorKind::failure, fmt::format("{}: stopped before the fork", o.output));
       progress.show(step, of);
     });
+    if (divergence) throw Error(ErrorKind::refused, Where{parent.path().string()}, analytics::wordsFor(*divergence));
   }
   file.publish();
 

@@ -3,7 +3,7 @@
 #include "analytics/cohort/withdraw.h"
 #include "apps/calot/command.h"
 #include "gui/film/film.h"
-#include "recorder/base/text_output.h"
+#include "recorder/base/files.h"
 #include "recorder/recording/probe.h"
 #include "recorder/recording/reader.h"
 

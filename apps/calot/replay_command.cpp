@@ -7,7 +7,7 @@
 #include "apps/calot/command.h"
 #include "apps/calot/replay_report.h"
 #include "apps/calot/source_options.h"
-#include "recorder/base/text_output.h"
+#include "recorder/base/files.h"
 #include "recorder/live/worker_pool.h"
 #include "recorder/recording/probe.h"
 #include "recorder/replay.h"
@@ -53,7 +53,7 @@ ExitCode replay(const ReplayOptions& o) {
       const std::lock_guard lock(drawing);
       failure = std::current_exception();
       reports[i].path = o.files[i];
-      reports[i].message = "failed inside";
+      reports[i].error = "failed inside";
     }
     const std::lock_guard lock(drawing);
     ++done;

@@ -7,9 +7,10 @@
 
 #include <array>
 #include "analytics/checkpoints/motion.h"
+#include "analytics/checkpoints/replay_words.h"
 #include "analytics/cohort/registers.h"
 #include "apps/calot/environment.h"
-#include "recorder/base/text_output.h"
+#include "recorder/base/files.h"
 
 namespace calot::apps {
 
@@ -19,14 +20,14 @@ void printReport(const recorder::ReplayReport& r) {
     fmt::print("{}: bit-exact{}, {:.2f} s ({} steps), {:.1f} x real time\n", r.path.string(),
                r.complete ? "" : ", incomplete", r.seconds, r.steps,
                r.wallSeconds > 0.0 ? r.seconds / r.wallSeconds : 0.0);
-    if (r.misses.any > 0) fmt::print("{}: {}\n", r.path.string(), describe(r.misses));
+    if (r.misses.any > 0) fmt::print("{}: {}\n", r.path.string(), analytics::wordsFor(r.misses));
     return;
   }
   if (r.verdict == recorder::ReplayVerdict::consistent) {
-    fmt::print("{}: {}\n", r.path.string(), r.message);
+    fmt::print("{}: {}\n", r.path.string(), analytics::wordsFor(r));
     return;
   }
-  fmt::print(stderr, "calot: {}: {}\n", r.path.string(), advised(r.message, r.remedies));
+  fmt::print(stderr, "calot: {}: {}\n", r.path.string(), advised(analytics::wordsFor(r), r.remedies));
 }
 
 Json missesJson(const recorder::StepMisses& m) {
@@ -54,7 +55,7 @@ void writeJunit(const JunitOptions& options, const std::string& suite,
     time += r.wallSeconds;
     cases += fmt::format("  <testcase classname=\"replay\" name=\"{}\" time=\"{:.3f}\">",
                          analytics::escaped(r.path.filename().string()), r.wallSeconds);
-    const std::string body = analytics::escaped(r.message);
+    const std::string body = analytics::escaped(analytics::wordsFor(r));
     if (r.verdict == ReplayVerdict::diverged) cases += fmt::format("<failure message=\"diverged\">{}</failure>", body);
     if (r.verdict == ReplayVerdict::damaged) cases += fmt::format("<error message=\"damaged\">{}</error>", body);
     if (r.verdict == ReplayVerdict::undecided) {
@@ -84,7 +85,7 @@ nlohmann::json reportJson(const recorder::ReplayReport& r) {
                       {"missed_tolerance", missesJson(r.misses)},
                       {"simulation_version", r.simulationVersion},
                       {"chain_intact", r.chainIntact},
-                      {"message", r.message},
+                      {"message", analytics::wordsFor(r)},
                       {"exit_code", static_cast<int>(codeOf(r.fault()))}};
   if (!r.remedies.empty()) json["advice"] = advice(r.remedies);
   if (r.divergence) {

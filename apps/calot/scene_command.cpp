@@ -6,10 +6,10 @@
 #include <cmath>
 
 #include "apps/calot/command.h"
-#include "recorder/base/file_bytes.h"
-#include "recorder/base/text_output.h"
+#include "apps/calot/environment.h"
+#include "recorder/base/errors.h"
+#include "recorder/base/files.h"
 #include "recorder/formats/mesh_file.h"
-#include "recorder/formats/scene_check.h"
 #include "recorder/formats/scene_file.h"
 #include "sim/geometry/surface_report.h"
 #include "sim/scene/model.h"

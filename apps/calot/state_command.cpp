@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 #include "apps/calot/command.h"
-#include "recorder/base/text_output.h"
+#include "recorder/base/files.h"
 #include "recorder/engine/state_fields.h"
 #include "recorder/prepared_scene.h"
 #include "recorder/recording/probe.h"

@@ -2,7 +2,7 @@
 // calot station: the key that a station signs its recordings with.
 
 #include "apps/calot/command.h"
-#include "recorder/base/file_bytes.h"
+#include "recorder/base/files.h"
 #include "recorder/recording/station_key.h"
 
 namespace calot::apps {

@@ -7,13 +7,15 @@
 #include <cmath>
 #include <set>
 
-#include "analytics/cohort/check.h"
+#include "analytics/cohort/cohort_database.h"
 #include "analytics/cohort/withdraw.h"
 #include "analytics/design/design_report.h"
 #include "analytics/report/study_output.h"
 #include "apps/calot/command.h"
-#include "recorder/attempt.h"
-#include "recorder/base/text_output.h"
+#include "apps/calot/environment.h"
+#include "recorder/base/errors.h"
+#include "recorder/base/files.h"
+#include "recorder/loop.h"
 #ifdef CALOT_PDF
 #include "gui/report/pdf_report.h"
 #endif
@@ -80,21 +82,18 @@ analytics::Study plainStudyOf(StudySource& options, const analytics::StudyProgre
   }
   if (options.database.empty()) throw Error(ErrorKind::invalid, "name a cohort database, or a table with --table");
   static_cast<analytics::StudyChoices&>(options.cohort) = options.choices;
-  const auto read = analytics::CohortDatabase::Access::read;
-  const analytics::AssessmentDatabase assessment(options.database, read);
-  if (!options.protocol.empty()) options.cohort = protocolStudyOptions(options, assessment);
-  const analytics::CohortDatabase cohort(options.database, read);
-  if (options.cohort.protocol)
-    return analytics::makeProtocolStudy(cohort, assessment, options.cohort, options.masked, progress);
+  const analytics::CohortDatabase cohort(options.database, analytics::CohortDatabase::Access::read);
+  if (!options.protocol.empty()) options.cohort = protocolStudyOptions(options, cohort);
+  if (options.cohort.protocol) return analytics::makeProtocolStudy(cohort, options.cohort, options.masked, progress);
   if (options.masked) throw Error(ErrorKind::invalid, "study: --masked needs the --protocol whose groups are masked");
   analytics::Study study = analytics::makeStudy(cohort, options.cohort, progress);
-  analytics::addRatings(study, assessment);
+  analytics::addRatings(study, cohort);
   return study;
 }
 
 }  // namespace
 
-analytics::StudyOptions protocolStudyOptions(const StudySource& source, const analytics::AssessmentDatabase& database) {
+analytics::StudyOptions protocolStudyOptions(const StudySource& source, const analytics::CohortDatabase& database) {
   analytics::StudyOptions options = source.cohort;
   if (!source.cohortName.empty()) options.cohort = analytics::CohortInUse{source.cohortName, {}};
   analytics::ProtocolInUse& use = options.protocol.emplace();
@@ -249,11 +248,8 @@ analytics::DesignReport designReportOf(const DesignOptions& o, StudySource& sour
     return analytics::makeDesignReport(
         analytics::tableDesignData(readCsvTable(source.table), source.elsewhere, choices), choices);
   if (source.database.empty()) throw Error(ErrorKind::invalid, "name a cohort database, or a table with --table");
-  const auto read = analytics::CohortDatabase::Access::read;
-  const analytics::DesignData data =
-      analytics::cohortDesignData(analytics::CohortDatabase(source.database, read),
-                                  analytics::AssessmentDatabase(source.database, read), source.cohort, choices);
-  return analytics::makeDesignReport(data, choices);
+  const analytics::CohortDatabase cohort(source.database, analytics::CohortDatabase::Access::read);
+  return analytics::makeDesignReport(analytics::cohortDesignData(cohort, source.cohort, choices), choices);
 }
 
 struct StudyCommandOptions {

@@ -5,9 +5,9 @@
 #include <CLI/CLI.hpp>
 #include <string>
 
-#include "analytics/report/masked_study.h"
 #include "analytics/report/report_document.h"
 #include "analytics/report/study.h"
+#include "analytics/report/study_protocol.h"
 #include "analytics/report/table_study.h"
 
 namespace calot::apps {
@@ -24,7 +24,7 @@ struct StudySource {
 void addStudySource(CLI::App& command, StudySource& source);
 
 /// The cohort's study as its protocol and the options choose it. @pre there are a cohort and a protocol
-analytics::StudyOptions protocolStudyOptions(const StudySource& source, const analytics::AssessmentDatabase& database);
+analytics::StudyOptions protocolStudyOptions(const StudySource& source, const analytics::CohortDatabase& database);
 
 /// @throws Error as makeStudy() and makeTableStudy(); (invalid) where neither a cohort nor a table is named.
 analytics::Study studyOf(StudySource& source, const analytics::StudyProgress& progress = {});

@@ -3,6 +3,7 @@
 
 #include <chrono>
 
+#include "analytics/checkpoints/replay_words.h"
 #include "analytics/intake/intake.h"
 #include "apps/calot/command.h"
 #include "apps/calot/replay_report.h"
@@ -41,7 +42,7 @@ std::string textOf(const IntakeItem& item) {
   if (item.fault) return fmt::format("{}: {}", wordFor(item.how), faultText(item));
   if (item.how == TakenIn::known) return "known, verified before";
   const recorder::ReplayReport& report = item.judged.report;
-  const std::string verdict = report.fault() ? advised(report.message, report.remedies) : std::string("verified");
+  const std::string verdict = report.fault() ? advised(analytics::wordsFor(report), report.remedies) : std::string("verified");
   return fmt::format("{}{}, {}", verdict, report.complete ? "" : ", incomplete", wordFor(item.how));
 }
 

@@ -11,7 +11,7 @@
 #include <filesystem>
 #include <optional>
 
-#include "gui/attempt/theme.h"
+#include "gui/attempt/widget_parts.h"
 #include "gui/render/graphics.h"
 #include "gui/render/image.h"
 #include "gui/view/scene_picture_widget.h"

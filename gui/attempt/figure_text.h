@@ -1,12 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Texts of tables for stored values. Numbers are shown in the user's locale (a German sees a decimal comma);
-// nothing is ever read back from such a text.
+// nothing is ever read back from such a text. Then: where an attempt's figures stand within a norm, and its summary.
 #pragma once
 
+#include <algorithm>
+#include <optional>
 #include <QColor>
 #include <QString>
+#include <QWidget>
+#include <string>
+#include <vector>
 
+#include "analytics/assessment/grade.h"
 #include "analytics/cohort/cohort_database.h"
+
+class QLabel;
 
 namespace calot::gui {
 
@@ -42,5 +50,65 @@ struct DisplayedValue {
 [[nodiscard]] QString originText(analytics::Origin origin);
 /// "Path length of the instrument's tip, left"
 [[nodiscard]] QString figureTitle(const std::string& name, const std::string& subject);
+
+/// One figure against the competent members of a norm; everything in the unit that the checkpoint displays.
+struct FigureStanding {
+  std::string checkpoint, subject;
+  /// Quantiles of type 7 of the competent members; none where fewer than analytics::leastForPercentile have the figure.
+  struct Band {
+    double p10 = 0.0, p25 = 0.0, p50 = 0.0, p75 = 0.0, p90 = 0.0;
+  };
+  std::optional<Band> band;
+  std::optional<double> value, cut;
+  std::optional<double> percentile;  ///< 0 to 100, of the competent; 100: none of them was better
+  std::optional<bool> passed;
+  bool open = false;        ///< the value lies within the interval of the cut
+  bool undecided = false;   ///< the cut lies within the simulation's interval of the value
+  std::string explanation;  ///< sentences for a person
+};
+
+/// The entry of a list that is of this figure, or null.
+template <class Entry>
+const Entry* entryOf(const std::vector<Entry>& list, const analytics::CheckpointValue& value) {
+  const auto at = std::find_if(list.begin(), list.end(), [&](const Entry& e) {
+    return e.checkpoint == value.name && e.subject == value.subject;
+  });
+  return at == list.end() ? nullptr : &*at;
+}
+
+/// How the whole attempt stands.
+struct AttemptStanding {
+  std::string norm;     ///< "residents version 2"
+  std::string verdict;  ///< one sentence; or why there is no judgement
+  bool judged = false;
+  std::optional<analytics::Grade> grade;  ///< where it is judged; alone, without the participant's other attempts
+  std::vector<FigureStanding> figures;
+};
+
+/// Names of the norms that an attempt can be held against, those of its own comparability key, newest version of each
+/// name; by name.
+std::vector<const analytics::Norm*> normsFor(const analytics::AttemptRow& attempt,
+                                             const std::vector<analytics::Norm>& norms);
+
+/// An attempt that did not verify, or is not whole, is not judged: the verdict then says why, and the bands stand.
+AttemptStanding standingOf(const analytics::AttemptRow& attempt, const std::vector<analytics::CheckpointValue>& values,
+                           const analytics::Norm& norm, const std::vector<analytics::ValueInterval>& intervals = {});
+
+/// Summary for an instructor, in words: verdict, critical view, errors, and the figures that count.
+class SummaryPanel : public QWidget {
+  Q_OBJECT
+ public:
+  explicit SummaryPanel(QWidget* parent = nullptr);
+  void showSummary(const analytics::AttemptSummary& summary);
+
+ private:
+  QLabel* verdict_;
+  QLabel* criticalView_;
+  QLabel* errors_;
+  QLabel* figures_;
+};
+
+/// "Path length of the instrument's tip: left 179 mm, right 696 mm"
+[[nodiscard]] QString keyFigureText(const analytics::KeyFigure& figure);
 
 }  // namespace calot::gui

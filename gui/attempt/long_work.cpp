@@ -3,8 +3,6 @@
 
 #include <cmath>
 #include <exception>
-#include <QBoxLayout>
-#include <QLabel>
 #include <QMetaObject>
 #include <QProgressBar>
 #include <QPushButton>
@@ -17,48 +15,17 @@
 
 namespace calot::gui {
 
-Background::Background(QObject* parent)
-    : QObject(parent), thread_([this](const std::stop_token& stop) { loop(stop); }) {}
-
 void Background::run(Job job) {
-  {
-    const std::lock_guard lock(mutex_);
-    next_ = std::move(job);
-    ++newest_;
-  }
-  wake_.notify_one();
-}
-
-void Background::forget() {
-  const std::lock_guard lock(mutex_);
-  next_ = {};
-  ++newest_;
-}
-
-void Background::loop(const std::stop_token& stop) {
-  stepBack(behindInterface);
-  for (;;) {
-    Job job;
-    quint64 mine = 0;
-    {
-      std::unique_lock lock(mutex_);
-      wake_.wait(lock, stop, [this] { return static_cast<bool>(next_); });
-      if (stop.stop_requested()) return;
-      job = std::exchange(next_, {});
-      mine = newest_;
-    }
-    Completion answer = job();
+  thread_.start([this, mine = ++newest_, job = std::move(job)] {
+    if (mine != newest_) return;
+    stepBack(behindInterface);
     QMetaObject::invokeMethod(
         this,
-        [this, mine, answer = std::move(answer)] {
-          {
-            const std::lock_guard lock(mutex_);
-            if (mine != newest_) return;
-          }
-          answer();
+        [this, mine, answer = job()] {
+          if (mine == newest_) answer();
         },
         Qt::QueuedConnection);
-  }
+  });
 }
 
 void LongWork::Control::progress(double share, const QString& what) {
@@ -141,10 +108,7 @@ WorkStrip::WorkStrip(LongWork& work, QWidget* parent)
       appear_(new QTimer(this)) {
   bar_->setRange(0, 100);
   bar_->setAccessibleName("Progress of the work");
-  auto* layout = parts::bare<QHBoxLayout>(this);
-  layout->addWidget(text_, 1);
-  layout->addWidget(bar_, 1);
-  layout->addWidget(cancel_);
+  setLayout(parts::bare(parts::row({{text_, 1}, {bar_, 1}, cancel_})));
   hide();
   appear_->setSingleShot(true);
   connect(appear_, &QTimer::timeout, this, &QWidget::show);

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <atomic>
-#include <condition_variable>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -11,7 +10,11 @@
 #include <QString>
 #include <QThreadPool>
 #include <QWidget>
-#include <thread>
+
+class QLabel;
+class QProgressBar;
+class QPushButton;
+class QTimer;
 
 namespace calot::gui {
 
@@ -23,21 +26,16 @@ class Background : public QObject {
   using Completion = std::function<void()>;  ///< called on the object's thread
   using Job = std::function<Completion()>;   ///< called on the background's thread; must not throw
 
-  explicit Background(QObject* parent = nullptr);
+  explicit Background(QObject* parent = nullptr) : QObject(parent) { thread_.setMaxThreadCount(1); }
   /// Waits for the job that is being done; its answer is dropped.
-  ~Background() override = default;
+  ~Background() override { forget(); }
   void run(Job job);
   /// Drops the job that waits and the answer of the one that is being done.
-  void forget();
+  void forget() { ++newest_; }
 
  private:
-  void loop(const std::stop_token& stop);
-
-  std::mutex mutex_;
-  std::condition_variable_any wake_;
-  Job next_;
-  quint64 newest_ = 0;   ///< number of the newest job; changed on the object's thread
-  std::jthread thread_;  // last: it uses what is above
+  std::atomic<quint64> newest_ = 0;  ///< number of the newest job; changed on the object's thread
+  QThreadPool thread_;               // last: it uses what is above
 };
 
 /// The way back from another thread to an object of the interface that may be gone by then, or no longer interested.
@@ -136,15 +134,6 @@ class LongWork : public QObject {
 
 /// "12 s", "about 2 min": what is left, or nothing where it is not known.
 [[nodiscard]] QString leftText(double seconds);
-
-}  // namespace calot::gui
-
-class QLabel;
-class QProgressBar;
-class QPushButton;
-class QTimer;
-
-namespace calot::gui {
 
 /// How long work goes: what is being done, how far, what is left, and a button that breaks it off. Hidden in between.
 class WorkStrip : public QWidget {

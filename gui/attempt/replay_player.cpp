@@ -7,11 +7,11 @@
 #include <cmath>
 #include <exception>
 
-#include "gui/attempt/attempt_recording.h"
 #include "gui/view/thread_rank.h"
 #include "gui/words/problem_words.h"
 #include "recorder/base/errors.h"
-#include "recorder/replay.h"
+#include "recorder/kept/engine_folders.h"
+#include "recorder/recorded_results.h"
 #include "sim/scene/version.h"
 
 namespace calot::gui {
@@ -25,6 +25,64 @@ constexpr double whileSeeking = 0.25;  // s between pictures on a long way
 constexpr double firstGuess = 0.005;   // s a step, before any was measured
 
 double secondsSince(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
+
+std::optional<std::uint64_t> keyframeAtOrBefore(const ReplayReach& reach, std::uint64_t step) {
+  const auto after = std::upper_bound(reach.keyframes.begin(), reach.keyframes.end(), step);
+  if (after == reach.keyframes.begin()) return std::nullopt;
+  return *(after - 1);
+}
+
+/// From where the way to a step is shortest: here, a keyframe, or none for the attempt's start.
+std::optional<std::uint64_t> bestStart(const ReplayReach& reach, std::uint64_t step) {
+  const auto keyframe = keyframeAtOrBefore(reach, step);
+  if (reach.step && *reach.step <= step && (!keyframe || *keyframe <= *reach.step)) return reach.step;
+  return keyframe;
+}
+
+std::string withHand(std::string text, const Event& event) {
+  if (event.hand < handCount) text += fmt::format(" ({} hand)", handNames[event.hand]);
+  return text;
+}
+
+/// Largest force and the way of each hand, bin by bin.
+class Tracer {
+ public:
+  Tracer(AttemptTrack& track, std::uint64_t stepsPerBin, double stepSeconds)
+      : track_(track), stepsPerBin_(stepsPerBin), stepSeconds_(stepSeconds) {}
+
+  void add(const recorder::RecordedStep& step) {
+    for (std::size_t h = 0; h < handCount; ++h) {
+      for (const recorder::TickOutcome& tick : step.ticks) force_[h] = std::max(force_[h], tick.hand[h].force.norm());
+      const Vec3& tip = step.result.hand[h].tipReal;
+      const InstrumentKind now = step.result.hand[h].instrument;
+      // Another instrument, or one that was not there, is no movement.
+      if (any_ && now != InstrumentKind::none && now == instrument_[h]) way_[h] += (tip - tip_[h]).norm();
+      tip_[h] = tip;
+      instrument_[h] = now;
+    }
+    any_ = true;
+    if (++steps_ == stepsPerBin_) finishBin();
+  }
+  void finishBin() {
+    if (steps_ == 0) return;
+    for (std::size_t h = 0; h < handCount; ++h) {
+      track_.hand[h].force.push_back(force_[h]);
+      track_.hand[h].speed.push_back(way_[h] / (static_cast<double>(steps_) * stepSeconds_));
+    }
+    force_.fill(0.0);
+    way_.fill(0.0);
+    steps_ = 0;
+  }
+
+ private:
+  AttemptTrack& track_;
+  std::uint64_t stepsPerBin_, steps_ = 0;
+  double stepSeconds_;
+  bool any_ = false;
+  std::array<double, handCount> force_{}, way_{};
+  std::array<Vec3, handCount> tip_{Vec3::Zero(), Vec3::Zero()};
+  std::array<InstrumentKind, handCount> instrument_{};
+};
 
 }  // namespace
 
@@ -63,10 +121,6 @@ class ReplayPlayer::Run {
     const double budget = std::max(1.0, stepsShare / stepCost_);
     return {done_, recording_.keyframeSteps(), static_cast<std::uint64_t>(std::min(budget, 1e6))};
   }
-  [[nodiscard]] std::uint64_t stepAt(double time) const {
-    const double n = std::clamp(std::floor(time / stepSeconds_ + 1e-6), 0.0, static_cast<double>(position_.steps - 1));
-    return static_cast<std::uint64_t>(n);
-  }
   [[nodiscard]] bool newerWish() const {
     const std::lock_guard lock(player_.mutex_);
     return player_.wish_.number != seen_;
@@ -75,10 +129,7 @@ class ReplayPlayer::Run {
   void goTo(std::uint64_t step) {
     const std::uint64_t steps = stepsTo(reach(), step);
     const auto begin = Clock::now();
-    seeker_.seek(step);
-    if (const auto& differs = seeker_.differsFrom())
-      throw Error(ErrorKind::refused, Where{recording_.path().filename().string()},
-                  fmt::format("diverged at step {}: from there on another operation would be shown", *differs));
+    seekAsRecorded(seeker_, recording_, step);
     done_ = step;
     if (steps > 0) stepCost_ += 0.2 * (secondsSince(begin) / static_cast<double>(steps) - stepCost_);
   }
@@ -96,7 +147,7 @@ class ReplayPlayer::Run {
     position_.playing = wish.playing;
     position_.speed = wish.speed;
     std::uint64_t target = goal_.value_or(*done_);
-    if (wish.time) target = stepAt(*wish.time);
+    if (wish.time) target = stepAt(recording_, *wish.time);
     if (wish.steps != 0) {
       const auto last = static_cast<std::int64_t>(position_.steps) - 1;
       target =
@@ -211,22 +262,18 @@ void ReplayPlayer::run() {
   }
 }
 
-namespace {
-
-std::optional<std::uint64_t> keyframeAtOrBefore(const ReplayReach& reach, std::uint64_t step) {
-  const auto after = std::upper_bound(reach.keyframes.begin(), reach.keyframes.end(), step);
-  if (after == reach.keyframes.begin()) return std::nullopt;
-  return *(after - 1);
+std::uint64_t stepAt(const recorder::Recording& recording, double time) {
+  const auto steps = static_cast<double>(recording.stepCount());
+  const double n = std::clamp(std::floor(time / (recording.seconds() / steps) + 1e-6), 0.0, steps - 1.0);
+  return static_cast<std::uint64_t>(n);
 }
 
-/// From where the way to a step is shortest: here, a keyframe, or none for the attempt's start.
-std::optional<std::uint64_t> bestStart(const ReplayReach& reach, std::uint64_t step) {
-  const auto keyframe = keyframeAtOrBefore(reach, step);
-  if (reach.step && *reach.step <= step && (!keyframe || *keyframe <= *reach.step)) return reach.step;
-  return keyframe;
+void seekAsRecorded(recorder::Seeker& seeker, const recorder::Recording& recording, std::uint64_t step) {
+  seeker.seek(step);
+  if (const auto& differs = seeker.differsFrom())
+    throw Error(ErrorKind::refused, Where{recording.path().filename().string()},
+                fmt::format("diverged at step {}: from there on another operation would be shown", *differs));
 }
-
-}  // namespace
 
 std::uint64_t stepsTo(const ReplayReach& reach, std::uint64_t step) {
   const auto start = bestStart(reach, step);
@@ -244,6 +291,80 @@ std::uint64_t seekTowards(const ReplayReach& reach, std::uint64_t target) {
   const auto start = bestStart(reach, target);
   if (start && start != reach.step) return *start;
   return std::min(target, start ? *start + reach.budget : reach.budget - 1);
+}
+
+AttemptTrack readTrack(recorder::Recording& recording,
+                       const std::function<void(std::uint64_t, std::uint64_t)>& progress) {
+  AttemptTrack track;
+  track.seconds = recording.seconds();
+  const recorder::AttemptHeader& header = recording.header();
+  if (header.purpose == "golden") {
+    track.none =
+        "A golden recording holds no results of its steps: there is no timeline. The replay shows it all the same.";
+    return track;
+  }
+  const std::uint64_t steps = recording.stepCount();
+  const double stepSeconds = header.tickSeconds * static_cast<double>(header.ticksPerStep);
+  const std::uint64_t stepsPerBin = std::max<std::uint64_t>(1, (steps + maxBins - 1) / maxBins);
+  track.bin = static_cast<double>(stepsPerBin) * stepSeconds;
+  const SubjectNames names{header.structures(), {}};
+  recorder::RecordedJudge judge(header);
+  Tracer tracer(track, stepsPerBin, stepSeconds);
+  for (std::uint64_t n = 0; n < steps; ++n) {
+    const recorder::RecordedStep& step = recording.step(n);
+    const double end = static_cast<double>(n + 1) * stepSeconds;
+    tracer.add(step);
+    const Judgement& judgement = judge.observe(step);
+    const Phase phase = judgement.phase;
+    if (track.phases.empty() || track.phases.back().phase != phase)
+      track.phases.push_back({phase, static_cast<double>(n) * stepSeconds, end});
+    track.phases.back().end = end;
+    for (const Event& event : judgement.events) {
+      const EventWords* const words = wordsOf(event.kind);
+      if (words != nullptr)
+        track.events.push_back({end, event.kind, withHand(textOf(event, names), event), words->fault});
+    }
+    if (progress && (n % 100 == 99 || n + 1 == steps)) progress(n + 1, steps);
+  }
+  tracer.finishBin();
+  if (track.phases.size() == 1 && track.phases[0].phase == Phase::none) track.phases.clear();
+  return track;
+}
+
+namespace fs = std::filesystem;
+
+fs::path findRecording(const analytics::AttemptRow& attempt, const fs::path& database,
+                       const std::vector<fs::path>& folders) {
+  // The name comes from a database that anyone may have made: it names a file, never a folder.
+  const fs::path name = fs::path(attempt.fileName).filename();
+  if (name.empty() || name.extension() != ".h5") return {};
+  std::vector<fs::path> places{database.parent_path()};
+  places.insert(places.end(), folders.begin(), folders.end());
+  for (const fs::path& place : places) {
+    std::error_code ignored;
+    if (fs::is_regular_file(place / name, ignored)) return place / name;
+  }
+  return {};
+}
+
+recorder::Recording openRecording(const fs::path& file, const std::string& attempt) {
+  const recorder::ChainVerdict chain = recorder::probe(file);
+  recorder::Recording recording(file);
+  const std::string name = file.filename().string();
+  const std::string& found = recording.header().attempt;
+  if (!attempt.empty() && found != attempt)
+    throw Error(ErrorKind::refused, Where{name},
+                fmt::format("is the recording of attempt {}, not of {}", found, attempt));
+  if (!chain.intact)
+    throw Error(ErrorKind::refused, Where{name}, fmt::format("its content chain is broken ({})", chain.what));
+  if (recording.stepCount() == 0) throw Error(ErrorKind::damaged, Where{name}, "holds no step to show");
+  const std::uint32_t version = recording.header().simulationVersion;
+  if (version != simulationVersion && recorder::commandOfEngine(version).empty())
+    throw Error(ErrorKind::undecided, Where{name},
+                fmt::format("was made by simulation version {}; this program has version {}, and no engine of version "
+                            "{} is installed to repeat it",
+                            version, simulationVersion, version));
+  return recording;
 }
 
 }  // namespace calot::gui

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Decides what a replay shows next, apart from the thread that carries it out.
+// The recording behind an attempt: where it lies, its course over time, and its replay. Knows no window.
 #pragma once
 
+#include <array>
 #include <condition_variable>
 #include <cstdint>
 #include <filesystem>
@@ -12,7 +13,13 @@
 #include <span>
 #include <string>
 #include <thread>
+#include <vector>
 
+#include "analytics/cohort/cohort_database.h"
+#include "gui/words/event_words.h"
+#include "recorder/recording/probe.h"
+#include "recorder/recording/reader.h"
+#include "recorder/replay.h"
 #include "sim/scene/scene_view.h"
 
 namespace calot::gui {
@@ -55,8 +62,6 @@ class ReplayPlayer {
   ReplayPlayer(std::filesystem::path file, std::string attempt, Receiver receiver);
   /// Waits for the step that is being computed.
   ~ReplayPlayer();
-  ReplayPlayer(const ReplayPlayer&) = delete;
-  ReplayPlayer& operator=(const ReplayPlayer&) = delete;
 
   /// Any thread; returns at once. What is asked for before the file is open is done then. A newer wish replaces one
   /// that is not reached yet.
@@ -107,5 +112,58 @@ std::uint64_t stepsTo(const ReplayReach& reach, std::uint64_t step);
 /// On the way to a moment that was asked for: the nearest keyframe where that is better than going on from here, then
 /// forward by the budget.
 std::uint64_t seekTowards(const ReplayReach& reach, std::uint64_t target);
+
+/// A stretch of one phase; phases may recur.
+struct TrackPhase {
+  Phase phase = Phase::none;
+  double begin = 0.0, end = 0.0;  ///< s
+};
+
+/// An event that has words (event_words.h).
+struct TrackEvent {
+  double time = 0.0;  ///< end of its step (s)
+  EventKind kind = EventKind::clipSet;
+  std::string text;    ///< "cystic duct: clip set (right hand)"
+  bool error = false;  ///< EventWords::fault
+};
+
+/// One hand's values over bins of equal length.
+struct HandTrace {
+  std::vector<double> force;  ///< largest force on the hand within the bin (N)
+  std::vector<double> speed;  ///< way of the real tip within the bin, over its length (m/s)
+};
+
+struct AttemptTrack {
+  double seconds = 0.0;
+  double bin = 0.0;  ///< length of a trace's bin (s); the last one may be shorter
+  std::array<HandTrace, handCount> hand;
+  std::vector<TrackPhase> phases;
+  std::vector<TrackEvent> events;
+  std::string none;  ///< why there are no phases, events and traces, or empty
+};
+
+inline constexpr std::uint64_t maxBins = 1500;  ///< of a trace: more than a screen has columns for it
+
+/// Reads the whole recording. @param progress steps done, of all; may throw to break off
+/// @throws Error (damaged)
+AttemptTrack readTrack(recorder::Recording& recording,
+                       const std::function<void(std::uint64_t, std::uint64_t)>& progress = {});
+
+/// The step that a moment (s since the attempt's start, clamped) lies in. @pre the recording has a step
+[[nodiscard]] std::uint64_t stepAt(const recorder::Recording& recording, double time);
+
+/// Makes a step the seeker's last one. @throws Error (refused) where another operation than the recorded one came
+void seekAsRecorded(recorder::Seeker& seeker, const recorder::Recording& recording, std::uint64_t step);
+
+/// The file of this name beside the database, or in one of the folders, in their order; empty where there is none.
+std::filesystem::path findRecording(const analytics::AttemptRow& attempt, const std::filesystem::path& database,
+                                    const std::vector<std::filesystem::path>& folders);
+
+/// Opens a recording to be shown. A child process reads all of it first, so that a file that breaks the reading library
+/// takes no window with it.
+/// @param attempt uuid that it must have; empty: any
+/// @throws Error as recorder::probe(); (refused) for another attempt's recording or a broken content chain; (damaged)
+/// without any step; (undecided) for one of another simulation version, which this program cannot simulate.
+recorder::Recording openRecording(const std::filesystem::path& file, const std::string& attempt);
 
 }  // namespace calot::gui

@@ -2,19 +2,14 @@
 #include "gui/attempt/replay_transport.h"
 
 #include <array>
-#include <QBoxLayout>
 #include <QComboBox>
-#include <QLabel>
 #include <QLocale>
 #include <QMetaObject>
 #include <QSignalBlocker>
 #include <QSlider>
-#include <QStyle>
 #include <QToolButton>
 #include <utility>
 
-#include "gui/attempt/attempt_recording.h"
-#include "gui/attempt/theme.h"
 #include "gui/attempt/widget_parts.h"
 
 namespace calot::gui {
@@ -73,42 +68,44 @@ void Replay::take(const Back& back) {
   emit positionChanged();
 }
 
-namespace {
+QToolButton* transportButton(const char* name, const char* what, QStyle::StandardPixmap picture) {
+  auto* const made = parts::named(name, new QToolButton);
+  made->setAccessibleName(what);
+  made->setToolTip(what);
+  made->setIcon(theme::buttonIcon(picture));
+  made->setFocusPolicy(Qt::TabFocus);
+  return made;
+}
 
-constexpr std::array speeds{0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0};
-constexpr int scrubSteps = 10000;
-static_assert(speeds.front() == slowestReplay && speeds.back() == fastestReplay);
+QSlider* scrubBar(const char* name, const char* spokenName) {
+  auto* const made = parts::named(name, new QSlider(Qt::Horizontal));
+  made->setAccessibleName(spokenName);
+  made->setRange(0, scrubSteps);
+  return made;
+}
 
-}  // namespace
+QComboBox* speedChoice(const char* name, const char* spokenName) {
+  constexpr std::array speeds{0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0};
+  static_assert(speeds.front() == slowestReplay && speeds.back() == fastestReplay);
+  auto* const made = parts::named(name, new QComboBox);
+  made->setAccessibleName(spokenName);
+  for (const double speed : speeds) made->addItem(QLocale().toString(speed, 'g', 3) + QString::fromUtf8(" ×"), speed);
+  made->setCurrentIndex(3);
+  return made;
+}
 
-TransportBar::TransportBar(Replay& replay, QWidget* parent) : QWidget(parent), replay_(replay) {
-  auto* layout = parts::bare<QHBoxLayout>(this);
-  const auto button = [&](const char* name, const char* what, QStyle::StandardPixmap icon) {
-    auto* made = parts::named(name, new QToolButton);
-    made->setAccessibleName(what);
-    made->setToolTip(what);
-    made->setIcon(theme::buttonIcon(icon));
-    made->setFocusPolicy(Qt::TabFocus);
-    layout->addWidget(made);
-    return made;
-  };
-  back_ = button("step-back", "One step back (,)", QStyle::SP_MediaSkipBackward);
-  play_ = button("play", "Play or pause (Space)", QStyle::SP_MediaPlay);
-  forward_ = button("step-forward", "One step forward (.)", QStyle::SP_MediaSkipForward);
+TransportBar::TransportBar(Replay& replay, QWidget* parent)
+    : QWidget(parent),
+      replay_(replay),
+      play_(transportButton("play", "Play or pause (Space)", QStyle::SP_MediaPlay)),
+      back_(transportButton("step-back", "One step back (,)", QStyle::SP_MediaSkipBackward)),
+      forward_(transportButton("step-forward", "One step forward (.)", QStyle::SP_MediaSkipForward)),
+      scrub_(scrubBar("scrub", "Moment of the replay")),
+      speed_(speedChoice("speed", "Speed of the replay")),
+      time_(parts::plainLabel("replay-time", false)) {
   back_->setAutoRepeat(true);
   forward_->setAutoRepeat(true);
-  scrub_ = parts::named("scrub", new QSlider(Qt::Horizontal));
-  scrub_->setAccessibleName("Moment of the replay");
-  scrub_->setRange(0, scrubSteps);
-  layout->addWidget(scrub_, 1);
-  time_ = parts::plainLabel("replay-time", false);
-  layout->addWidget(time_);
-  speed_ = parts::named("speed", new QComboBox);
-  speed_->setAccessibleName("Speed of the replay");
-  for (const double speed : speeds) speed_->addItem(QLocale().toString(speed, 'g', 3) + QString::fromUtf8(" ×"), speed);
-  speed_->setCurrentIndex(3);
-  layout->addWidget(speed_);
-
+  setLayout(parts::bare(parts::row({back_, play_, forward_, {scrub_, 1}, time_, speed_})));
   connect(play_, &QToolButton::clicked, this, [this] { replay_.togglePlaying(); });
   connect(back_, &QToolButton::clicked, this, [this] { replay_.stepBy(-1); });
   connect(forward_, &QToolButton::clicked, this, [this] { replay_.stepBy(1); });
@@ -124,8 +121,7 @@ TransportBar::TransportBar(Replay& replay, QWidget* parent) : QWidget(parent), r
 }
 
 void TransportBar::setReady(bool ready) {
-  for (QWidget* widget : {static_cast<QWidget*>(play_), static_cast<QWidget*>(back_), static_cast<QWidget*>(forward_),
-                          static_cast<QWidget*>(scrub_), static_cast<QWidget*>(speed_)})
+  for (QWidget* widget : std::initializer_list<QWidget*>{play_, back_, forward_, scrub_, speed_})
     widget->setEnabled(ready);
   if (!ready) time_->setText("–:––");
 }

@@ -7,10 +7,16 @@
 #include <mutex>
 #include <optional>
 #include <QObject>
+#include <QStyle>
 #include <QWidget>
 
 #include "gui/attempt/long_work.h"
 #include "gui/attempt/replay_player.h"
+
+class QComboBox;
+class QLabel;
+class QSlider;
+class QToolButton;
 
 namespace calot::gui {
 
@@ -63,14 +69,13 @@ class Replay : public QObject {
   std::unique_ptr<ReplayPlayer> player_;
 };
 
-}  // namespace calot::gui
-
-class QComboBox;
-class QLabel;
-class QSlider;
-class QToolButton;
-
-namespace calot::gui {
+/// A button of a replay, for Tab and the mouse.
+QToolButton* transportButton(const char* name, const char* what, QStyle::StandardPixmap picture);
+/// Position of a replay, from 0 to scrubSteps.
+QSlider* scrubBar(const char* name, const char* spokenName);
+inline constexpr int scrubSteps = 10000;
+/// Speed of a replay, times real time, as the entries' data.
+QComboBox* speedChoice(const char* name, const char* spokenName);
 
 /// Buttons of a replay: play and pause, single steps, scrub, speed, and where it stands.
 class TransportBar : public QWidget {

@@ -1,22 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "gui/dashboard/attempt_page.h"
 
-#include <chrono>
-#include <cmath>
-#include <condition_variable>
-#include <mutex>
 #include <QFileDialog>
 #include <QFileInfo>
 #include <QSaveFile>
 
 #include "analytics/checkpoints/checkpoint.h"
-#include "analytics/cohort/check.h"
+#include "analytics/cohort/cohort_database.h"
 #include "analytics/report/grade_sheet.h"
 #include "gui/attempt/figure_text.h"
 #include "gui/attempt/replay_player.h"
-#include "gui/attempt/summary_panel.h"
+#include "gui/dashboard/dialogs.h"
 #include "gui/dashboard/figure_panel.h"
-#include "gui/dashboard/settings.h"
 #include "gui/render/renderer.h"
 #include "gui/report/pdf_report.h"
 #include "recorder/base/errors.h"
@@ -71,52 +66,6 @@ QString writeFile(const std::filesystem::path& file, const std::string& bytes) {
   return "Written: " + name;
 }
 
-/// Waits for the moments that a player reaches, one after the other.
-class MomentCatcher {
- public:
-  MomentCatcher(const std::filesystem::path& file, const std::string& attempt)
-      : player_(file, attempt,
-                {[this](auto view, const PlayerPosition& at) { take(std::move(view), at); },
-                 [this](const std::string& reason) { fail(reason); }}) {}
-  std::shared_ptr<const SceneView> at(double time, const LongWork::Control& control) {
-    {
-      const std::lock_guard lock(mutex_);
-      view_.reset();
-      wanted_ = time;
-    }
-    player_.ask({.time = time});
-    std::unique_lock lock(mutex_);
-    while (!view_) {
-      wake_.wait_for(lock, std::chrono::milliseconds(50));
-      if (control.broken()) throw LongWork::Broken{};
-      if (!fault_.empty()) throw Error(ErrorKind::failure, fault_);
-    }
-    return view_;
-  }
-
- private:
-  void take(std::shared_ptr<const SceneView> view, const PlayerPosition& at) {
-    const std::lock_guard lock(mutex_);
-    const double wanted = std::min(wanted_, at.seconds);
-    constexpr double step = 0.021;  // s
-    if (!at.settled || std::abs(at.time - wanted) > step) return;
-    view_ = std::move(view);
-    wake_.notify_one();
-  }
-  void fail(const std::string& reason) {
-    const std::lock_guard lock(mutex_);
-    fault_ = reason;
-    wake_.notify_one();
-  }
-
-  std::mutex mutex_;
-  std::condition_variable wake_;
-  double wanted_ = -1.0;
-  std::shared_ptr<const SceneView> view_;
-  std::string fault_;
-  ReplayPlayer player_;  // last: its thread uses what is above
-};
-
 /// The attempt on one page: verdict, critical view, errors, key figures, what went wrong and when.
 analytics::ReportDocument attemptDocument(const SheetRequest& request) {
   const analytics::AttemptRow& attempt = request.attempt;
@@ -148,15 +97,16 @@ analytics::ReportDocument attemptDocument(const SheetRequest& request) {
 std::vector<CaptionedPicture> picturesOf(const SheetRequest& request, LongWork::Control& control) {
   std::vector<CaptionedPicture> pictures;
   if (request.recording.empty() || request.moments.empty()) return pictures;
-  MomentCatcher catcher(request.recording, request.attempt.uuid);
+  recorder::Recording recording = openRecording(request.recording, request.attempt.uuid);
+  recorder::Seeker seeker(recording);
   Renderer renderer;
   for (const WorstMoment& moment : request.moments) {
     const std::size_t done = pictures.size(), all = request.moments.size();
     control.progress(0.1 + 0.8 * static_cast<double>(done) / static_cast<double>(all),
                      QString("Picture %1 of %2").arg(done + 1).arg(all));
-    pictures.push_back(
-        {renderer.render(*catcher.at(moment.time, control), pictureWidth, pictureHeight, Quality::interactive),
-         timeText(moment.time) + "  " + moment.caption});
+    seekAsRecorded(seeker, recording, stepAt(recording, moment.time));
+    pictures.push_back({renderer.render(seeker.view(), pictureWidth, pictureHeight, Quality::interactive),
+                        timeText(moment.time) + "  " + moment.caption});
   }
   return pictures;
 }
@@ -177,8 +127,7 @@ QString writeGradeSheet(const SheetRequest& request, LongWork::Control& control)
   analytics::refuseUnsound(request.database);
   control.progress(0.05, "Reading the cohort");
   const analytics::CohortDatabase cohort(request.database, analytics::CohortDatabase::Access::read);
-  const analytics::Norm norm = analytics::AssessmentDatabase(request.database, analytics::CohortDatabase::Access::read)
-                                   .norm(request.norm, request.normVersion);
+  const analytics::Norm norm = cohort.norm(request.norm, request.normVersion);
   analytics::Grade grade = analytics::gradeAttempt(request.attempt, cohort.listAttempts(), cohort.allValues(), norm,
                                                    false, request.database);
   const auto weak = analytics::weakFigures(grade);
@@ -211,18 +160,12 @@ AttemptPage::AttemptPage(QWidget* parent)
       force_(new TraceChart("force-trace", "Force on the hand (N): left solid, right dashed")),
       speed_(new TraceChart("speed-trace", "Speed of the tip (mm/s)")) {
   static_cast<QBoxLayout*>(recording_->layout())->insertWidget(1, find_, 0, Qt::AlignHCenter);
-  auto* traces = new QWidget;
-  auto* traceLayout = parts::bare<QVBoxLayout>(traces);
-  traceLayout->setSpacing(2);
-  for (QWidget* row : std::initializer_list<QWidget*>{&recording_->timeline(), force_, speed_})
-    traceLayout->addWidget(row);
+  QBoxLayout* const traces = parts::column({&recording_->timeline(), force_, speed_});
+  traces->setSpacing(2);
   QSplitter* upper = makeSplitter(Qt::Horizontal, {{figures_, 3}, {recording_, 2}});
   upper->setSizes({720, 520});
-  auto* layout = new QVBoxLayout(this);
-  layout->addWidget(banner_);
-  layout->addWidget(summary_);
-  layout->addWidget(makeSplitter(Qt::Vertical, {{upper, 1}, {traces, 0}}), 1);
-  layout->addWidget(strip_);
+  QSplitter* const all = makeSplitter(Qt::Vertical, {{upper, 1}, {parts::boxed(traces), 0}});
+  setLayout(parts::column({banner_, summary_, {all, 1}, strip_}));
   begin_ = figures_->findChild<QWidget*>("attempt-checkpoints");
   connectParts();
   clear();

@@ -8,7 +8,7 @@
 #include <QMenu>
 
 #include "gui/attempt/figure_text.h"
-#include "gui/dashboard/settings.h"
+#include "gui/dashboard/dialogs.h"
 
 namespace calot::gui {
 
@@ -89,20 +89,22 @@ constexpr std::array verdicts{Verdict::verified, Verdict::diverged, Verdict::dam
 
 }  // namespace
 
-AttemptsPage::AttemptsPage(QWidget* parent) : CohortPage(parent) {
+AttemptsPage::AttemptsPage(QWidget* parent)
+    : CohortPage(parent),
+      search_(parts::named("search", new QLineEdit)),
+      verdict_(parts::named("verdict", new QComboBox)),
+      operators_(parts::named("operators", new QComboBox)),
+      tag_(parts::choice("tag", 8)),
+      count_(parts::named("count", new QLabel)),
+      table_(makeTable(filter_, "attempts", "Attempts")),
+      banner_(new AttemptBanner),
+      details_(makeTable(checkpoints_, "checkpoints", "Checkpoints of the selected attempt")) {
+  begin_ = table_;
   filter_.setSourceModel(&attempts_);
-  begin_ = table_ = makeTable(filter_, "attempts", "Attempts");
   table_->setSelectionMode(QAbstractItemView::ExtendedSelection);
   table_->setSortingEnabled(true);
   table_->sortByColumn(AttemptTableModel::startColumn, Qt::DescendingOrder);
   setWidths(*table_, {90, 180, 110, 130, 95, 130, 150, 150, 90});
-  auto* upper = new QWidget;
-  auto* upperLayout = parts::bare<QVBoxLayout>(upper);
-  upperLayout->addLayout(buildFilters());
-  upperLayout->addWidget(table_);
-
-  banner_ = new AttemptBanner;
-  details_ = makeTable(checkpoints_, "checkpoints", "Checkpoints of the selected attempt");
   setWidths(*details_, {330, 110, 170, 150, 0, 0, 140, 150, 110, 70});
   for (const int column :
        {CheckpointTableModel::intervalColumn, CheckpointTableModel::normColumn, CheckpointTableModel::momentColumn})
@@ -112,13 +114,9 @@ AttemptsPage::AttemptsPage(QWidget* parent) : CohortPage(parent) {
   details_->horizontalHeader()->setSectionResizeMode(CheckpointTableModel::windowColumn, QHeaderView::Stretch);
   wrapWords(*details_);
   details_->setToolTip("Double-click, or press Enter, to see when a figure came about");
-  auto* lower = new QWidget;
-  auto* lowerLayout = parts::bare<QVBoxLayout>(lower);
-  lowerLayout->addWidget(banner_);
-  lowerLayout->addWidget(details_);
-
-  auto* layout = new QVBoxLayout(this);
-  layout->addWidget(makeSplitter(Qt::Vertical, {{upper, 3}, {lower, 2}}));
+  QWidget* const upper = parts::boxed(parts::column({buildFilters(), table_}));
+  QWidget* const lower = parts::boxed(parts::column({banner_, details_}));
+  setLayout(parts::column({makeSplitter(Qt::Vertical, {{upper, 3}, {lower, 2}})}));
 
   connect(table_->selectionModel(), &QItemSelectionModel::currentRowChanged, this, [this] { showSelected(); });
   connect(table_->selectionModel(), &QItemSelectionModel::selectionChanged, this, [this] { showCount(); });
@@ -131,25 +129,22 @@ AttemptsPage::AttemptsPage(QWidget* parent) : CohortPage(parent) {
 }
 
 QLayout* AttemptsPage::buildFilters() {
-  auto* row = new QHBoxLayout;
-  search_ = parts::labelled(*row, "&Search", parts::named("search", new QLineEdit), 1);
   search_->setAccessibleName("Search attempts");
   search_->setPlaceholderText("Search (Ctrl+F): participant, profile, group, scene, date …");
   search_->setClearButtonEnabled(true);
-  verdict_ = parts::labelled(*row, "Verifi&cation", parts::named("verdict", new QComboBox));
   verdict_->addItem("All verdicts");
   for (const Verdict verdict : verdicts) verdict_->addItem(badgeText(verdict));
-  operators_ = parts::labelled(*row, "&Made by", parts::named("operators", new QComboBox));
   operators_->addItems({"People and synthetic", "Not synthetic", "Synthetic only"});
-  tag_ = parts::labelled(*row, "&Tag", parts::choice("tag", 8));
   tag_->setToolTip("Tags are put on attempts by the menu Edit, or by calot attempt tag");
-  count_ = parts::named("count", new QLabel);
-  row->addWidget(count_);
-  row->addWidget(buildColumns());
   connect(search_, &QLineEdit::textChanged, this, [this] { filter(); });
   for (QComboBox* choice : {verdict_, operators_, tag_})
     connect(choice, &QComboBox::currentIndexChanged, this, [this] { filter(); });
-  return row;
+  return parts::row({{"&Search", search_, 1},
+                     {"Verifi&cation", verdict_},
+                     {"&Made by", operators_},
+                     {"&Tag", tag_},
+                     count_,
+                     buildColumns()});
 }
 
 QWidget* AttemptsPage::buildColumns() {
@@ -277,8 +272,8 @@ void AttemptsPage::showSelected() {
   } else {
     banner_->showAttempt(*row);
     tryTo([&] {
-      values = document_->values(row->uuid);
-      intervals = document_->intervals(row->uuid);
+      values = document_->database().values(row->uuid);
+      intervals = document_->database().intervals(row->uuid);
     });
   }
   details_->setColumnHidden(CheckpointTableModel::intervalColumn, intervals.empty());

@@ -97,14 +97,12 @@ class AttemptsPage : public CohortPage {
   AttemptTableModel attempts_;
   AttemptFilter filter_;
   CheckpointTableModel checkpoints_;
-  QLineEdit* search_ = nullptr;
-  QComboBox* verdict_ = nullptr;
-  QComboBox* operators_ = nullptr;
-  QComboBox* tag_ = nullptr;
-  QLabel* count_ = nullptr;
-  QTableView* table_ = nullptr;
-  AttemptBanner* banner_ = nullptr;
-  QTableView* details_ = nullptr;
+  QLineEdit* search_;
+  QComboBox *verdict_, *operators_, *tag_;
+  QLabel* count_;
+  QTableView* table_;
+  AttemptBanner* banner_;
+  QTableView* details_;
 };
 
 }  // namespace calot::gui

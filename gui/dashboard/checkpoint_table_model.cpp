@@ -12,23 +12,11 @@
 #include <utility>
 
 #include "analytics/assessment/grade.h"
-#include "analytics/checkpoints/checkpoint.h"
-#include "gui/attempt/attempt_recording.h"
-#include "gui/attempt/figure_text.h"
-#include "gui/attempt/theme.h"
+#include "gui/attempt/widget_parts.h"
 #include "gui/words/event_words.h"
 
 namespace calot::gui {
 namespace {
-
-/// The entry of a list that is of this figure, or null.
-template <class Entry>
-const Entry* entryOf(const std::vector<Entry>& list, const analytics::CheckpointValue& value) {
-  const auto at = std::find_if(list.begin(), list.end(), [&](const Entry& e) {
-    return e.checkpoint == value.name && e.subject == value.subject;
-  });
-  return at == list.end() ? nullptr : &*at;
-}
 
 QString momentText(const analytics::Moment& moment) {
   return QString("%1 (%2 %)")
@@ -63,6 +51,66 @@ QString standingText(const FigureStanding& standing) {
   if (standing.undecided) text += QString::fromUtf8(" (undecided)");
   if (standing.percentile) text += QString(text.isEmpty() ? "P %1" : ", P %1").arg(std::lround(*standing.percentile));
   return text;
+}
+
+constexpr int barWidth = 120;
+
+void paintBand(QPainter& painter, const QRectF& box, const FigureStanding& standing) {
+  const FigureStanding::Band& band = *standing.band;
+  double low = band.p10, high = band.p90;
+  for (const auto& number : {standing.value, standing.cut}) {
+    if (!number) continue;
+    low = std::min(low, *number);
+    high = std::max(high, *number);
+  }
+  const double room = high > low ? 0.06 * (high - low) : 1.0;
+  low -= room;
+  high += room;
+  const auto x = [&](double number) { return box.left() + (number - low) / (high - low) * box.width(); };
+  const double middle = box.center().y();
+  const auto bar = [&](double from, double to, double half, const QColor& colour) {
+    painter.fillRect(QRectF(x(from), middle - half, std::max(1.0, x(to) - x(from)), 2.0 * half), colour);
+  };
+  bar(band.p10, band.p90, 3.0, theme::dark() ? QColor(0x2a, 0x4a, 0x60) : QColor(0xbf, 0xd9, 0xea));
+  bar(band.p25, band.p75, 5.0, theme::dark() ? QColor(0x3c, 0x70, 0x94) : QColor(0x7f, 0xb4, 0xd6));
+  painter.setPen(QPen(theme::text(), 1.5));
+  painter.drawLine(QPointF(x(band.p50), middle - 6.0), QPointF(x(band.p50), middle + 6.0));
+  if (standing.cut) {
+    painter.setPen(QPen(theme::text(), 1.0, Qt::DashLine));
+    painter.drawLine(QPointF(x(*standing.cut), box.top() + 1.0), QPointF(x(*standing.cut), box.bottom() - 1.0));
+  }
+  if (standing.value) {
+    const double at = x(*standing.value);
+    painter.setPen(QPen(theme::surface(), 1.0));
+    painter.setBrush(standing.passed.value_or(true) ? theme::first() : theme::second());
+    painter.drawPolygon(QPolygonF{
+        {QPointF(at - 5.0, middle), QPointF(at, middle - 6.0), QPointF(at + 5.0, middle), QPointF(at, middle + 6.0)}});
+  }
+}
+
+QList<QStandardItem*> line(const QString& what, const QString& time, const TrackEvent& event) {
+  auto* first = new QStandardItem(what);
+  auto* second = new QStandardItem(time);
+  for (QStandardItem* item : {first, second}) {
+    item->setEditable(false);
+    item->setData(event.time, eventSecondsRole);
+    if (event.error) item->setToolTip("Something that should not happen");
+  }
+  return {first, second};
+}
+
+/// Families in the order of tables, external metrics behind them.
+int rankOf(const analytics::CheckpointValue& value) {
+  const auto family = analytics::familyOf(value.name);
+  constexpr int afterAll = 1000;
+  return family && !value.metric ? static_cast<int>(*family) : afterAll;
+}
+
+QString familyTitle(const analytics::CheckpointValue& value) {
+  const auto family = analytics::familyOf(value.name);
+  QString title = family && !value.metric ? QString::fromStdString(analytics::nameOf(*family)) : "own metrics";
+  title[0] = title[0].toUpper();
+  return title;
 }
 
 }  // namespace
@@ -201,45 +249,6 @@ QVariant CheckpointTableModel::headerData(int section, Qt::Orientation orientati
   return QString(titles[section]);
 }
 
-namespace {
-
-constexpr int barWidth = 120;
-
-void paintBand(QPainter& painter, const QRectF& box, const FigureStanding& standing) {
-  const FigureStanding::Band& band = *standing.band;
-  double low = band.p10, high = band.p90;
-  for (const auto& number : {standing.value, standing.cut}) {
-    if (!number) continue;
-    low = std::min(low, *number);
-    high = std::max(high, *number);
-  }
-  const double room = high > low ? 0.06 * (high - low) : 1.0;
-  low -= room;
-  high += room;
-  const auto x = [&](double number) { return box.left() + (number - low) / (high - low) * box.width(); };
-  const double middle = box.center().y();
-  const auto bar = [&](double from, double to, double half, const QColor& colour) {
-    painter.fillRect(QRectF(x(from), middle - half, std::max(1.0, x(to) - x(from)), 2.0 * half), colour);
-  };
-  bar(band.p10, band.p90, 3.0, theme::dark() ? QColor(0x2a, 0x4a, 0x60) : QColor(0xbf, 0xd9, 0xea));
-  bar(band.p25, band.p75, 5.0, theme::dark() ? QColor(0x3c, 0x70, 0x94) : QColor(0x7f, 0xb4, 0xd6));
-  painter.setPen(QPen(theme::text(), 1.5));
-  painter.drawLine(QPointF(x(band.p50), middle - 6.0), QPointF(x(band.p50), middle + 6.0));
-  if (standing.cut) {
-    painter.setPen(QPen(theme::text(), 1.0, Qt::DashLine));
-    painter.drawLine(QPointF(x(*standing.cut), box.top() + 1.0), QPointF(x(*standing.cut), box.bottom() - 1.0));
-  }
-  if (standing.value) {
-    const double at = x(*standing.value);
-    painter.setPen(QPen(theme::surface(), 1.0));
-    painter.setBrush(standing.passed.value_or(true) ? theme::first() : theme::second());
-    painter.drawPolygon(QPolygonF{
-        {QPointF(at - 5.0, middle), QPointF(at, middle - 6.0), QPointF(at + 5.0, middle), QPointF(at, middle + 6.0)}});
-  }
-}
-
-}  // namespace
-
 void BandDelegate::paint(QPainter* painter, const QStyleOptionViewItem& option, const QModelIndex& index) const {
   const auto* standing =
       static_cast<const FigureStanding*>(index.data(CheckpointTableModel::standingRole).value<const void*>());
@@ -261,27 +270,9 @@ void BandDelegate::paint(QPainter* painter, const QStyleOptionViewItem& option, 
   painter->restore();
 }
 
-namespace {
-
-QList<QStandardItem*> line(const QString& what, const QString& time, const TrackEvent& event) {
-  auto* first = new QStandardItem(what);
-  auto* second = new QStandardItem(time);
-  for (QStandardItem* item : {first, second}) {
-    item->setEditable(false);
-    item->setData(event.time, EventTreeModel::secondsRole);
-    if (event.error) item->setToolTip("Something that should not happen");
-  }
-  return {first, second};
-}
-
-}  // namespace
-
-EventTreeModel::EventTreeModel(QObject* parent) : QStandardItemModel(parent) {
-  setHorizontalHeaderLabels({"Event", "Time"});
-}
-
-void EventTreeModel::setEvents(const std::vector<TrackEvent>& events) {
-  removeRows(0, rowCount());
+void listEvents(QStandardItemModel& tree, const std::vector<TrackEvent>& events) {
+  tree.setHorizontalHeaderLabels({"Event", "Time"});
+  tree.removeRows(0, tree.rowCount());
   std::vector<std::vector<const TrackEvent*>> groups;
   for (const TrackEvent& event : events) {
     const auto at = std::find_if(groups.begin(), groups.end(),
@@ -306,27 +297,9 @@ void EventTreeModel::setEvents(const std::vector<TrackEvent>& events) {
     for (const TrackEvent* event : group)
       head[0]->appendRow(
           line(QString::fromStdString(event->text), QString::fromStdString(timeText(event->time)), *event));
-    appendRow(head);
+    tree.appendRow(head);
   }
 }
-
-namespace {
-
-/// Families in the order of tables, external metrics behind them.
-int rankOf(const analytics::CheckpointValue& value) {
-  const auto family = analytics::familyOf(value.name);
-  constexpr int afterAll = 1000;
-  return family && !value.metric ? static_cast<int>(*family) : afterAll;
-}
-
-QString familyTitle(const analytics::CheckpointValue& value) {
-  const auto family = analytics::familyOf(value.name);
-  QString title = family && !value.metric ? QString::fromStdString(analytics::nameOf(*family)) : "own metrics";
-  title[0] = title[0].toUpper();
-  return title;
-}
-
-}  // namespace
 
 /// A family with its rank, or one of its checkpoints with its row in the source.
 class FamilyTreeModel::Entry : public QStandardItem {

@@ -10,8 +10,8 @@
 #include "analytics/assessment/moments.h"
 #include "analytics/checkpoints/checkpoint.h"
 #include "analytics/uncertainty/value_interval.h"
-#include "gui/attempt/attempt_recording.h"
-#include "gui/attempt/figure_standing.h"
+#include "gui/attempt/figure_text.h"
+#include "gui/attempt/replay_player.h"
 
 namespace calot::gui {
 
@@ -84,16 +84,10 @@ class BandDelegate : public QStyledItemDelegate {
   void paint(QPainter* painter, const QStyleOptionViewItem& option, const QModelIndex& index) const override;
 };
 
-/// The events of an attempt in groups of what happened, errors first; each says when, to what and by which hand.
-class EventTreeModel : public QStandardItemModel {
-  Q_OBJECT
- public:
-  enum Column { whatColumn, timeColumn, columnTotal };
-  enum Role { secondsRole = Qt::UserRole };  ///< double; of a group its first event's
-
-  explicit EventTreeModel(QObject* parent = nullptr);
-  void setEvents(const std::vector<TrackEvent>& events);
-};
+/// Puts the events of an attempt into a tree, in groups of what happened, errors first; each says when, to what and by
+/// which hand.
+void listEvents(QStandardItemModel& tree, const std::vector<TrackEvent>& events);
+inline constexpr int eventSecondsRole = Qt::UserRole;  ///< double; of a group its first event's
 
 /// The checkpoints of a table, folded by family and sorted within one. Leaves out what the scene has nothing for.
 class FamilyTreeModel : public QStandardItemModel {

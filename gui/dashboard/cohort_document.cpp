@@ -2,11 +2,9 @@
 #include "gui/dashboard/cohort_document.h"
 
 #include <algorithm>
-#include <atomic>
 #include <exception>
 #include <map>
 #include <numeric>
-#include <QMetaObject>
 #include <set>
 #include <utility>
 
@@ -133,28 +131,20 @@ const std::vector<analytics::Norm>& CohortDocument::norms() const {
   return *norms_;
 }
 
-CohortWriter::CohortWriter(QObject* parent) : QObject(parent), back_(std::make_shared<Link<CohortWriter>>(*this)) {
-  thread_.setMaxThreadCount(1);
-}
-
-CohortWriter::~CohortWriter() {
-  back_->cut();
-  thread_.waitForDone();
-}
-
 void CohortWriter::write(const std::string& database, Change change, std::function<void()> undone) {
-  thread_.start([back = back_, database, change = std::move(change), undone = std::move(undone)] {
+  thread_.start([this, database, change = std::move(change), undone = std::move(undone)] {
     const QString fault = faultOf([&] {
       analytics::CohortDatabase cohort(database, analytics::CohortDatabase::Access::write);
       change(cohort);
     });
     if (!fault.isEmpty()) undone();
-    Link<CohortWriter>::post(back, [fault](CohortWriter& writer) {
+    const auto report = [this, fault] {
       if (fault.isEmpty())
-        emit writer.written();
+        emit written();
       else
-        emit writer.failed(fault);
-    });
+        emit failed(fault);
+    };
+    QMetaObject::invokeMethod(this, report, Qt::QueuedConnection);
   });
 }
 

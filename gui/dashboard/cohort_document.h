@@ -13,7 +13,6 @@
 #include <string>
 #include <vector>
 
-#include "analytics/cohort/assessment_database.h"
 #include "analytics/cohort/cohort_database.h"
 #include "gui/attempt/long_work.h"
 #include "gui/dashboard/comparison.h"
@@ -92,24 +91,17 @@ class CohortDocument {
   [[nodiscard]] const std::vector<analytics::AttemptRow>& attempts() const { return lines_->attempts(); }
   /// The same, ready to be shown in a table.
   [[nodiscard]] const std::shared_ptr<const AttemptLines>& lines() const { return lines_; }
-  /// @throws calot::Error
-  [[nodiscard]] std::vector<analytics::CheckpointValue> values(const std::string& uuid) const {
-    return database_.values(uuid);
-  }
-  /// @throws calot::Error
-  [[nodiscard]] std::vector<analytics::ValueInterval> intervals(const std::string& uuid) const {
-    return database_.intervals(uuid);
-  }
+  /// For what is read attempt by attempt, on the interface's thread.
+  [[nodiscard]] const analytics::CohortDatabase& database() const { return database_; }
   /// All values, by figure; any thread, the first that asks reads them. @throws calot::Error
   [[nodiscard]] std::shared_ptr<const FigureValues> figureValues() const;
   [[nodiscard]] const analytics::AttemptRow* attempt(const std::string& uuid) const;  ///< or null
   /// Read when they are first asked for. @throws calot::Error
   [[nodiscard]] const std::vector<analytics::Norm>& norms() const;
   /// Protocols, participants and ratings as they are now. @throws calot::Error
-  [[nodiscard]] analytics::AssessmentDatabase assessment() const {
+  [[nodiscard]] analytics::CohortDatabase assessment() const {
     return {path(), analytics::CohortDatabase::Access::read};
   }
-  [[nodiscard]] std::vector<analytics::Participant> participants() const { return database_.participants(); }
 
  private:
   analytics::CohortDatabase database_;
@@ -120,15 +112,13 @@ class CohortDocument {
 };
 
 /// Writes what people decide into a cohort, one decision after the other, on a thread of its own: a disk may take its
-/// time, and another program may be writing.
+/// time, and another program may be writing. Its destructor waits until all is written.
 class CohortWriter : public QObject {
   Q_OBJECT
  public:
   using Change = std::function<void(analytics::CohortDatabase&)>;
 
-  explicit CohortWriter(QObject* parent = nullptr);
-  /// Waits until all is written.
-  ~CohortWriter() override;
+  explicit CohortWriter(QObject* parent = nullptr) : QObject(parent) { thread_.setMaxThreadCount(1); }
   /// Ends with written() or failed(). @param change throws calot::Error where it cannot be
   /// @param undone called on the writer's thread where nothing was written, before failed()
   void write(const std::string& database, Change change, std::function<void()> undone);
@@ -138,8 +128,7 @@ class CohortWriter : public QObject {
   void failed(const QString& reason);
 
  private:
-  std::shared_ptr<Link<CohortWriter>> back_;
-  QThreadPool thread_;  // last: it uses what is above
+  QThreadPool thread_;
 };
 
 }  // namespace calot::gui

@@ -10,7 +10,6 @@
 #include <unordered_map>
 
 #include "analytics/checkpoints/checkpoint.h"
-#include "analytics/report/plots.h"
 #include "gui/attempt/figure_text.h"
 
 namespace calot::gui {
@@ -54,6 +53,17 @@ Values valuesOf(const std::vector<AttemptValue>& values, const Figure& figure) {
 DisplayedValue scaleOf(CheckpointValue value) {
   value.value = 1.0;
   return displayedValue(value);
+}
+
+bool isOf(const AttemptRow& attempt, const Trainee& trainee) {
+  if (trainee.synthetic) return attempt.participant.empty() && attempt.profile == trainee.name;
+  return attempt.participant == trainee.name;
+}
+
+std::string whyNotShown(const AttemptRow& attempt) {
+  if (attempt.verification.verdict == analytics::Verdict::diverged) return "diverged";
+  if (attempt.verification.verdict == analytics::Verdict::damaged) return "damaged";
+  return attempt.complete ? "" : "incomplete";
 }
 
 }  // namespace
@@ -147,21 +157,6 @@ std::optional<analytics::Drawing> drawComparison(const Comparison& comparison, c
   };
   return analytics::drawBoxPlot(plot);
 }
-
-namespace {
-
-bool isOf(const AttemptRow& attempt, const Trainee& trainee) {
-  if (trainee.synthetic) return attempt.participant.empty() && attempt.profile == trainee.name;
-  return attempt.participant == trainee.name;
-}
-
-std::string whyNotShown(const AttemptRow& attempt) {
-  if (attempt.verification.verdict == analytics::Verdict::diverged) return "diverged";
-  if (attempt.verification.verdict == analytics::Verdict::damaged) return "damaged";
-  return attempt.complete ? "" : "incomplete";
-}
-
-}  // namespace
 
 std::vector<Trainee> traineesOf(const std::vector<AttemptRow>& attempts) {
   std::set<std::string> people, profiles;

@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "analytics/cohort/assessment_database.h"
 #include "analytics/cohort/cohort_database.h"
 #include "analytics/report/plots.h"
 #include "analytics/statistics/expected.h"

@@ -18,7 +18,7 @@
 #include <QUndoStack>
 #include <QUrl>
 
-#include "gui/attempt/attempt_recording.h"
+#include "gui/attempt/replay_player.h"
 #include "gui/dashboard/attempt_page.h"
 #include "gui/dashboard/attempts_page.h"
 #include "gui/dashboard/dialogs.h"
@@ -26,7 +26,6 @@
 #include "gui/dashboard/figures_page.h"
 #include "gui/dashboard/pair_page.h"
 #include "gui/dashboard/ratings_page.h"
-#include "gui/dashboard/settings.h"
 #include "gui/dashboard/study_page.h"
 #include "recorder/base/errors.h"
 
@@ -70,7 +69,7 @@ DashboardWindow::Opened DashboardWindow::openOrUpgrade(const std::string& path) 
 DashboardWindow::DashboardWindow(const AssessProgram& program, const std::vector<std::filesystem::path>& assetFolders,
                                  QWidget* parent)
     : QMainWindow(parent),
-      problem_(parts::plainLabel("problem")),
+      problem_(parts::selectableLabel("problem")),
       stack_(new QStackedWidget),
       greeting_(new GreetingPage(program)),
       tabs_(new QTabWidget),
@@ -86,7 +85,6 @@ DashboardWindow::DashboardWindow(const AssessProgram& program, const std::vector
   setWindowTitle("Calot");
   resize(theme::windowSizeFor(screen()->availableSize()));
   setAcceptDrops(true);
-  problem_->setTextInteractionFlags(Qt::TextSelectableByMouse | Qt::TextSelectableByKeyboard);
   theme::setGround(*problem_, QColor(0xfb, 0xe3, 0xd6), QColor(0x5a, 0x1e, 0x00));
   problem_->hide();
   for (const auto& [page, title] : std::initializer_list<std::pair<CohortPage*, const char*>>{{attempts_, "Attempts"},
@@ -103,9 +101,7 @@ DashboardWindow::DashboardWindow(const AssessProgram& program, const std::vector
   stack_->addWidget(greeting_);
   stack_->addWidget(tabs_);
   auto* centre = new QWidget;
-  auto* layout = new QVBoxLayout(centre);
-  layout->addWidget(problem_);
-  layout->addWidget(stack_, 1);
+  centre->setLayout(parts::column({problem_, {stack_, 1}}));
   setCentralWidget(centre);
   rating_->readForms(assetFolders);
   buildImport();

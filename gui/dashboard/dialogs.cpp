@@ -1,15 +1,25 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "gui/dashboard/dialogs.h"
 
+#include <algorithm>
 #include <QAction>
+#include <QComboBox>
+#include <QCoreApplication>
 #include <QDialogButtonBox>
+#include <QFileDialog>
 #include <QFormLayout>
+#include <QLabel>
+#include <QLineEdit>
+#include <QListWidget>
 #include <QMenu>
 #include <QMenuBar>
+#include <QPushButton>
+#include <QSettings>
 #include <QSpinBox>
+#include <QStandardPaths>
+#include <utility>
 
-#include "analytics/assessment/create_norm.h"
-#include "gui/dashboard/settings.h"
+#include "analytics/assessment/norm.h"
 
 namespace calot::gui {
 
@@ -46,9 +56,7 @@ void showKeys(const KeyList& keys, QWidget* parent) {
   }
   auto* close = new QDialogButtonBox(QDialogButtonBox::Close);
   QObject::connect(close, &QDialogButtonBox::rejected, &dialog, &QDialog::reject);
-  auto* layout = new QVBoxLayout(&dialog);
-  layout->addWidget(table, 1);
-  layout->addWidget(close);
+  dialog.setLayout(parts::column({{table, 1}, close}));
   dialog.resize(theme::inType(520), theme::inType(420));
   dialog.exec();
 }
@@ -59,6 +67,24 @@ constexpr const char* explanation =
     "A norm is what later attempts are graded against. These figures count: time, path lengths, critical view, clip "
     "errors, perforations and burns, as far as they have a pass mark. Other figures, raters' judgements and marks that "
     "a person sets: calot norm create.";
+
+constexpr int maxFolders = 20;
+constexpr const char* foldersKey = "recordings/folders";
+constexpr const char* programKey = "import/program";
+constexpr const char* threadsKey = "import/threads";
+constexpr const char* personKey = "person";
+constexpr const char* coloursKey = "look/colours";
+constexpr const char* typeKey = "look/type";
+constexpr const char* columnsKey = "attempts/hidden-columns";
+
+/// A row of several widgets, which has no buddy by itself.
+void addRow(QFormLayout& form, const char* text, QWidget* buddy, QLayout* row) {
+  auto* const label = new QLabel(text);
+  label->setBuddy(buddy);
+  form.addRow(label, row);
+}
+
+QSettings store() { return {QSettings::IniFormat, QSettings::UserScope, "calot", "dashboard"}; }
 
 }  // namespace
 
@@ -79,23 +105,17 @@ NormDialog::NormDialog(std::shared_ptr<const CohortDocument> document, std::vect
       rule_(parts::named("norm-rule", new QComboBox)),
       least_(parts::named("norm-least", new QSpinBox)),
       first_(parts::named("norm-first", new QCheckBox("Of a participant's several attempts the &first counts"))),
-      result_(parts::plainLabel("norm-result")),
+      result_(parts::selectableLabel("norm-result")),
       make_(parts::named("norm-make", new QPushButton("&Make the norm"))),
       strip_(new WorkStrip(work_)) {
   setWindowTitle("Make a norm");
   resize(theme::inType(620), theme::inType(460));
-  auto* layout = new QVBoxLayout(this);
   auto* purpose = new QLabel(explanation);
   purpose->setWordWrap(true);
-  layout->addWidget(purpose);
-  layout->addLayout(buildForm());
-  result_->setTextInteractionFlags(Qt::TextSelectableByMouse | Qt::TextSelectableByKeyboard);
-  layout->addWidget(result_, 1);
-  layout->addWidget(strip_);
   auto* buttons = new QDialogButtonBox;
   buttons->addButton(make_, QDialogButtonBox::ActionRole);
   buttons->addButton("&Close", QDialogButtonBox::RejectRole);
-  layout->addWidget(buttons);
+  setLayout(parts::column({purpose, buildForm(), {result_, 1}, strip_, buttons}));
   make_->setDefault(true);
   connect(buttons, &QDialogButtonBox::rejected, this, &QDialog::accept);
   connect(make_, &QPushButton::clicked, this, &NormDialog::make);
@@ -133,11 +153,6 @@ QFormLayout* NormDialog::buildForm() {
   least_->setEnabled(false);
   connect(rule_, &QComboBox::currentIndexChanged, least_, [this](int index) { least_->setEnabled(index == 1); });
   first_->setChecked(true);
-  auto* rule = new QHBoxLayout;
-  rule->addWidget(rule_, 1);
-  rule->addWidget(least_);
-  auto* ruleName = new QLabel("&Rule");  // a row that is a layout has no widget of its own for the letter
-  ruleName->setBuddy(rule_);
   auto* form = new QFormLayout;
   form->addRow("&Name", name_);
   form->addRow("Made &by", by_);
@@ -146,7 +161,7 @@ QFormLayout* NormDialog::buildForm() {
   form->addRow("Comp&etent are", fields_.first);
   form->addRow("&Others are", fields_.second);
   form->addRow("Comparable &within", fields_.key);
-  form->addRow(ruleName, rule);
+  addRow(*form, "&Rule", rule_, parts::row({{rule_, 1}, least_}));
   for (QCheckBox* box : {first_, fields_.practice, fields_.synthetic}) form->addRow(QString(), box);
   allow(true);
   return form;
@@ -179,4 +194,118 @@ void NormDialog::make() {
   });
 }
 
+SettingsDialog::SettingsDialog(QWidget* parent)
+    : QDialog(parent),
+      folders_(parts::named("settings-folders", new QListWidget)),
+      program_(parts::named("settings-program", new QLineEdit)),
+      threads_(parts::named("settings-threads", new QSpinBox)),
+      person_(parts::named("settings-person", new QLineEdit)),
+      colours_(parts::named("settings-colours", new QComboBox)),
+      type_(parts::named("settings-type", new QSpinBox)) {
+  setWindowTitle("Settings");
+  resize(theme::inType(560), theme::inType(400));
+  folders_->addItems(settings::recordingFolders());
+  auto* addFolder = new QPushButton("&Add …");
+  auto* removeFolder = new QPushButton("&Remove");
+  program_->setText(settings::chosenCalotProgram());
+  const QString found = settings::calotProgram();
+  program_->setPlaceholderText(found.isEmpty() ? "not found: name it here" : "the calot that was found");
+  program_->setToolTip(found);
+  threads_->setRange(1, 64);
+  threads_->setValue(settings::importThreads());
+  person_->setMaxLength(64);
+  person_->setText(settings::person());
+  person_->setPlaceholderText("pseudonym of who rates and excludes");
+  for (const auto& [text, choice] : {std::pair{"as the system has them", theme::Choice::system},
+                                     {"dark letters on light", theme::Choice::light},
+                                     {"light letters on dark", theme::Choice::dark}})
+    colours_->addItem(text, theme::wordOf(choice));
+  colours_->setCurrentIndex(colours_->findData(theme::wordOf(settings::colours())));
+  type_->setRange(theme::usualType, theme::largestType);
+  type_->setSingleStep(25);
+  type_->setSuffix(" %");
+  type_->setValue(settings::type());
+  type_->setToolTip("From the next start on");
+  auto* decision = new QDialogButtonBox(QDialogButtonBox::Ok | QDialogButtonBox::Cancel);
+  auto* form = new QFormLayout(this);
+  addRow(*form, "&Folders with recordings", folders_,
+         parts::row({{folders_, 1}, parts::column({addFolder, removeFolder, parts::spring()})}));
+  form->addRow("&Program that imports", program_);
+  form->addRow("&Threads of an import", threads_);
+  form->addRow("&You", person_);
+  form->addRow("Co&lours", colours_);
+  form->addRow("&Size of letters", type_);
+  form->addRow(decision);
+  connect(addFolder, &QPushButton::clicked, this, [this] {
+    const QString folder = QFileDialog::getExistingDirectory(this, "A folder with recordings");
+    if (!folder.isEmpty()) folders_->addItem(folder);
+  });
+  connect(removeFolder, &QPushButton::clicked, this, [this] { delete folders_->currentItem(); });
+  connect(decision, &QDialogButtonBox::accepted, this, &SettingsDialog::accept);
+  connect(decision, &QDialogButtonBox::rejected, this, &SettingsDialog::reject);
+}
+
+void SettingsDialog::accept() {
+  QStringList folders;
+  for (int row = 0; row < folders_->count(); ++row) folders += folders_->item(row)->text();
+  settings::setRecordingFolders(folders);
+  settings::setCalotProgram(program_->text().trimmed());
+  settings::setImportThreads(threads_->value());
+  settings::setPerson(person_->text().trimmed());
+  const theme::Choice before = settings::colours();
+  settings::setColours(theme::choiceOf(colours_->currentData().toString()));
+  const int letters = settings::type();
+  settings::setType(type_->value());
+  // Widths of columns are chosen when the window is made: letters change with the next one.
+  if (settings::colours() != before) theme::apply(settings::colours(), letters);
+  QDialog::accept();
+}
+
 }  // namespace calot::gui
+
+namespace calot::gui::settings {
+
+QStringList recordingFolders() { return store().value(foldersKey).toStringList(); }
+
+std::vector<std::filesystem::path> recordingPlaces() {
+  std::vector<std::filesystem::path> places;
+  for (const QString& folder : recordingFolders()) places.emplace_back(folder.toStdString());
+  return places;
+}
+
+void setRecordingFolders(const QStringList& folders) { store().setValue(foldersKey, folders.mid(0, maxFolders)); }
+
+void rememberRecordingFolder(const QString& folder) {
+  QStringList folders = recordingFolders();
+  folders.removeAll(folder);
+  folders.prepend(folder);
+  setRecordingFolders(folders);
+}
+
+QString chosenCalotProgram() { return store().value(programKey).toString(); }
+
+QString calotProgram() {
+  if (const QString chosen = chosenCalotProgram(); !chosen.isEmpty()) return chosen;
+  const QString beside = QStandardPaths::findExecutable("calot", {QCoreApplication::applicationDirPath()});
+  return beside.isEmpty() ? QStandardPaths::findExecutable("calot") : beside;
+}
+
+void setCalotProgram(const QString& file) { store().setValue(programKey, file); }
+
+int importThreads() { return std::clamp(store().value(threadsKey, 1).toInt(), 1, 64); }
+void setImportThreads(int threads) { store().setValue(threadsKey, std::clamp(threads, 1, 64)); }
+
+theme::Choice colours() { return theme::choiceOf(store().value(coloursKey).toString()); }
+void setColours(theme::Choice choice) { store().setValue(coloursKey, theme::wordOf(choice)); }
+int type() {
+  return std::clamp(store().value(typeKey, theme::usualType).toInt(), theme::usualType, theme::largestType);
+}
+void setType(int percent) { store().setValue(typeKey, std::clamp(percent, theme::usualType, theme::largestType)); }
+
+QStringList hiddenColumns() { return store().value(columnsKey).toStringList(); }
+void setHiddenColumns(const QStringList& titles) { store().setValue(columnsKey, titles); }
+
+QString person() { return store().value(personKey).toString(); }
+void setPerson(const QString& name) { store().setValue(personKey, name); }
+
+}  // namespace calot::gui::settings

@@ -1,12 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Dialogs of the dashboard, and its settings, kept from run to run. None changes a figure.
 #pragma once
 
+#include <filesystem>
 #include <QDialog>
+#include <QString>
+#include <QStringList>
+#include <vector>
 
 #include "gui/attempt/long_work.h"
+#include "gui/attempt/widget_parts.h"
 #include "gui/dashboard/page_parts.h"
 
 class QFormLayout;
+class QListWidget;
 class QMenuBar;
 class QSpinBox;
 
@@ -50,4 +57,55 @@ class NormDialog : public QDialog {
   WorkStrip* strip_;
 };
 
+/// Folders of recordings, the program that imports them and its number of threads, the person at the desk,
+/// and how the dashboard looks.
+class SettingsDialog : public QDialog {
+  Q_OBJECT
+ public:
+  explicit SettingsDialog(QWidget* parent = nullptr);
+  void accept() override;  ///< stores what is shown
+
+ private:
+  QListWidget* folders_;
+  QLineEdit* program_;
+  QSpinBox* threads_;
+  QLineEdit* person_;
+  QComboBox* colours_;
+  QSpinBox* type_;
+};
+
 }  // namespace calot::gui
+
+namespace calot::gui::settings {
+
+/// Folders in which recordings are looked for, beside the database's own; the newest first.
+[[nodiscard]] QStringList recordingFolders();
+[[nodiscard]] std::vector<std::filesystem::path> recordingPlaces();
+void setRecordingFolders(const QStringList& folders);
+/// Puts a folder first; adds it where it is new.
+void rememberRecordingFolder(const QString& folder);
+
+/// The program that assesses recordings: as set; else `calot` beside this program; else on the search path; else empty.
+[[nodiscard]] QString calotProgram();
+void setCalotProgram(const QString& file);   ///< empty: looked for as said
+[[nodiscard]] QString chosenCalotProgram();  ///< as set, or empty
+
+/// Threads of an import's simulation: 1 to 64.
+[[nodiscard]] int importThreads();
+void setImportThreads(int threads);
+
+/// Light or dark, and how large letters are (per cent).
+[[nodiscard]] theme::Choice colours();
+void setColours(theme::Choice choice);
+[[nodiscard]] int type();
+void setType(int percent);
+
+/// Columns of the list of attempts that are not shown.
+[[nodiscard]] QStringList hiddenColumns();
+void setHiddenColumns(const QStringList& titles);
+
+/// The person who rates, excludes and includes: a pseudonym, or empty.
+[[nodiscard]] QString person();
+void setPerson(const QString& name);
+
+}  // namespace calot::gui::settings

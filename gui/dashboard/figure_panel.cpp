@@ -5,8 +5,7 @@
 #include <cmath>
 #include <QTabWidget>
 
-#include "analytics/assessment/norm_rule.h"
-#include "gui/attempt/figure_standing.h"
+#include "analytics/assessment/norm.h"
 #include "gui/attempt/figure_text.h"
 #include "gui/dashboard/page_parts.h"
 
@@ -34,6 +33,8 @@ FigurePanel::FigurePanel(QWidget* parent)
     : QWidget(parent),
       norm_(parts::named("norm", new QComboBox)),
       verdict_(parts::plainLabel("verdict-of-norm")),
+      sheet_(parts::named("grade-sheet", new QPushButton("Gr&ade sheet …"))),
+      onePage_(parts::named("one-page", new QPushButton("&One page …"))),
       figureTable_(makeTree(families_, "attempt-checkpoints", "Checkpoints of the attempt, by family")),
       eventTable_(makeTree(events_, "events", "Events of the attempt, by kind")) {
   figureTable_->setItemDelegateForColumn(CheckpointTableModel::normColumn, new BandDelegate(figureTable_));
@@ -46,10 +47,14 @@ FigurePanel::FigurePanel(QWidget* parent)
   auto* tabs = parts::named("figure-tabs", new QTabWidget);
   tabs->addTab(figureTable_, "&Checkpoints");
   tabs->addTab(eventTable_, "Even&ts");
-  auto* layout = parts::bare<QVBoxLayout>(this);
-  layout->addWidget(buildNormRow());
-  layout->addWidget(tabs, 1);
+  norm_->setAccessibleName("Norm that the attempt is held against");
+  sheet_->setToolTip("Write the attempt against this norm as a PDF");
+  onePage_->setToolTip("Write the attempt on one page, with pictures of its worst moments, as a PDF");
+  QBoxLayout* const head = parts::row({{"&Norm", norm_}, {verdict_, 1}, sheet_, onePage_});
+  setLayout(parts::bare(parts::column({head, {tabs, 1}})));
 
+  connect(sheet_, &QPushButton::clicked, this, [this] { emit sheetRequested(false); });
+  connect(onePage_, &QPushButton::clicked, this, [this] { emit sheetRequested(true); });
   connect(norm_, &QComboBox::currentIndexChanged, this, [this] { showStanding(); });
   const auto figureAt = [this](const QModelIndex& at) {
     if (const int row = families_.sourceRow(at); row >= 0) showFigure(row);
@@ -57,33 +62,14 @@ FigurePanel::FigurePanel(QWidget* parent)
   connect(figureTable_, &QTreeView::clicked, this, figureAt);
   for (const Qt::Key key : {Qt::Key_Return, Qt::Key_Enter})
     onKey(*figureTable_, key, [this, figureAt] { figureAt(figureTable_->currentIndex()); });
-  const auto showEvent = [this](const QModelIndex& at) {
-    emit timeChosen(at.data(EventTreeModel::secondsRole).toDouble());
-  };
+  const auto showEvent = [this](const QModelIndex& at) { emit timeChosen(at.data(eventSecondsRole).toDouble()); };
   connect(eventTable_, &QTreeView::clicked, this, showEvent);
   connect(eventTable_, &QTreeView::activated, this, showEvent);
 }
 
-QWidget* FigurePanel::buildNormRow() {
-  norm_->setAccessibleName("Norm that the attempt is held against");
-  sheet_ = parts::named("grade-sheet", new QPushButton("Gr&ade sheet …"));
-  sheet_->setToolTip("Write the attempt against this norm as a PDF");
-  onePage_ = parts::named("one-page", new QPushButton("&One page …"));
-  onePage_->setToolTip("Write the attempt on one page, with pictures of its worst moments, as a PDF");
-  auto* made = new QWidget;
-  auto* row = parts::bare<QHBoxLayout>(made);
-  parts::labelled(*row, "&Norm", norm_);
-  row->addWidget(verdict_, 1);
-  row->addWidget(sheet_);
-  row->addWidget(onePage_);
-  connect(sheet_, &QPushButton::clicked, this, [this] { emit sheetRequested(false); });
-  connect(onePage_, &QPushButton::clicked, this, [this] { emit sheetRequested(true); });
-  return made;
-}
-
 void FigurePanel::setEvents(const std::vector<TrackEvent>& events) {
   trackEvents_ = events;
-  events_.setEvents(events);
+  listEvents(events_, events);
   eventTable_->expandAll();
 }
 
@@ -123,8 +109,8 @@ void FigurePanel::setAttempt(std::shared_ptr<const CohortDocument> document, con
   document_ = std::move(document);
   attempt_ = attempt;
   const QString fault = faultOf([&] {
-    intervals_ = document_->intervals(attempt.uuid);
-    values_ = document_->values(attempt.uuid);
+    intervals_ = document_->database().intervals(attempt.uuid);
+    values_ = document_->database().values(attempt.uuid);
   });
   if (!fault.isEmpty()) emit problem(fault);
   figures_.setValues(values_, intervals_);

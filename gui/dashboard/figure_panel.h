@@ -81,7 +81,6 @@ class FigurePanel : public QWidget {
   void showStanding();
   void showFigure(int row);
   void selectFigure(int row);
-  QWidget* buildNormRow();
 
   std::shared_ptr<const CohortDocument> document_;
   std::optional<analytics::AttemptRow> attempt_;
@@ -90,13 +89,12 @@ class FigurePanel : public QWidget {
   std::optional<std::pair<std::string, std::string>> wanted_;  ///< figure to go to when its moments are known
   CheckpointTableModel figures_;
   FamilyTreeModel families_{figures_};
-  EventTreeModel events_;
+  QStandardItemModel events_{0, 2};
   std::vector<TrackEvent> trackEvents_;
   MomentCycle cycle_;
   QComboBox* norm_;
   QLabel* verdict_;
-  QPushButton* sheet_ = nullptr;
-  QPushButton* onePage_ = nullptr;
+  QPushButton *sheet_, *onePage_;
   std::optional<AttemptStanding> standing_;
   QTreeView* figureTable_;
   QTreeView* eventTable_;

@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "analytics/assessment/grade.h"
-#include "gui/attempt/figure_standing.h"
 #include "gui/attempt/figure_text.h"
 #include "gui/dashboard/plot_view.h"
 
@@ -46,17 +45,11 @@ ComparePage::ComparePage(QWidget* parent)
     : FiguresPage("", new PlotView("comparison-chart", "Attempts by group"), parent),
       groupBy_(parts::choice("group-by", 13)),
       synthetic_(parts::named("synthetic", new QCheckBox("&Synthetic attempts"))) {
-  auto* upper = new QHBoxLayout;
-  auto* lower = new QHBoxLayout;  // keys are long: they have a line of their own
-  parts::labelled(*upper, "&Checkpoint", figure_, 3);
-  parts::labelled(*upper, "&By", groupBy_, 1);
-  parts::labelled(*lower, "Comparable &within", key_, 3);
-  lower->addWidget(synthetic_);
-  auto* layout = new QVBoxLayout(this);
-  layout->addLayout(upper);
-  layout->addLayout(lower);
-  layout->addWidget(chart_, 1);
-  layout->addWidget(caption_);
+  // Keys are long: they have a line of their own.
+  setLayout(parts::column({parts::row({{"&Checkpoint", figure_, 3}, {"&By", groupBy_, 1}}),
+                           parts::row({{"Comparable &within", key_, 3}, synthetic_}),
+                           {chart_, 1},
+                           caption_}));
   groupBy_->addItems({"group", "performer's profile", "participant"});
   synthetic_->setChecked(true);
   connect(groupBy_, &QComboBox::currentIndexChanged, this, [this] { redraw(); });
@@ -121,11 +114,6 @@ TraineePage::TraineePage(QWidget* parent)
                            "Tasks of the trainee")),
       table_(makeTextTable({"No.", "Started", "Value", "Outcome", "Verification", "Remark"}, "trainee-attempts",
                            "Attempts of the trainee")) {
-  auto* upper = new QHBoxLayout;
-  auto* lower = new QHBoxLayout;  // keys are long: they have a line of their own
-  parts::labelled(*upper, "T&rainee", trainee_, 1);
-  parts::labelled(*upper, "&Checkpoint", figure_, 3);
-  parts::labelled(*lower, "Comparable &within", key_, 3);
   parts::embolden(goal_);
   tasks_->setToolTip("Double-click, or press Enter, to see a task's history");
   setWidths(*tasks_, {560});
@@ -133,12 +121,11 @@ TraineePage::TraineePage(QWidget* parent)
   setWidths(*table_, {50, 170, 130, 130, 170});
   QSplitter* splitter = makeSplitter(Qt::Vertical, {{chart_, 3}, {tasks_, 2}, {table_, 0}});
   splitter->setSizes({400, 110, 180});
-  auto* layout = new QVBoxLayout(this);
-  layout->addLayout(upper);
-  layout->addLayout(lower);
-  layout->addWidget(goal_);
-  layout->addWidget(splitter, 1);
-  layout->addWidget(caption_);
+  setLayout(parts::column({parts::row({{"T&rainee", trainee_, 1}, {"&Checkpoint", figure_, 3}}),
+                           parts::row({{"Comparable &within", key_, 3}}),
+                           goal_,
+                           {splitter, 1},
+                           caption_}));
   connect(trainee_, &QComboBox::currentIndexChanged, this, [this] {
     fillKeys();
     redraw();
@@ -228,7 +215,7 @@ void TraineePage::showGoal(const TraineeHistory& history, const std::vector<anal
   const std::vector<const analytics::Norm*> fitting = normsFor(newest, norms);
   if (fitting.empty()) return;
   std::vector<analytics::CheckpointValue> own;
-  tryTo([&] { own = document_->values(newest.uuid); });
+  tryTo([&] { own = document_->database().values(newest.uuid); });
   const AttemptStanding standing = standingOf(newest, own, *fitting.front());
   goal_->setText(standing.grade ? "Next goal: " + QString::fromStdString(analytics::nextGoal(*standing.grade).text)
                                 : "No goal: " + QString::fromStdString(standing.verdict));

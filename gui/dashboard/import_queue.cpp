@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "gui/dashboard/import_queue.h"
 
 #include <algorithm>
-#include <QBoxLayout>
 #include <QDir>
 #include <QFileInfo>
 #include <QJsonArray>
 #include <QJsonDocument>
 #include <QJsonObject>
-#include <QLabel>
 #include <QListWidget>
 #include <QProgressBar>
 #include <QPushButton>
@@ -17,7 +14,6 @@
 #include <utility>
 
 #include "gui/attempt/long_work.h"
-#include "gui/attempt/theme.h"
 #include "gui/attempt/widget_parts.h"
 #include "gui/view/thread_rank.h"
 
@@ -172,13 +168,7 @@ ImportPanel::ImportPanel(ImportQueue& queue, QWidget* parent)
       results_(parts::named("import-results", new QListWidget)),
       tick_(new QTimer(this)) {
   results_->setAccessibleName("Results of the import");
-  auto* row = new QHBoxLayout;
-  row->addWidget(bar_, 1);
-  row->addWidget(stop_);
-  auto* layout = new QVBoxLayout(this);
-  layout->addWidget(text_);
-  layout->addLayout(row);
-  layout->addWidget(results_, 1);
+  setLayout(parts::column({text_, parts::row({{bar_, 1}, stop_}), {results_, 1}}));
   connect(stop_, &QPushButton::clicked, &queue_, &ImportQueue::cancel);
   connect(&queue_, &ImportQueue::progressed, this, [this] { showProgress(); });
   connect(&queue_, &ImportQueue::fileDone, this, &ImportPanel::addResult);
@@ -222,33 +212,20 @@ GreetingPage::GreetingPage(AssessProgram program, QWidget* parent)
     : QWidget(parent),
       program_(std::move(program)),
       title_(parts::plainLabel("greeting-title", false)),
-      text_(parts::plainLabel("greeting")) {
-  QFont large = font();
-  large.setPointSizeF(1.8 * large.pointSizeF());
-  title_->setFont(large);
-  title_->setAlignment(Qt::AlignHCenter);
-  text_->setAlignment(Qt::AlignHCenter);
-  text_->setTextInteractionFlags(Qt::TextSelectableByMouse | Qt::TextSelectableByKeyboard);
-  auto* buttons = new QHBoxLayout;
-  buttons->addStretch(1);
-  const auto add = [&](const char* name, const char* text, auto wish) {
-    auto* button = parts::named(name, new QPushButton(text));
-    connect(button, &QPushButton::clicked, this, wish);
-    buttons->addWidget(button);
-    return button;
+      text_(parts::selectableLabel("greeting")) {
+  parts::enlarge(title_, 1.8);
+  for (QLabel* const label : {title_, text_}) label->setAlignment(Qt::AlignHCenter);
+  const auto button = [&](const char* name, const char* text, auto wish) {
+    auto* const made = parts::named(name, new QPushButton(text));
+    connect(made, &QPushButton::clicked, this, wish);
+    return made;
   };
-  import_ = add("import-recordings", "&Import recordings …", &GreetingPage::importRequested);
-  add("open", "&Open a cohort database …", &GreetingPage::openRequested);
-  add("new", "&Make a new one …", &GreetingPage::newRequested);
-  buttons->addStretch(1);
-  auto* layout = new QVBoxLayout(this);
-  layout->addStretch(1);
-  layout->addWidget(title_);
-  layout->addSpacing(12);
-  layout->addWidget(text_);
-  layout->addSpacing(18);
-  layout->addLayout(buttons);
-  layout->addStretch(2);
+  import_ = button("import-recordings", "&Import recordings …", &GreetingPage::importRequested);
+  QBoxLayout* const buttons =
+      parts::row({parts::spring(), import_, button("open", "&Open a cohort database …", &GreetingPage::openRequested),
+                  button("new", "&Make a new one …", &GreetingPage::newRequested), parts::spring()});
+  setLayout(
+      parts::column({parts::spring(1), title_, parts::space(12), text_, parts::space(18), buttons, parts::spring(2)}));
   explainNoDatabase();
 }
 

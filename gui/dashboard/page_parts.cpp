@@ -87,12 +87,13 @@ QSplitter* makeSplitter(Qt::Orientation orientation, const std::vector<std::pair
   return splitter;
 }
 
-void refill(QComboBox& choice, const QStringList& entries) {
+void refill(QComboBox& choice, const QStringList& entries, int other) {
   const QSignalBlocker quiet(choice);
   const QString before = choice.currentText();
   choice.clear();
   choice.addItems(entries);
-  choice.setCurrentIndex(entries.isEmpty() ? -1 : std::max(0, choice.findText(before)));
+  const int again = choice.findText(before);
+  choice.setCurrentIndex(entries.isEmpty() ? -1 : again < 0 ? other : again);
 }
 
 void onKey(QWidget& widget, const QKeySequence& key, std::function<void()> action) {
@@ -160,26 +161,18 @@ bool CohortPage::tryTo(const std::function<void()>& call) {
   return fault.isEmpty();
 }
 
-AttemptBanner::AttemptBanner(QWidget* parent) : QWidget(parent) {
-  auto* layout = parts::bare<QHBoxLayout>(this);
-  const auto label = [&](const char* name, int stretch) {
-    auto* made = parts::named(name, new QLabel);
-    made->setWordWrap(true);
-    made->setTextFormat(Qt::PlainText);
-    made->setTextInteractionFlags(Qt::TextSelectableByMouse);
-    layout->addWidget(made, stretch);
-    return made;
-  };
-  watermark_ = label("watermark", 0);
+AttemptBanner::AttemptBanner(QWidget* parent)
+    : QWidget(parent),
+      watermark_(parts::selectableLabel("watermark")),
+      identity_(parts::selectableLabel("identity")),
+      badge_(parts::selectableLabel("badge")) {
   watermark_->setText("SYNTHETIC — made by a performer");
-  watermark_->setWordWrap(false);
   watermark_->setToolTip("It shows that the pipeline works and says nothing about people.");
   parts::embolden(watermark_);
   theme::setGround(*watermark_, QColor(0xf0, 0xe4, 0x42), Qt::black);
   watermark_->hide();
-  identity_ = label("identity", 3);
-  badge_ = label("badge", 0);
-  badge_->setWordWrap(false);
+  for (QLabel* const label : {watermark_, badge_}) label->setWordWrap(false);
+  setLayout(parts::bare(parts::row({watermark_, {identity_, 3}, badge_})));
 }
 
 void AttemptBanner::showAttempt(const analytics::AttemptRow& attempt) {

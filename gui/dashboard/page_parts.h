@@ -18,7 +18,6 @@
 #include <vector>
 
 #include "analytics/report/study.h"
-#include "gui/attempt/theme.h"
 #include "gui/attempt/widget_parts.h"
 #include "gui/dashboard/cohort_document.h"
 
@@ -48,8 +47,8 @@ void setWidths(View& view, std::initializer_list<int> widths) {
 /// Widgets that share a space, each with its stretch factor; none can be closed.
 QSplitter* makeSplitter(Qt::Orientation orientation, const std::vector<std::pair<QWidget*, int>>& parts);
 
-/// Gives a choice other entries, quietly. The chosen one stays so where it is among them; else it is the first.
-void refill(QComboBox& choice, const QStringList& entries);
+/// Gives a choice other entries, quietly. The chosen one stays so where it is among them; else it is `other`.
+void refill(QComboBox& choice, const QStringList& entries, int other = 0);
 
 /// Calls `action` on a key while the widget or one of its children has the focus.
 void onKey(QWidget& widget, const QKeySequence& key, std::function<void()> action);

@@ -3,10 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <QLocale>
 #include <QSlider>
 #include <QStyle>
-#include <QTimer>
 #include <QToolButton>
 
 #include "gui/attempt/figure_text.h"
@@ -22,6 +20,9 @@ QString attemptText(const AttemptLines& lines, int row) {
       .arg(lines.cell(row, AttemptLines::operatorColumn), lines.cell(row, AttemptLines::sceneColumn),
            lines.cell(row, AttemptLines::startColumn), lines.cell(row, AttemptLines::verificationColumn));
 }
+
+constexpr int tickMilliseconds = 33;
+constexpr double farAway = 0.25;  // s (times speed) that a side may be off before it is sent to its place
 
 }  // namespace
 
@@ -111,29 +112,28 @@ std::vector<Phase> commonPhases(const AttemptTrack& a, const AttemptTrack& b) {
   return phases;
 }
 
-namespace {
-
-constexpr int scrubSteps = 10000;
-constexpr int tickMilliseconds = 33;
-constexpr double farAway = 0.25;  // s (times speed) that a side may be off before it is sent to its place
-
-}  // namespace
-
-PairPage::PairPage(QWidget* parent) : CohortPage(parent), sides_{new PairSide("left"), new PairSide("right")} {
-  auto* layout = new QVBoxLayout(this);
-  auto* row = new QHBoxLayout;
-  for (PairSide* const side : sides_) row->addWidget(side, 1);
-  layout->addLayout(row, 1);
-  traces_ = new TraceChart("pair-traces", "Both attempts: left solid, right dashed");
+PairPage::PairPage(QWidget* parent)
+    : CohortPage(parent),
+      sides_{new PairSide("left"), new PairSide("right")},
+      traces_(new TraceChart("pair-traces", "Both attempts: left solid, right dashed")),
+      trace_(parts::choice("pair-trace", 10)),
+      from_(parts::choice("align", 13)),
+      speed_(speedChoice("pair-speed", "Speed of both")),
+      play_(transportButton("pair-play", "Play or pause both (Space)", QStyle::SP_MediaPlay)),
+      scrub_(scrubBar("pair-scrub", "Moment of both")),
+      time_(parts::named("pair-time", new QLabel)) {
   traces_->setMinimumHeight(theme::inType(96));
-  layout->addWidget(traces_);
+  trace_->addItems(
+      {"force, left hand (N)", "force, right hand (N)", "speed, left tip (mm/s)", "speed, right tip (mm/s)"});
+  play_->setAccessibleName("Play or pause both");
+  QBoxLayout* const transport =
+      parts::row({{"&Trace", trace_}, {"In &step from", from_}, play_, {scrub_, 1}, time_, speed_});
+  setLayout(parts::column({{parts::row({{sides_[0], 1}, {sides_[1], 1}}), 1}, traces_, transport}));
   connect(traces_, &TraceChart::timeChosen, this, [this](double time) {
     if (alignment_) goTo(alignment_->begin() + time);
   });
-  layout->addWidget(buildTransport());
   begin_ = sides_[0]->choiceBox();
-  tick_ = new QTimer(this);
-  connect(tick_, &QTimer::timeout, this, [this] { onTick(); });
+  connect(&tick_, &QTimer::timeout, this, [this] { onTick(); });
   onKey(*this, Qt::Key_Space, [this] { play(!playing_); });
   for (std::size_t which = 0; which < 2; ++which) {
     connect(sides_[which], &PairSide::changing, this, [this] {
@@ -148,32 +148,6 @@ PairPage::PairPage(QWidget* parent) : CohortPage(parent), sides_{new PairSide("l
       if (alignment_) goTo(alignment_->common(which, time));
     });
   }
-}
-
-QWidget* PairPage::buildTransport() {
-  auto* made = new QWidget;
-  auto* row = parts::bare<QHBoxLayout>(made);
-  trace_ = parts::labelled(*row, "&Trace", parts::choice("pair-trace", 10));
-  trace_->addItems(
-      {"force, left hand (N)", "force, right hand (N)", "speed, left tip (mm/s)", "speed, right tip (mm/s)"});
-  from_ = parts::labelled(*row, "In &step from", parts::choice("align", 13));
-  play_ = parts::named("pair-play", new QToolButton);
-  play_->setAccessibleName("Play or pause both");
-  play_->setToolTip("Play or pause both (Space)");
-  play_->setFocusPolicy(Qt::TabFocus);
-  scrub_ = parts::named("pair-scrub", new QSlider(Qt::Horizontal));
-  scrub_->setAccessibleName("Moment of both");
-  scrub_->setRange(0, scrubSteps);
-  time_ = parts::named("pair-time", new QLabel);
-  speed_ = parts::named("pair-speed", new QComboBox);
-  speed_->setAccessibleName("Speed of both");
-  for (const double speed : {0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0})
-    speed_->addItem(QLocale().toString(speed, 'g', 3) + QString::fromUtf8(" ×"), speed);
-  speed_->setCurrentIndex(3);
-  row->addWidget(play_);
-  row->addWidget(scrub_, 1);
-  row->addWidget(time_);
-  row->addWidget(speed_);
   connect(trace_, &QComboBox::currentIndexChanged, this, [this] { showTraces(); });
   connect(from_, &QComboBox::currentIndexChanged, this, [this] { align(); });
   connect(play_, &QToolButton::clicked, this, [this] { play(!playing_); });
@@ -185,7 +159,6 @@ QWidget* PairPage::buildTransport() {
     if (alignment_)
       goTo(alignment_->begin() + (alignment_->end() - alignment_->begin()) * static_cast<double>(value) / scrubSteps);
   });
-  return made;
 }
 
 void PairPage::read() {
@@ -294,9 +267,9 @@ void PairPage::play(bool playing) {
       sides_[which]->replay().pause();
   }
   if (playing_)
-    tick_->start(tickMilliseconds);
-  else if (tick_ != nullptr)
-    tick_->stop();
+    tick_.start(tickMilliseconds);
+  else
+    tick_.stop();
   showTime();
 }
 

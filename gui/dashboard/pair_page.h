@@ -4,12 +4,12 @@
 #include <array>
 #include <chrono>
 #include <optional>
+#include <QTimer>
 
 #include "gui/dashboard/page_parts.h"
 #include "gui/dashboard/recording_view.h"
 
 class QSlider;
-class QTimer;
 class QToolButton;
 
 namespace calot::gui {
@@ -88,7 +88,6 @@ class PairPage : public CohortPage {
 
  private:
   void read() override;
-  QWidget* buildTransport();
   void fillAlignments();
   void align();
   void goTo(double common);
@@ -105,14 +104,12 @@ class PairPage : public CohortPage {
   std::chrono::steady_clock::time_point clockBegin_;
   double clockCommon_ = 0.0;
 
-  TraceChart* traces_ = nullptr;
-  QComboBox* trace_ = nullptr;
-  QComboBox* from_ = nullptr;
-  QComboBox* speed_ = nullptr;
-  QToolButton* play_ = nullptr;
-  QSlider* scrub_ = nullptr;
-  QLabel* time_ = nullptr;
-  QTimer* tick_ = nullptr;
+  TraceChart* traces_;
+  QComboBox *trace_, *from_, *speed_;
+  QToolButton* play_;
+  QSlider* scrub_;
+  QLabel* time_;
+  QTimer tick_;
 };
 
 }  // namespace calot::gui

@@ -11,7 +11,7 @@
 #include <tuple>
 #include <utility>
 
-#include "gui/attempt/theme.h"
+#include "gui/attempt/widget_parts.h"
 #include "gui/report/drawing_painter.h"
 
 namespace calot::gui {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "gui/dashboard/ratings_page.h"
 
-#include <algorithm>
 #include <QButtonGroup>
 #include <QCryptographicHash>
 #include <QGroupBox>
@@ -9,7 +8,7 @@
 #include <QScrollArea>
 #include <QSettings>
 
-#include "gui/dashboard/settings.h"
+#include "gui/dashboard/dialogs.h"
 #include "recorder/base/errors.h"
 
 namespace calot::gui {
@@ -66,7 +65,7 @@ Answers keptDraft(const QString& group) {
 }
 
 /// Stores a rating as `calot rate` does. @throws Error (invalid) for an item without answer, all blank, or a missing
-/// name; (refused) as AssessmentDatabase::storeRating
+/// name; (refused) as CohortDatabase::storeRating
 void storeRating(const analytics::RatingForm& form, const auto& subject, const Answers& answers, bool replace) {
   if (form.ofAttempts && subject.attempt.empty()) throw Error(ErrorKind::invalid, "Choose the attempt that is rated.");
   if (form.ofAttempts && subject.rater.empty()) throw Error(ErrorKind::invalid, "Say who rates, by a pseudonym.");
@@ -79,7 +78,7 @@ void storeRating(const analytics::RatingForm& form, const auto& subject, const A
   rating.rater = subject.rater;
   rating.participant = subject.participant;
   rating.answers = analytics::answersOf(form, given);
-  analytics::AssessmentDatabase(subject.database, analytics::CohortDatabase::Access::write)
+  analytics::CohortDatabase(subject.database, analytics::CohortDatabase::Access::write)
       .storeRating({form.name, form.version, form.sha256, form.text}, rating, replace);
 }
 
@@ -104,45 +103,35 @@ QString scoreText(const analytics::RatingForm& form, int score) {
 
 }  // namespace
 
-RatingPage::RatingPage(QWidget* parent) : CohortPage(parent), replay_(new RecordingView({.timeline = false})) {
-  auto* layout = new QVBoxLayout(this);
-  layout->addWidget(makeSplitter(Qt::Horizontal, {{replay_, 1}, {buildForm(), 1}}), 1);
-  connectParts();
-  begin_ = choice_;
-}
-
-QWidget* RatingPage::buildForm() {
-  auto* made = new QWidget;
-  auto* layout = parts::bare<QVBoxLayout>(made);
-  auto* row = new QHBoxLayout;
-  choice_ = parts::labelled(*row, "Fo&rm", parts::choice("form", 12), 2);
-  rater_ = parts::labelled(*row, "Rated b&y", parts::named("rater", new QLineEdit), 1);
-  raterLabel_ = row->itemAt(row->count() - 2)->widget();
+RatingPage::RatingPage(QWidget* parent)
+    : CohortPage(parent),
+      choice_(parts::choice("form", 12)),
+      source_(parts::plainLabel("form-source")),
+      banner_(new AttemptBanner),
+      raterLabel_(new QLabel("Rated b&y")),
+      rater_(parts::named("rater", new QLineEdit)),
+      participantLabel_(new QLabel("Part&icipant")),
+      participant_(parts::named("rating-participant", new QComboBox)),
+      area_(parts::named("form-area", new QScrollArea)),
+      state_(parts::plainLabel("rating-state")),
+      store_(parts::named("store-rating", new QPushButton("&Store"))),
+      next_(parts::named("store-next", new QPushButton("Store, &next"))),
+      reveal_(parts::named("reveal", new QCheckBox("Sho&w who it was"))),
+      replay_(new RecordingView({.timeline = false})) {
+  raterLabel_->setBuddy(rater_);
+  participantLabel_->setBuddy(participant_);
   rater_->setMaxLength(64);
   rater_->setPlaceholderText("pseudonym");
-  participant_ = parts::labelled(*row, "Part&icipant", parts::named("rating-participant", new QComboBox), 1);
-  participantLabel_ = row->itemAt(row->count() - 2)->widget();
-  layout->addLayout(row);
-  reveal_ = parts::named("reveal", new QCheckBox("Sho&w who it was"));
   reveal_->setToolTip("Who rates blinded judges what was done, not who did it");
-  layout->addWidget(reveal_);
-  banner_ = new AttemptBanner;
-  layout->addWidget(banner_);
-  source_ = parts::plainLabel("form-source");
-  layout->addWidget(source_);
-  area_ = parts::named("form-area", new QScrollArea);
   area_->setWidgetResizable(true);
-  layout->addWidget(area_, 1);
-  auto* lower = new QHBoxLayout;
-  state_ = parts::plainLabel("rating-state");
-  store_ = parts::named("store-rating", new QPushButton("&Store"));
-  next_ = parts::named("store-next", new QPushButton("Store, &next"));
   next_->setToolTip("Store it and go to the next attempt (Ctrl+Return)");
-  lower->addWidget(state_, 1);
-  lower->addWidget(store_);
-  lower->addWidget(next_);
-  layout->addLayout(lower);
-  return made;
+  QBoxLayout* const head =
+      parts::row({{"Fo&rm", choice_, 2}, raterLabel_, {rater_, 1}, participantLabel_, {participant_, 1}});
+  QWidget* const form = parts::boxed(
+      parts::column({head, reveal_, banner_, source_, {area_, 1}, parts::row({{state_, 1}, store_, next_})}));
+  setLayout(parts::column({{makeSplitter(Qt::Horizontal, {{replay_, 1}, {form, 1}}), 1}}));
+  connectParts();
+  begin_ = choice_;
 }
 
 void RatingPage::connectParts() {
@@ -203,7 +192,7 @@ void RatingPage::read() {
   if (rater_->text().isEmpty()) rater_->setText(settings::person());
   QStringList people;
   tryTo([&] {
-    for (const analytics::Participant& person : document_->participants())
+    for (const analytics::Participant& person : document_->database().participants())
       people += QString::fromStdString(person.pseudonym);
   });
   refill(*participant_, people);
@@ -232,7 +221,8 @@ void RatingPage::showSubject() {
   for (QWidget* widget : std::initializer_list<QWidget*>{rater_, raterLabel_, reveal_, replay_})
     widget->setVisible(ofAttempts);
   banner_->setVisible(ofAttempts && (reveal_->isChecked() || !attempt_));
-  for (QWidget* widget : {static_cast<QWidget*>(participant_), participantLabel_}) widget->setVisible(!ofAttempts);
+  for (QWidget* widget : std::initializer_list<QWidget*>{participant_, participantLabel_})
+    widget->setVisible(!ofAttempts);
   if (!attempt_)
     banner_->showText("Select the attempt that is rated on the page Attempts.");
   else

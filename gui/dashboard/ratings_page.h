@@ -10,7 +10,6 @@
 #include "gui/dashboard/recording_view.h"
 
 class QButtonGroup;
-class QScrollArea;
 
 namespace calot::gui {
 
@@ -42,7 +41,6 @@ class RatingPage : public CohortPage {
   void showEarlier();
   void showState();
   bool store();
-  QWidget* buildForm();
   void openReplay();
   struct Subject;
   [[nodiscard]] Subject subject() const;  ///< @pre form() is not null
@@ -54,19 +52,18 @@ class RatingPage : public CohortPage {
   std::map<std::string, std::optional<int>> answers_;  ///< so far; none: left blank
   bool replaces_ = false;                              ///< who fills it in has filled it in before
 
-  QComboBox* choice_ = nullptr;
-  QLabel* source_ = nullptr;
-  AttemptBanner* banner_ = nullptr;
-  QWidget* raterLabel_ = nullptr;
-  QLineEdit* rater_ = nullptr;
-  QWidget* participantLabel_ = nullptr;
-  QComboBox* participant_ = nullptr;
-  QScrollArea* area_ = nullptr;
+  QComboBox* choice_;
+  QLabel* source_;
+  AttemptBanner* banner_;
+  QLabel* raterLabel_;
+  QLineEdit* rater_;
+  QLabel* participantLabel_;
+  QComboBox* participant_;
+  QScrollArea* area_;
   std::vector<std::pair<std::string, QButtonGroup*>> groups_;
-  QLabel* state_ = nullptr;
-  QPushButton* store_ = nullptr;
-  QPushButton* next_ = nullptr;
-  QCheckBox* reveal_ = nullptr;
+  QLabel* state_;
+  QPushButton *store_, *next_;
+  QCheckBox* reveal_;
   RecordingView* replay_;
   std::string shown_;  ///< uuid whose replay was opened
 };

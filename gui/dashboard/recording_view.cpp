@@ -2,19 +2,19 @@
 #include "gui/dashboard/recording_view.h"
 
 #include <algorithm>
-#include <exception>
-#include <QBoxLayout>
-#include <QMetaObject>
 
 #include "gui/attempt/widget_parts.h"
-#include "gui/dashboard/settings.h"
-#include "gui/view/thread_rank.h"
-#include "gui/words/problem_words.h"
+#include "gui/dashboard/dialogs.h"
 
 namespace calot::gui {
 namespace {
 
-struct BrokenOff {};
+/// Progress of reading, in steps, for a work.
+auto stepsOf(LongWork::Control& control) {
+  return [&control](std::uint64_t done, std::uint64_t of) {
+    control.progress(static_cast<double>(done) / static_cast<double>(std::max<std::uint64_t>(1, of)), {});
+  };
+}
 
 }  // namespace
 
@@ -25,17 +25,14 @@ RecordingView::RecordingView(Parts with, QWidget* parent)
       timeline_(new TimelineBar),
       replay_(std::make_unique<Replay>(
           [picture = picture_](std::shared_ptr<const SceneView> view) { picture->showView(std::move(view)); })) {
-  auto* layout = parts::bare<QVBoxLayout>(this);
-  layout->addWidget(picture_, 1);
-  if (with.transport) layout->addWidget(new TransportBar(*replay_));
-  layout->addWidget(timeline_);
+  QBoxLayout* const rows = parts::bare(parts::column({{picture_, 1}}));
+  if (with.transport) rows->addWidget(new TransportBar(*replay_));
+  rows->addWidget(timeline_);
+  setLayout(rows);
   if (!with.timeline) timeline_->hide();
   connect(replay_.get(), &Replay::opened, this, [this] {
     busy_ = reads_;
-    if (reads_) {
-      back_ = std::make_shared<Link<RecordingView>>(*this);
-      taskPool().start([back = back_, file = file_, figures = figures_] { read(back, file, figures); });
-    }
+    if (reads_) startTrack();
     emit opened();
   });
   connect(replay_.get(), &Replay::positionChanged, this, [this] { timeline_->setPosition(replay_->position().time); });
@@ -43,12 +40,14 @@ RecordingView::RecordingView(Parts with, QWidget* parent)
     picture_->showText(reason);
     fail("No timeline: the recording cannot be shown.");
   });
+  connect(&work_, &LongWork::progressed, this, [this](double share) {
+    if (!track_) timeline_->setText(QString("Reading the recording … %1 %").arg(static_cast<int>(100.0 * share)));
+  });
+  connect(&work_, &LongWork::failed, this, &RecordingView::fail);
+  connect(&work_, &LongWork::done, this, [this] { std::exchange(take_, {})(); });
 }
 
-RecordingView::~RecordingView() {
-  stopReading();
-  replay_.reset();  // its thread uses the picture
-}
+RecordingView::~RecordingView() { replay_.reset(); }  // its thread uses the picture
 
 bool RecordingView::open(const analytics::AttemptRow& attempt, const CohortDocument& document, const Figures& figures) {
   const std::filesystem::path file = findRecording(attempt, document.path(), settings::recordingPlaces());
@@ -69,7 +68,7 @@ void RecordingView::openFile(const std::filesystem::path& file, const std::strin
 }
 
 void RecordingView::close(const QString& text, const QString& timelineText) {
-  stopReading();
+  work_.cancel();
   replay_->close();
   busy_ = false;
   file_.clear();
@@ -87,49 +86,39 @@ void RecordingView::hideEvent(QHideEvent* event) {
   replay_->pause();
 }
 
-void RecordingView::stopReading() {
-  if (back_) back_->cut();
-  back_.reset();
-}
-
 void RecordingView::fail(const QString& timelineText) {
   busy_ = false;
   timeline_->setText(timelineText);
   emit failed();
 }
 
-void RecordingView::read(const Back& back, const std::filesystem::path& file, const Figures& figures) {
-  stepBack(behindInterface);
-  int shown = -1;
-  const auto progress = [&](std::uint64_t done, std::uint64_t of) {
-    bool wanted = false;
-    back->pass([&](RecordingView&) { wanted = true; });
-    if (!wanted) throw BrokenOff();
-    const int percent = static_cast<int>(100 * done / std::max<std::uint64_t>(1, of));
-    if (percent == std::exchange(shown, percent)) return;
-    Link<RecordingView>::post(back, [percent](RecordingView& view) {
-      if (!view.track_) view.timeline_->setText(QString("Reading the recording … %1 %").arg(percent));
-    });
+void RecordingView::startTrack() {
+  const auto track = std::make_shared<AttemptTrack>();
+  take_ = [this, track] {
+    timeline_->setTrack(*track);
+    emit trackRead(track_.emplace(*track));
+    if (track_) startMoments();  // a slot may have closed it
   };
-  try {
+  work_.start([track, file = file_](LongWork::Control& control) {
     recorder::Recording recording(file);
-    AttemptTrack track = readTrack(recording, progress);
-    const bool results = track.none.empty();
-    Link<RecordingView>::post(back, [track = std::move(track)](RecordingView& view) {
-      view.timeline_->setTrack(track);
-      emit view.trackRead(view.track_.emplace(track));
-    });
-    std::vector<analytics::FigureMoments> moments;
-    if (results && !figures.empty()) moments = analytics::findMoments(recording, figures, progress);
-    Link<RecordingView>::post(back, [moments = std::move(moments)](RecordingView& view) {
-      view.busy_ = false;
-      emit view.momentsFound(moments);
-    });
-  } catch (const BrokenOff&) {
-  } catch (const std::exception& error) {
-    Link<RecordingView>::post(
-        back, [text = QString::fromStdString(problemText(error))](RecordingView& view) { view.fail(text); });
-  }
+    *track = readTrack(recording, stepsOf(control));
+    return QString();
+  });
+}
+
+void RecordingView::startMoments() {
+  const auto moments = std::make_shared<std::vector<analytics::FigureMoments>>();
+  take_ = [this, moments] {
+    busy_ = false;
+    emit momentsFound(*moments);
+  };
+  work_.start(
+      [moments, file = file_, figures = track_->none.empty() ? figures_ : Figures()](LongWork::Control& control) {
+        if (figures.empty()) return QString();
+        recorder::Recording recording(file);
+        *moments = analytics::findMoments(recording, figures, stepsOf(control));
+        return QString();
+      });
 }
 
 }  // namespace calot::gui

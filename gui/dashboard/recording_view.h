@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "analytics/assessment/moments.h"
-#include "gui/attempt/attempt_recording.h"
 #include "gui/attempt/long_work.h"
+#include "gui/attempt/replay_player.h"
 #include "gui/attempt/replay_transport.h"
 #include "gui/dashboard/cohort_document.h"
 #include "gui/dashboard/timeline.h"
@@ -58,9 +58,8 @@ class RecordingView : public QWidget {
   void hideEvent(QHideEvent* event) override;
 
  private:
-  using Back = std::shared_ptr<Link<RecordingView>>;
-  static void read(const Back& back, const std::filesystem::path& file, const Figures& figures);
-  void stopReading();
+  void startTrack();
+  void startMoments();
   void fail(const QString& timelineText);
 
   std::filesystem::path file_;
@@ -71,7 +70,8 @@ class RecordingView : public QWidget {
   ScenePictureWidget* picture_;
   TimelineBar* timeline_;
   std::unique_ptr<Replay> replay_;
-  Back back_;  ///< from what is being read
+  std::function<void()> take_;  ///< what work_ reads
+  LongWork work_;
 };
 
 }  // namespace calot::gui

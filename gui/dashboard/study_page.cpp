@@ -109,7 +109,6 @@ constexpr int shownAfter = 300;  // ms before progress is shown
 /// All that takes time, made on the thread of the work.
 struct StudyPage::Computed {
   std::shared_ptr<const analytics::Study> study;
-  std::string refusal;
   WindowsText text;
 };
 
@@ -132,25 +131,15 @@ StudyPage::StudyPage(QWidget* parent)
       roc_(new PlotView("roc-chart", "Receiver operating characteristic")),
       csv_(parts::named("study-csv", new QPushButton("Export C&SV …"))),
       html_(parts::named("study-html", new QPushButton("Export HTM&L …"))) {
-  auto* layout = new QVBoxLayout(this);
-  layout->addLayout(buildChoices());
-  layout->addWidget(state_);
-  layout->addWidget(strip_);
   text_->setAccessibleName("Tables of the study");
   text_->setOpenLinks(false);
   text_->setWordWrapMode(QTextOption::WordWrap);
   effect_->setWordWrap(true);
-  auto* rowLayout = new QHBoxLayout;
-  parts::labelled(*rowLayout, "&Checkpoint", row_, 1);
-  auto* charts = new QWidget;
-  auto* chartLayout = parts::bare<QVBoxLayout>(charts);
-  chartLayout->addLayout(rowLayout);
-  chartLayout->addWidget(effect_);
-  chartLayout->addWidget(boxes_, 1);
-  chartLayout->addWidget(roc_, 1);
+  QWidget* const charts =
+      parts::boxed(parts::column({parts::row({{"&Checkpoint", row_, 1}}), effect_, {boxes_, 1}, {roc_, 1}}));
   QSplitter* splitter = makeSplitter(Qt::Horizontal, {{text_, 3}, {charts, 2}});
   splitter->setSizes({830, 410});
-  layout->addWidget(splitter, 1);
+  setLayout(parts::column({buildChoices(), state_, strip_, {splitter, 1}}));
   connectParts();
   begin_ = fields_.by;
 }
@@ -159,23 +148,10 @@ QLayout* StudyPage::buildChoices() {
   rule_->addItem("the first", static_cast<int>(analytics::AttemptRule::first));
   rule_->addItem("the mean", static_cast<int>(analytics::AttemptRule::mean));
   protocol_->setToolTip("A protocol that is registered in this cohort makes the choices (calot protocol register)");
-  auto* upper = new QHBoxLayout;
-  parts::labelled(*upper, "&By", fields_.by);
-  parts::labelled(*upper, "C&ompare", fields_.first);
-  parts::labelled(*upper, "w&ith", fields_.second);
-  parts::labelled(*upper, "Of several &attempts", rule_);
-  upper->addStretch(1);
-  upper->addWidget(csv_);
-  upper->addWidget(html_);
-  auto* lower = new QHBoxLayout;
-  parts::labelled(*lower, "Pro&tocol", protocol_);
-  parts::labelled(*lower, "Comparable &within", fields_.key, 1);
-  lower->addWidget(fields_.synthetic);
-  lower->addWidget(fields_.practice);
-  auto* rows = new QVBoxLayout;
-  rows->addLayout(upper);
-  rows->addLayout(lower);
-  return rows;
+  QBoxLayout* const upper = parts::row({{"&By", fields_.by}, {"C&ompare", fields_.first}, {"w&ith", fields_.second}});
+  parts::fill(upper, {{"Of several &attempts", rule_}, parts::spring(), csv_, html_});
+  QBoxLayout* const lower = parts::row({{"Pro&tocol", protocol_}, {"Comparable &within", fields_.key, 1}});
+  return parts::column({upper, parts::fill(lower, {fields_.synthetic, fields_.practice})});
 }
 
 void StudyPage::connectParts() {
@@ -194,18 +170,17 @@ void StudyPage::connectParts() {
     connect(box, &QCheckBox::toggled, this, [this] { make(); });
   connect(row_, &QComboBox::currentIndexChanged, this, [this] { showRow(); });
   connect(&work_, &LongWork::done, this, [this](const QString& text) {
-    if (computed_) {
-      take(*std::exchange(computed_, nullptr));
-    } else {
-      state_->setText(text);
-      emit written();
-    }
+    if (computed_) return take(std::exchange(computed_, nullptr));
+    state_->setText(text);
+    emit written();
   });
   connect(&work_, &LongWork::failed, this, [this](const QString& reason) {
-    if (std::exchange(computed_, nullptr))
+    if (std::exchange(computed_, nullptr)) {
       state_->setText("There is no study with these choices: " + reason);
-    else
-      emit written();
+      text_->clear();
+      return take(nullptr);
+    }
+    emit written();
     emit problem(reason);
   });
   connect(&work_, &LongWork::cancelled, this, [this] {
@@ -266,49 +241,39 @@ void StudyPage::make() {
   const TextLook look{text_->font(), text_->document()->defaultTextOption(),
                       static_cast<qreal>(text_->viewport()->width()), devicePixelRatioF()};
   work_.start([computed = computed_, request, database = document_->path(), look](LongWork::Control& control) {
-    StudyAnswer answer = studyOf(database, request, [&](double share, const char* doing) {
-      control.progress(share, QString("Computing the study: ") + doing);
-    });
-    computed->refusal = std::move(answer.refusal);
-    if (!answer.study) return QString();
+    computed->study =
+        std::make_shared<const analytics::Study>(studyOf(database, request, [&](double share, const char* doing) {
+          control.progress(share, QString("Computing the study: ") + doing);
+        }));
     control.progress(1.0, "Computing the study: laying out");
-    computed->study = std::make_shared<const analytics::Study>(*std::move(answer.study));
     computed->text = textOf(*computed->study, look);
     return QString();
   });
 }
 
-void StudyPage::take(Computed& computed) {
-  study_ = computed.study;
+void StudyPage::take(const std::shared_ptr<Computed>& computed) {
+  study_ = computed ? computed->study : nullptr;
   checked_ = made_ && study_ != nullptr;  // of the document as it is now
   csv_->setEnabled(ready());
   html_->setEnabled(ready());
-  {
-    const QSignalBlocker quiet(row_);
-    const QString before = row_->currentText();
-    row_->clear();
-    if (study_) {
-      for (const analytics::StudyRow& row : study_->rows)
-        row_->addItem(row.source.empty() ? figureTitle(row.checkpoint, row.subject)
-                                         : QString::fromStdString(row.title) + " (external)");
-      const auto leading = std::find_if(study_->rows.begin(), study_->rows.end(),
-                                        [](const analytics::StudyRow& row) { return row.leading; });
-      const auto first = leading == study_->rows.end() ? 0 : static_cast<int>(leading - study_->rows.begin());
-      const int again = row_->findText(before);
-      row_->setCurrentIndex(again < 0 ? first : again);
-    }
+  QStringList titles;
+  int first = 0;
+  if (study_) {
+    for (const analytics::StudyRow& row : study_->rows)
+      titles += row.source.empty() ? figureTitle(row.checkpoint, row.subject)
+                                   : QString::fromStdString(row.title) + " (external)";
+    const auto leading = std::ranges::find(study_->rows, true, &analytics::StudyRow::leading);
+    if (leading != study_->rows.end()) first = static_cast<int>(leading - study_->rows.begin());
   }
+  refill(*row_, titles, first);
   if (study_) {
     state_->setText(QString("%1 of %2 attempts are analysed.").arg(study_->analysed).arg(study_->recruited));
     // The browser deletes only a document that it made itself.
     const QList<QTextDocument*> before = text_->findChildren<QTextDocument*>(Qt::FindDirectChildrenOnly);
-    QTextDocument* const text = computed.text.release();
+    QTextDocument* const text = computed->text.release();
     text->setParent(text_);
     text_->setDocument(text);
     qDeleteAll(before);
-  } else {
-    state_->setText("There is no study with these choices: " + QString::fromStdString(computed.refusal));
-    text_->clear();
   }
   // In another turn: text and charts together take longer than a person may be kept waiting.
   QTimer::singleShot(0, this, [this] {

@@ -34,7 +34,8 @@ class StudyPage : public CohortPage {
   void allowChoices();
   void make();
   struct Computed;
-  void take(Computed& computed);
+  /// @param computed null: there is no study
+  void take(const std::shared_ptr<Computed>& computed);
   void showRow();
   void saveAs(bool html);
 

@@ -2,19 +2,19 @@
 #include "gui/dashboard/study_view.h"
 
 #include <algorithm>
-#include <exception>
 #include <set>
+#include <span>
 
-#include "analytics/cohort/check.h"
+#include "analytics/cohort/cohort_database.h"
 #include "analytics/cohort/withdraw.h"
 #include "analytics/design/design_report.h"
-#include "analytics/report/masked_study.h"
 #include "analytics/report/report_document.h"
 #include "analytics/report/study_output.h"
+#include "analytics/report/study_protocol.h"
 #include "analytics/report/study_rows.h"
 #include "gui/words/problem_words.h"
 #include "recorder/base/errors.h"
-#include "recorder/base/text_output.h"
+#include "recorder/base/files.h"
 
 namespace calot::gui {
 namespace {
@@ -69,31 +69,25 @@ std::string noteExport(const analytics::Study& study, const std::string& databas
 
 }  // namespace
 
-StudyAnswer studyOf(const std::string& database, const StudyRequest& request,
-                    const analytics::StudyProgress& progress) {
-  try {
-    if (request.check) {
-      if (progress) progress(0.0, "checking the cohort");
-      analytics::refuseUnsound(database);
-    }
-    analytics::StudyOptions options = request.options;
-    const bool chosen = std::count(options.groups.begin(), options.groups.end(), "") == 0;
-    if (!request.protocol.empty() || !chosen) options.groups.clear();
-    const analytics::AssessmentDatabase assessment(database, Access::read);
-    for (const analytics::RegisteredProtocol& p : assessment.protocols()) {
-      if (p.sha256 != request.protocol) continue;
-      const auto* bytes = reinterpret_cast<const std::byte*>(p.text.data());
-      options.protocol = analytics::ProtocolInUse{
-          analytics::parseProtocol({bytes, p.text.size()}, p.name), assessment.protocols(p.name), {}};
-    }
-    const analytics::CohortDatabase cohort(database, Access::read);
-    if (options.protocol) return {analytics::makeProtocolStudy(cohort, assessment, options, false, progress), {}};
-    analytics::Study study = analytics::makeStudy(cohort, options, progress);
-    analytics::addRatings(study, assessment);
-    return {std::move(study), {}};
-  } catch (const std::exception& error) {
-    return {std::nullopt, problemText(error)};
+analytics::Study studyOf(const std::string& database, const StudyRequest& request,
+                         const analytics::StudyProgress& progress) {
+  if (request.check) {
+    if (progress) progress(0.0, "checking the cohort");
+    analytics::refuseUnsound(database);
   }
+  analytics::StudyOptions options = request.options;
+  const bool chosen = std::count(options.groups.begin(), options.groups.end(), "") == 0;
+  if (!request.protocol.empty() || !chosen) options.groups.clear();
+  const analytics::CohortDatabase cohort(database, Access::read);
+  for (const analytics::RegisteredProtocol& p : cohort.protocols()) {
+    if (p.sha256 != request.protocol) continue;
+    options.protocol = analytics::ProtocolInUse{
+        analytics::parseProtocol(std::as_bytes(std::span(p.text)), p.name), cohort.protocols(p.name), {}};
+  }
+  if (options.protocol) return analytics::makeProtocolStudy(cohort, options, false, progress);
+  analytics::Study study = analytics::makeStudy(cohort, options, progress);
+  analytics::addRatings(study, cohort);
+  return study;
 }
 
 std::vector<std::string> groupsOf(const std::vector<analytics::AttemptRow>& attempts, analytics::Grouping grouping) {

@@ -18,15 +18,10 @@ struct StudyRequest {
   bool check = true;  ///< the whole database first, as `calot cohort check`: a changed byte must not change a figure
 };
 
-/// The study, with ratings; or why there is none.
-struct StudyAnswer {
-  std::optional<analytics::Study> study;
-  std::string refusal;  ///< one line
-};
-/// Opens the database on its own: for a thread that is not the interface's. Throws nothing but what `progress` throws,
-/// which ends it.
-StudyAnswer studyOf(const std::string& database, const StudyRequest& request,
-                    const analytics::StudyProgress& progress = {});
+/// The study, with ratings. Opens the database on its own: for a thread that is not the interface's.
+/// @throws Error where there is none; what `progress` throws, which ends it
+analytics::Study studyOf(const std::string& database, const StudyRequest& request,
+                         const analytics::StudyProgress& progress = {});
 
 /// Groups that attempts have, by name, for the choice of two.
 std::vector<std::string> groupsOf(const std::vector<analytics::AttemptRow>& attempts, analytics::Grouping grouping);

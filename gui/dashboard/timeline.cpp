@@ -2,6 +2,7 @@
 #include "gui/dashboard/timeline.h"
 
 #include <cmath>
+#include <map>
 #include <QEvent>
 #include <QHelpEvent>
 #include <QKeyEvent>
@@ -24,20 +25,12 @@ constexpr double reach = 5.0;  // pixels from an event that still count as on it
 /// Okabe and Ito's colours, distinguished by people with any of the common colour-vision deficiencies; the name stands
 /// in the stretch.
 QColor colourOf(Phase phase) {
-  switch (phase) {
-    case Phase::identification:
-      return {0x56, 0xb4, 0xe9};
-    case Phase::clipping:
-      return {0xe6, 0x9f, 0x00};
-    case Phase::cutting:
-      return {0xf0, 0xe4, 0x42};
-    case Phase::dissection:
-      return {0x7f, 0xd0, 0xb8};
-    case Phase::none:
-    case Phase::done:
-      break;
-  }
-  return {0xd8, 0xd8, 0xd8};
+  static const std::map<Phase, QColor> colours{{Phase::identification, {0x56, 0xb4, 0xe9}},
+                                               {Phase::clipping, {0xe6, 0x9f, 0x00}},
+                                               {Phase::cutting, {0xf0, 0xe4, 0x42}},
+                                               {Phase::dissection, {0x7f, 0xd0, 0xb8}}};
+  const auto at = colours.find(phase);
+  return at != colours.end() ? at->second : QColor(0xd8, 0xd8, 0xd8);
 }
 
 void paintEvents(QPainter& painter, const TimeScale& scale, const std::vector<TrackEvent>& events) {
@@ -58,6 +51,16 @@ void paintEvents(QPainter& painter, const TimeScale& scale, const std::vector<Tr
       }
     }
   }
+}
+
+double topMargin() { return theme::inType(18); }
+double bottomMargin() { return theme::inType(16); }
+constexpr double headroom = 1.15;  // of the highest number, so that a line along it is seen
+
+double timeInterval(double seconds) {
+  if (seconds > 240.0) return 60.0;
+  if (seconds > 60.0) return 20.0;
+  return seconds > 20.0 ? 5.0 : 1.0;
 }
 
 }  // namespace
@@ -191,20 +194,6 @@ bool TimelineBar::event(QEvent* event) {
   }
   return QWidget::event(event);
 }
-
-namespace {
-
-double topMargin() { return theme::inType(18); }
-double bottomMargin() { return theme::inType(16); }
-constexpr double headroom = 1.15;  // of the highest number, so that a line along it is seen
-
-double timeInterval(double seconds) {
-  if (seconds > 240.0) return 60.0;
-  if (seconds > 60.0) return 20.0;
-  return seconds > 20.0 ? 5.0 : 1.0;
-}
-
-}  // namespace
 
 double axisTop(double largest) {
   if (largest <= 0.0) return 1.0;

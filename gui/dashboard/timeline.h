@@ -4,16 +4,13 @@
 
 #include <algorithm>
 #include <array>
-#include <optional>
-#include <QColor>
 #include <QPixmap>
 #include <QWidget>
 #include <utility>
 #include <vector>
 
-#include "gui/attempt/attempt_recording.h"
-#include "gui/attempt/theme.h"
-#include "sim/judgement/judge.h"
+#include "gui/attempt/replay_player.h"
+#include "gui/attempt/widget_parts.h"
 #include "sim/scene/samples.h"
 
 namespace calot::gui {

@@ -14,7 +14,7 @@
 #include <QUndoCommand>
 #include <QUndoStack>
 
-#include "gui/attempt/attempt_recording.h"
+#include "gui/attempt/replay_player.h"
 #include "gui/dashboard/attempt_page.h"
 #include "gui/dashboard/attempts_page.h"
 #include "gui/dashboard/dashboard_window.h"
@@ -24,7 +24,6 @@
 #include "gui/dashboard/import_queue.h"
 #include "gui/dashboard/pair_page.h"
 #include "gui/dashboard/ratings_page.h"
-#include "gui/dashboard/settings.h"
 #include "gui/dashboard/study_page.h"
 #include "recorder/base/errors.h"
 
@@ -114,6 +113,29 @@ DecisionCommand* tagCommand(CohortWriter& writer, const Decision& decision, bool
     };
   };
   return new DecisionCommand(writer, decision.database, add ? "tag" : "removal of a tag", change(add), change(!add));
+}
+
+constexpr qint64 maxWaiting = 120000;  // ms for a page to have read what it shows
+constexpr int settleTime = 1500;       // ms for pictures and animations to be on the screen
+
+void waitFor(const std::function<bool()>& condition) {
+  QElapsedTimer clock;
+  clock.start();
+  // Recently requested work may not have begun: the condition must hold for a while.
+  qint64 since = -1;
+  while (clock.elapsed() < maxWaiting && (since < 0 || clock.elapsed() < since + settleTime)) {
+    QCoreApplication::processEvents(QEventLoop::AllEvents, 50);
+    if (!condition())
+      since = -1;
+    else if (since < 0)
+      since = clock.elapsed();
+  }
+}
+
+void savePicture(QWidget& page, const QString& file) {
+  QCoreApplication::processEvents();
+  if (!page.grab().save(file, "PNG"))
+    throw Error(ErrorKind::failure, Where{file.toStdString()}, "cannot write the picture; does the folder exist?");
 }
 
 }  // namespace
@@ -238,33 +260,6 @@ void DashboardWindow::askForNorm() {
   connect(&dialog, &NormDialog::made, this, &DashboardWindow::reload);
   dialog.exec();
 }
-
-namespace {
-
-constexpr qint64 maxWaiting = 120000;  // ms for a page to have read what it shows
-constexpr int settleTime = 1500;       // ms for pictures and animations to be on the screen
-
-void waitFor(const std::function<bool()>& condition) {
-  QElapsedTimer clock;
-  clock.start();
-  // Recently requested work may not have begun: the condition must hold for a while.
-  qint64 since = -1;
-  while (clock.elapsed() < maxWaiting && (since < 0 || clock.elapsed() < since + settleTime)) {
-    QCoreApplication::processEvents(QEventLoop::AllEvents, 50);
-    if (!condition())
-      since = -1;
-    else if (since < 0)
-      since = clock.elapsed();
-  }
-}
-
-void savePicture(QWidget& page, const QString& file) {
-  QCoreApplication::processEvents();
-  if (!page.grab().save(file, "PNG"))
-    throw Error(ErrorKind::failure, Where{file.toStdString()}, "cannot write the picture; does the folder exist?");
-}
-
-}  // namespace
 
 void DashboardWindow::savePictures(const QString& folder) {
   const auto save = [&](QWidget* page, const char* name, const std::function<bool()>& ready) {

@@ -5,14 +5,11 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <cstring>
 #include <map>
 #include <numbers>
-#include <vector>
 
 #include "gui/render/instrument_mesh.h"
-#include "gui/render/mesh.h"
 
 namespace calot::gui {
 namespace {
@@ -39,6 +36,64 @@ Mesh drop(double radius) {
     skin.push_back(superellipse(Vec3(0.0, 0.0, z), across, across, 2.0, around));
   }
   return loft(skin);
+}
+
+constexpr double litOverSeen = 1.25;  // width of the light's field over the picture's
+/// A shadow falls aside by less than the light is beside the lens (m).
+constexpr double shadowReach = 0.006;
+constexpr double nearest = 0.004;  // m: nearer than that may be cut by the near plane
+
+/// A number of a directed side, spread over 64 bits (finaliser of MurmurHash3; Appleby).
+std::uint64_t hashOf(int from, int to) {
+  std::uint64_t h = (static_cast<std::uint64_t>(static_cast<std::uint32_t>(from)) << 32U) |
+                    static_cast<std::uint64_t>(static_cast<std::uint32_t>(to));
+  h ^= h >> 33U;
+  h *= 0xff51afd7ed558ccdULL;
+  h ^= h >> 33U;
+  h *= 0xc4ceb9fe1a85ec53ULL;
+  h ^= h >> 33U;
+  return h;
+}
+
+/// Bytewise comparison: a spurious difference only costs time.
+template <class T>
+bool same(const std::vector<T>& a, const std::vector<T>& b) {
+  return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
+}
+
+/// Above this, char looks the same; more at one vertex would only spread over all its triangles.
+constexpr float maxCharred = 1.6F;
+
+// The endoscope's automatic exposure: the distance whose inverse square is the mean over what lies ahead and faces the
+// lens, weighted towards the middle of the picture.
+float referenceDistance(const std::vector<DrawVertex>& vertices) {
+  double weights = 0.0, light = 0.0;
+  for (const DrawVertex& v : vertices) {
+    const Vec3 p(v.position[0], v.position[1], v.position[2]);
+    const double distance = p.norm();
+    if (p.z() < 0.01 || distance < 0.01) continue;
+    const Vec3 n(v.normal[0], v.normal[1], v.normal[2]);
+    const double towards = -n.dot(p) / distance;
+    if (towards <= 0.0) continue;
+    const double cosine = p.z() / distance;
+    const double c4 = cosine * cosine * cosine * cosine;
+    const double weight = towards * c4 * c4 * c4;
+    weights += weight;
+    light += weight / (distance * distance);
+  }
+  if (weights <= 0.0) return 0.1F;
+  return static_cast<float>(std::clamp(std::sqrt(weights / light), 0.02, 0.6));
+}
+
+/// Blood and bile from open vessels cover skin, not the vessels' own cut faces.
+float stained(float face, const Vec3& p_W, std::span<const OpenEnd> open, double time) {
+  constexpr float most = 0.45F;  // skin, fully stained (SurfaceView::face)
+  if (face >= 1.0F) return face;
+  for (const OpenEnd& end : open) {
+    const float stain = most * static_cast<float>(stainAt(end, p_W, time));
+    if (stain > std::abs(face)) face = end.bile ? -stain : stain;
+  }
+  return face;
 }
 
 }  // namespace
@@ -93,15 +148,6 @@ double stainAt(const OpenEnd& end, const Vec3& p_W, double time) {
   return std::min(1.0, 1.8 * inside) * ends * (1.0 - fresh * runs);
 }
 
-namespace {
-
-constexpr double litOverSeen = 1.25;  // width of the light's field over the picture's
-/// A shadow falls aside by less than the light is beside the lens (m).
-constexpr double shadowReach = 0.006;
-constexpr double nearest = 0.004;  // m: nearer than that may be cut by the near plane
-
-}  // namespace
-
 double Sight::lit() const { return litOverSeen * std::max(aside, up); }
 
 Sight sightOf(int width, int height, double verticalFieldOfView, bool field) {
@@ -139,28 +185,6 @@ bool turnedAway(const Vec3& a, const Vec3& b, const Vec3& c) {
   return normal.dot(a) > 0.0 && normal.dot(a - light) > 0.0;
 }
 
-namespace {
-
-/// A number of a directed side, spread over 64 bits (finaliser of MurmurHash3; Appleby).
-std::uint64_t hashOf(int from, int to) {
-  std::uint64_t h = (static_cast<std::uint64_t>(static_cast<std::uint32_t>(from)) << 32U) |
-                    static_cast<std::uint64_t>(static_cast<std::uint32_t>(to));
-  h ^= h >> 33U;
-  h *= 0xff51afd7ed558ccdULL;
-  h ^= h >> 33U;
-  h *= 0xc4ceb9fe1a85ec53ULL;
-  h ^= h >> 33U;
-  return h;
-}
-
-/// Bytewise comparison: a spurious difference only costs time.
-template <class T>
-bool same(const std::vector<T>& a, const std::vector<T>& b) {
-  return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
-}
-
-}  // namespace
-
 bool isClosed(const std::vector<Index3>& triangle) {
   // If every side has an opposite, both sums are equal. If one has none, they agree only with the probability of
   // a 64-bit hash collision.
@@ -178,45 +202,6 @@ void SurfaceForm::update(const SurfaceView& surface) {
   triangle = surface.triangle;
   restNormal = vertexNormals(rest, triangle);
 }
-
-namespace {
-
-/// Above this, char looks the same; more at one vertex would only spread over all its triangles.
-constexpr float maxCharred = 1.6F;
-
-// The endoscope's automatic exposure: the distance whose inverse square is the mean over what lies ahead and faces the
-// lens, weighted towards the middle of the picture.
-float referenceDistance(const std::vector<DrawVertex>& vertices) {
-  double weights = 0.0, light = 0.0;
-  for (const DrawVertex& v : vertices) {
-    const Vec3 p(v.position[0], v.position[1], v.position[2]);
-    const double distance = p.norm();
-    if (p.z() < 0.01 || distance < 0.01) continue;
-    const Vec3 n(v.normal[0], v.normal[1], v.normal[2]);
-    const double towards = -n.dot(p) / distance;
-    if (towards <= 0.0) continue;
-    const double cosine = p.z() / distance;
-    const double c4 = cosine * cosine * cosine * cosine;
-    const double weight = towards * c4 * c4 * c4;
-    weights += weight;
-    light += weight / (distance * distance);
-  }
-  if (weights <= 0.0) return 0.1F;
-  return static_cast<float>(std::clamp(std::sqrt(weights / light), 0.02, 0.6));
-}
-
-/// Blood and bile from open vessels cover skin, not the vessels' own cut faces.
-float stained(float face, const Vec3& p_W, std::span<const OpenEnd> open, double time) {
-  constexpr float most = 0.45F;  // skin, fully stained (SurfaceView::face)
-  if (face >= 1.0F) return face;
-  for (const OpenEnd& end : open) {
-    const float stain = most * static_cast<float>(stainAt(end, p_W, time));
-    if (stain > std::abs(face)) face = end.bile ? -stain : stain;
-  }
-  return face;
-}
-
-}  // namespace
 
 Appearance appearanceOf(const std::string& word) {
   if (word == "liver") return Appearance::liver;

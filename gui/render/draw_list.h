@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "gui/render/mesh.h"
-#include "gui/render/surroundings.h"
 #include "gui/render/translucent.h"
 #include "sim/math/linear.h"
 #include "sim/scene/scene_view.h"

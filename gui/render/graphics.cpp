@@ -11,8 +11,6 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <string>
-#include <vector>
 
 #include "recorder/base/errors.h"
 

@@ -6,7 +6,6 @@
 #include <unistd.h>
 #include <charconv>
 #include <filesystem>
-#include <string>
 #include <system_error>
 
 #include "gui/render/view_check.h"

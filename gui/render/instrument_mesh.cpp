@@ -5,9 +5,7 @@
 #include <cmath>
 #include <numbers>
 #include <utility>
-#include <vector>
 
-#include "gui/render/mesh.h"
 #include "sim/instruments/instruments.h"
 
 namespace calot::gui {

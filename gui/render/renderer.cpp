@@ -8,10 +8,8 @@
 #include <future>
 #include <mutex>
 #include <stop_token>
-#include <string>
 #include <thread>
 
-#include "gui/render/graphics.h"
 #include "gui/render/scene_painter.h"
 #include "gui/render/scene_resources.h"
 #include "gui/render/view_check.h"
@@ -35,8 +33,6 @@ class Renderer::Worker {
       context_.reset();
     });
   }
-  Worker(const Worker&) = delete;
-  Worker& operator=(const Worker&) = delete;
 
   [[nodiscard]] const std::string& name() const { return name_; }
 

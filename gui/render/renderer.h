@@ -38,8 +38,6 @@ class Renderer {
   /// @throws calot::Error (failure) if this machine has no such OpenGL 4.5 off screen.
   explicit Renderer(Graphics graphics = Graphics::software);
   ~Renderer();
-  Renderer(const Renderer&) = delete;
-  Renderer& operator=(const Renderer&) = delete;
 
   /// Pinhole camera of view.camera: a point p_C = (x, y, z) of the camera's frame with z > 0 falls on the pixel
   ///   (width / 2 + f x / z, height / 2 + f y / z),  f = (height / 2) / tan(verticalFieldOfView / 2).

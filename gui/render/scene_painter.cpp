@@ -3,9 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 
-#include "gui/render/scene_resources.h"
 #include "recorder/base/errors.h"
 
 namespace calot::gui {

@@ -18,8 +18,6 @@ class ScenePainter {
  public:
   explicit ScenePainter(const GraphicsContext& context);
   ~ScenePainter();
-  ScenePainter(const ScenePainter&) = delete;
-  ScenePainter& operator=(const ScenePainter&) = delete;
 
   /// The OpenGL implementation's own name of what draws: "llvmpipe (LLVM 15.0.6, 256 bits)".
   [[nodiscard]] std::string implementation() const;

@@ -170,16 +170,6 @@ class SheetBuilder {
   std::vector<Piece> piece_;
 };
 
-}  // namespace
-
-SheetList makeSheetList(const SceneView& view) {
-  SheetBuilder builder(view.camera);
-  for (const ConnectiveView& connective : view.connective) builder.add(connective);
-  return builder.finish();
-}
-
-namespace {
-
 constexpr double fullEnergy = 4.0;                    // J, of the densest puff
 constexpr double riseTime = 0.8;                      // s, over which a puff slows down
 constexpr double rise = 0.030, aside = 0.012;         // m, in the end
@@ -187,6 +177,12 @@ constexpr double puffRadius = 0.0022, grown = 0.016;  // radius (m), at first an
 constexpr double densest = 0.45;                      // opacity
 
 }  // namespace
+
+SheetList makeSheetList(const SceneView& view) {
+  SheetBuilder builder(view.camera);
+  for (const ConnectiveView& connective : view.connective) builder.add(connective);
+  return builder.finish();
+}
 
 void SmokeTrail::add(double time, std::span<const Event> events) {
   while (!puff_.empty() && -puff_.front().age < time - smokeSeconds) puff_.pop_front();

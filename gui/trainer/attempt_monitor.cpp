@@ -5,12 +5,29 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <utility>
 
 namespace calot::gui {
 namespace {
 
 constexpr double sameMistake = 1.0;  // s
+
+SubjectNames namesOf(const Model& model) {
+  SubjectNames names;
+  for (const StructureModel& structure : model.structures()) names.structures.push_back(structure.name);
+  for (const ConnectiveDescription& tissue : model.scene().connective) names.connective.push_back(tissue.name);
+  return names;
+}
+
+std::size_t bedOf(const SceneDescription& scene) {
+  const auto bed = std::find_if(scene.connective.begin(), scene.connective.end(),
+                                [&](const auto& tissue) { return tissue.name == scene.procedure.bed; });
+  return static_cast<std::size_t>(bed - scene.connective.begin());
+}
+
+constexpr int maxUnderway = 3;
+constexpr std::chrono::milliseconds period(30);  // every third step: some are lost, thirty a second are to stay
+/// A window that is hidden shows nothing; it is tried again so often.
+constexpr std::chrono::milliseconds retryAfter(500);
 
 }  // namespace
 
@@ -50,23 +67,6 @@ bool MistakeList::add(std::span<const Event> events) {
   }
   return added;
 }
-
-namespace {
-
-SubjectNames namesOf(const Model& model) {
-  SubjectNames names;
-  for (const StructureModel& structure : model.structures()) names.structures.push_back(structure.name);
-  for (const ConnectiveDescription& tissue : model.scene().connective) names.connective.push_back(tissue.name);
-  return names;
-}
-
-std::size_t bedOf(const SceneDescription& scene) {
-  const auto bed = std::find_if(scene.connective.begin(), scene.connective.end(),
-                                [&](const auto& tissue) { return tissue.name == scene.procedure.bed; });
-  return static_cast<std::size_t>(bed - scene.connective.begin());
-}
-
-}  // namespace
 
 AttemptMonitor::AttemptMonitor(const Model& model)
     : model_(model), judge_(model.scene()), list_(namesOf(model), model.stepSeconds()), bed_(bedOf(model.scene())) {
@@ -209,15 +209,6 @@ std::string PictureRate::report(int width, int height, const std::string& drawnB
     line += fmt::format("; motion to picture {:.0f} ms, 95 % within {:.0f} ms", 1e3 * *typical, 1e3 * *delay(0.95));
   return line + "; drawn by " + drawnBy;
 }
-
-namespace {
-
-constexpr int maxUnderway = 3;
-constexpr std::chrono::milliseconds period(30);  // every third step: some are lost, thirty a second are to stay
-/// A window that is hidden shows nothing; it is tried again so often.
-constexpr std::chrono::milliseconds retryAfter(500);
-
-}  // namespace
 
 void ViewTap::begin(recorder::Session& session) {
   underway_ = 1;

@@ -19,7 +19,7 @@
 #include "gui/words/event_words.h"
 #include "recorder/engine/observer.h"
 #include "recorder/engine/session.h"
-#include "recorder/live/wrapped_sources.h"
+#include "recorder/sources/source.h"
 #include "sim/judgement/judge.h"
 #include "sim/scene/model.h"
 

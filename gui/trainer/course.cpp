@@ -7,8 +7,8 @@
 
 #include "gui/words/problem_words.h"
 #include "recorder/base/errors.h"
-#include "recorder/base/file_bytes.h"
-#include "recorder/base/record_reader.h"
+#include "recorder/base/files.h"
+#include "recorder/base/record_json.h"
 #include "recorder/formats/scene_file.h"
 
 namespace calot::gui {

@@ -1,30 +1,76 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "gui/trainer/end_page.h"
 
-#include <QBoxLayout>
-#include <QLabel>
+#include <algorithm>
+#include <cmath>
 #include <QListWidget>
 #include <QPushButton>
+#include <system_error>
 #include <utility>
 
 #include "analytics/assess.h"
+#include "analytics/checkpoints/replay_words.h"
+#include "analytics/checkpoints/checkpoint.h"
+#include "analytics/checkpoints/collector.h"
 #include "gui/attempt/figure_text.h"
-#include "gui/attempt/long_work.h"
-#include "gui/attempt/replay_transport.h"
-#include "gui/attempt/theme.h"
 #include "gui/attempt/widget_parts.h"
 #include "gui/trainer/run_panel.h"
 #include "gui/view/scene_picture_widget.h"
 #include "gui/words/problem_words.h"
 #include "recorder/base/errors.h"
+#include "recorder/recording/reader.h"
 
 namespace calot::gui {
-
-using parts::button;
-using parts::say;
-using parts::selectableLabel;
-
 namespace {
+
+using Access = analytics::CohortDatabase::Access;
+
+bool isThere(const std::filesystem::path& cohort) {
+  std::error_code ignored;
+  return !cohort.empty() && std::filesystem::exists(cohort, ignored);
+}
+
+const analytics::CheckpointValue* sameFigure(const std::vector<analytics::CheckpointValue>& values,
+                                             const analytics::CheckpointValue& as) {
+  const auto at = std::find_if(values.begin(), values.end(), [&](const analytics::CheckpointValue& v) {
+    return v.name == as.name && v.subject == as.subject && v.version == as.version;
+  });
+  return at == values.end() ? nullptr : &*at;
+}
+
+QString withUnit(double number, const QString& unit) {
+  return unit.isEmpty() ? numberText(number) : numberText(number) + ' ' + unit;
+}
+
+QString normWords(const FigureStanding& standing, const QString& unit) {
+  QString text;
+  if (standing.cut) text = "pass mark " + withUnit(*standing.cut, unit);
+  if (standing.band) {
+    text += text.isEmpty() ? "half of the competent people " : ", half of the competent people ";
+    text += numberText(standing.band->p25) + " to " + withUnit(standing.band->p75, unit);
+  }
+  if (standing.passed) text += *standing.passed ? ": reached" : ": falls short";
+  if (standing.passed && standing.undecided) text += " (not decided by this simulation)";
+  return text;
+}
+
+/// @param judges both attempts were completed: who did less of a task was not better at it
+QString beforeWords(const analytics::CheckpointValue& now, const analytics::CheckpointValue& before, bool judges) {
+  if (!before.value) return {};
+  const QString then = valueText(before);
+  if (!now.value) return then;
+  const DisplayedValue a = displayedValue(before), b = displayedValue(now);
+  const double change = b.number - a.number;
+  constexpr double nothing = 1e-6;  // of what is shown: rounding, as of the path of a tip that stands still
+  if (numberText(a.number) == numberText(b.number) || std::abs(change) < nothing) return then + ", the same";
+  const QString by = withUnit(std::abs(change), b.unit);
+  const analytics::CheckpointDefinition* const definition = analytics::definitionOf(now);
+  const auto direction = definition != nullptr ? definition->direction : analytics::Direction::none;
+  if (!judges || direction == analytics::Direction::none)
+    return then + (change > 0.0 ? ", now more by " : ", now less by ") + by;
+  const bool better = (change < 0.0) == (direction == analytics::Direction::lower);
+  return then + (better ? ", better by " : ", worse by ") + by;
+}
 
 QString figureWords(const FigureReport& figure) {
   QString text = figure.title + ": " + figure.now;
@@ -42,7 +88,7 @@ QString putIntoCohort(const std::filesystem::path& file, const std::filesystem::
     control.progress(of == 0 ? 0.0 : static_cast<double>(step) / static_cast<double>(of), "Verifying");
   };
   const analytics::JudgedRecording found = analytics::assessRecording(file.string(), settings);
-  if (!found.record) throw Error(ErrorKind::damaged, Where{file.string()}, found.report.message);
+  if (!found.record) throw Error(ErrorKind::damaged, Where{file.string()}, analytics::wordsFor(found.report));
   control.progress(1.0, "Storing");
   analytics::CohortDatabase database(cohort.string(), analytics::CohortDatabase::Access::create);
   database.storeAttempt(*found.record, found.values);
@@ -50,6 +96,98 @@ QString putIntoCohort(const std::filesystem::path& file, const std::filesystem::
 }
 
 }  // namespace
+
+AttemptFacts readFacts(const std::filesystem::path& file, const std::filesystem::path& cohort) {
+  AttemptFacts facts;
+  recorder::Recording recording(file);
+  const std::string uuid = recording.header().attempt;
+  if (isThere(cohort)) {
+    const analytics::CohortDatabase database(cohort.string(), Access::read);
+    if (auto row = database.attempt(uuid)) {
+      facts.attempt = std::move(*row);
+      facts.values = database.values(uuid);
+      facts.intervals = database.intervals(uuid);
+      facts.inCohort = true;
+      return facts;
+    }
+  }
+  const recorder::ChainVerdict chain = recording.verifyChain();
+  if (!chain.intact)
+    throw Error(ErrorKind::refused, Where{file.string()}, "its content does not agree with its chain: no figures");
+  recorder::ReplayReport own;
+  own.outcome = recording.outcome();
+  own.complete = recording.complete();
+  own.steps = recording.stepCount();
+  analytics::AttemptRecord& record = facts.attempt;
+  record = analytics::recordOf(recording.header(), own, file.string());
+  record.verification = {};  // nothing was re-simulated
+  if (own.steps > 0) facts.values = analytics::valuesFromObservables(recording);
+  return facts;
+}
+
+std::optional<AttemptFacts> previousInCohort(const AttemptFacts& now, const std::filesystem::path& cohort) {
+  if (now.attempt.participant.empty() || !isThere(cohort)) return std::nullopt;
+  const analytics::CohortDatabase database(cohort.string(), Access::read);
+  std::optional<analytics::AttemptRow> newest;
+  for (analytics::AttemptRow& row : database.listAttempts()) {  // by start
+    if (row.uuid == now.attempt.uuid || row.startUtc > now.attempt.startUtc) continue;
+    if (row.participant != now.attempt.participant || row.comparabilityKey != now.attempt.comparabilityKey) continue;
+    if (!row.parent.empty() || !row.complete || row.synthetic != now.attempt.synthetic) continue;
+    newest = std::move(row);
+  }
+  if (!newest) return std::nullopt;
+  AttemptFacts facts;
+  facts.values = database.values(newest->uuid);
+  facts.attempt = std::move(*newest);
+  facts.inCohort = true;
+  return facts;
+}
+
+std::vector<analytics::Norm> normsOf(const std::filesystem::path& cohort) {
+  if (!isThere(cohort)) return {};
+  return analytics::CohortDatabase(cohort.string(), Access::read).norms();
+}
+
+AttemptReport reportOf(AttemptFacts now, const std::optional<AttemptFacts>& previous,
+                       const std::vector<analytics::Norm>& norms) {
+  AttemptReport report;
+  const std::vector<const analytics::Norm*> fitting = normsFor(now.attempt, norms);
+  std::optional<AttemptStanding> standing;
+  if (!fitting.empty()) standing = standingOf(now.attempt, now.values, *fitting.front(), now.intervals);
+  const bool judged = standing && standing->judged;
+  report.summary =
+      analytics::summaryOf(now.attempt, now.values, judged && standing->grade ? &*standing->grade : nullptr);
+  if (!standing)
+    report.norm = "No norm for this task, device and mode.";
+  else if (judged)
+    report.norm =
+        QString("Norm %1: %2").arg(QString::fromStdString(standing->norm), QString::fromStdString(standing->verdict));
+  else
+    report.norm = QString("Norm %1: judged when the attempt is verified and in the cohort.")
+                      .arg(QString::fromStdString(standing->norm));
+  report.previous = previous ? "Last time: " + startText(previous->attempt.startUtc) + ", " +
+                                   outcomeText(previous->attempt.outcome) + '.'
+                             : QString("No earlier attempt at this task to compare with.");
+  const bool judges = now.attempt.outcome == recorder::Outcome::completed && previous &&
+                      previous->attempt.outcome == recorder::Outcome::completed;
+  for (const analytics::KeyFigure& figure : report.summary.figures) {
+    for (const analytics::CheckpointValue& value : figure.values) {
+      FigureReport& line = report.figures.emplace_back();
+      line.title = figureTitle(value.name, value.subject);
+      line.now = value.value ? valueText(value) : QString::fromStdString(value.reason);
+      const FigureStanding* const stands = standing ? entryOf(standing->figures, value) : nullptr;
+      if (stands != nullptr) line.norm = normWords(*stands, displayedValue(value).unit);
+      const analytics::CheckpointValue* const then = previous ? sameFigure(previous->values, value) : nullptr;
+      if (then != nullptr) line.before = beforeWords(value, *then, judges);
+    }
+  }
+  report.facts = std::move(now);
+  return report;
+}
+
+using parts::button;
+using parts::say;
+using parts::selectableLabel;
 
 EndPage::EndPage(Setup setup, QWidget* parent)
     : QWidget(parent),
@@ -74,13 +212,10 @@ EndPage::EndPage(Setup setup, QWidget* parent)
   replay_ = std::make_unique<Replay>(
       [picture = picture_](std::shared_ptr<const SceneView> view) { picture->showView(std::move(view)); });
   replaySide_ = buildReplay();
-  auto* const row = new QHBoxLayout;
-  row->addWidget(replaySide_, 3);
-  row->addWidget(buildWords(), 2);
-  auto* const layout = parts::bare<QVBoxLayout>(this);
-  layout->addLayout(row, 1);
-  layout->addWidget(strip_);
-  layout->addWidget(buildButtons());
+  store_->setToolTip("Simulates the attempt again, which verifies it, and stores its figures");
+  back_->setToolTip("Simulates the attempt again up to two seconds before the mistake, and goes on from there");
+  QBoxLayout* const buttons = parts::bare(parts::row({store_, parts::spring(), back_, again_, next_, scenes_}));
+  setLayout(parts::bare(parts::column({{parts::row({{replaySide_, 3}, {buildWords(), 2}}), 1}, strip_, buttons})));
   replaySide_->setVisible(setup_.mode == recorder::Mode::practice);
 
   connect(moments_, &QListWidget::itemClicked, this, &EndPage::replayMoment);
@@ -119,12 +254,7 @@ QWidget* EndPage::buildReplay() {
   moments_->setAccessibleName("Moments to see again");
   moments_->setWordWrap(true);
   moments_->setToolTip("A click replays the moment, from two seconds before it");
-  auto* const made = new QWidget;
-  auto* const layout = parts::bare<QVBoxLayout>(made);
-  layout->addWidget(picture_, 3);
-  parts::fill(*layout, {new TransportBar(*replay_), momentsTitle_});
-  layout->addWidget(moments_, 1);
-  return made;
+  return parts::boxed(parts::column({{picture_, 3}, new TransportBar(*replay_), momentsTitle_, {moments_, 1}}));
 }
 
 QWidget* EndPage::buildWords() {
@@ -135,21 +265,9 @@ QWidget* EndPage::buildWords() {
   theme::setGround(*syntheticMark_, QColor(0xf0, 0xe4, 0x42), Qt::black);
   figures_->setAccessibleName("Figures that count");
   auto* const inside = new QWidget;
-  auto* const layout = new QVBoxLayout(inside);
-  parts::fill(*layout, {title_, syntheticMark_, outcome_, verdict_, norm_, previous_, figures_, storeText_});
-  layout->addStretch(1);
+  inside->setLayout(parts::column(
+      {title_, syntheticMark_, outcome_, verdict_, norm_, previous_, figures_, storeText_, parts::spring()}));
   return parts::scrolled(inside);
-}
-
-QWidget* EndPage::buildButtons() {
-  store_->setToolTip("Simulates the attempt again, which verifies it, and stores its figures");
-  back_->setToolTip("Simulates the attempt again up to two seconds before the mistake, and goes on from there");
-  auto* const made = new QWidget;
-  auto* const row = parts::bare<QHBoxLayout>(made);
-  row->addWidget(store_);
-  row->addStretch(1);
-  parts::fill(*row, {back_, again_, next_, scenes_});
-  return made;
 }
 
 void EndPage::showAttempt(const TrainingStatus& status, const QString& result, double stepSeconds, bool next) {
@@ -163,13 +281,10 @@ void EndPage::showAttempt(const TrainingStatus& status, const QString& result, d
   title_->setText("The attempt has ended");
   syntheticMark_->setVisible(synthetic_);
   say(outcome_, result);
-  say(verdict_, {});
+  for (QLabel* const label : {verdict_, previous_, figures_, storeText_}) say(label, {});
   say(norm_, practice ? QString("Reading the figures …")
                       : QString("An assessment shows neither figures nor mistakes here. Whoever instructs finds them "
                                 "in the dashboard, when the attempt is in the cohort."));
-  say(previous_, {});
-  say(figures_, {});
-  say(storeText_, {});
   next_->setVisible(next);
   back_->setVisible(practice && !synthetic_ && !status.figures.mistakes->empty());
   showStoring();

@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// How an attempt went, for whoever made it: the figures that count, against a norm and against the last time.
 #pragma once
 
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <QString>
 #include <QWidget>
+#include <vector>
 
+#include "analytics/assessment/grade.h"
+#include "analytics/cohort/cohort_database.h"
 #include "gui/attempt/long_work.h"
 #include "gui/attempt/replay_transport.h"
-#include "gui/trainer/attempt_report.h"
 #include "gui/trainer/training_session.h"
 
 class QLabel;
@@ -16,6 +20,45 @@ class QListWidget;
 class QPushButton;
 
 namespace calot::gui {
+
+/// An attempt and its figures, from the cohort where it is in it, else from what its recording says of itself.
+struct AttemptFacts {
+  analytics::AttemptRow attempt;
+  std::vector<analytics::CheckpointValue> values;
+  std::vector<analytics::ValueInterval> intervals;
+  bool inCohort = false;
+};
+
+/// One figure that counts.
+struct FigureReport {
+  QString title;   ///< "Elapsed time"
+  QString now;     ///< "41.2 s"
+  QString norm;    ///< "pass mark 38.0 s, competent people 20.1 to 35.5 s: falls short", or empty
+  QString before;  ///< "52.0 s, better by 10.8 s", or empty
+};
+
+struct AttemptReport {
+  AttemptFacts facts;
+  analytics::AttemptSummary summary;
+  QString norm;      ///< what it is held against, and what that finds; or why there is none
+  QString previous;  ///< which attempt it is compared with, or why there is none
+  std::vector<FigureReport> figures;
+};
+
+/// @param file a recording that was written to its end @param cohort may not exist yet; empty: none
+/// @throws Error as recorder::Recording and CohortDatabase
+AttemptFacts readFacts(const std::filesystem::path& file, const std::filesystem::path& cohort);
+
+/// The participant's attempt before this one at the same task: same comparability key, whole, no branch, and made by
+/// the same kind of operator. None for an attempt without a pseudonym.
+std::optional<AttemptFacts> previousInCohort(const AttemptFacts& now, const std::filesystem::path& cohort);
+
+/// Norms of a cohort. @param cohort may not exist yet; empty: none
+std::vector<analytics::Norm> normsOf(const std::filesystem::path& cohort);
+
+/// @param previous none: there is none
+AttemptReport reportOf(AttemptFacts now, const std::optional<AttemptFacts>& previous,
+                       const std::vector<analytics::Norm>& norms);
 
 class ScenePictureWidget;
 class WorkStrip;
@@ -55,7 +98,6 @@ class EndPage : public QWidget {
  private:
   QWidget* buildReplay();
   QWidget* buildWords();
-  QWidget* buildButtons();
   void read();
   void showReport(const AttemptReport& report);
   void replayMoment();

@@ -69,6 +69,12 @@ constexpr std::string_view drivenKeys = "12349", otherKeys = "56780";
 
 std::size_t keyedInstruments() { return std::min(instruments().size(), drivenKeys.size()); }
 
+double squared(QPointF p) { return QPointF::dotProduct(p, p); }
+
+constexpr double notch = 120.0;           // of QWheelEvent::angleDelta
+constexpr std::size_t drawersAtOnce = 2;  // the picture follows the hand: it is to come as often as the machine can
+constexpr double wantedRate = 100.0 / 3;  // pictures a second, as many as are handed out (ViewTap)
+
 }  // namespace
 
 std::optional<KeyAction> actionOf(int key) {
@@ -122,12 +128,6 @@ std::vector<KeyHelp> keyHelp(bool mouse, bool scope, bool pauses) {
   return out;
 }
 
-namespace {
-
-double squared(QPointF p) { return QPointF::dotProduct(p, p); }
-
-}  // namespace
-
 QPointF PointerTrack::moved(QPointF now) {
   const QPointF last = last_.value_or(now);
   last_ = now;
@@ -136,12 +136,6 @@ QPointF PointerTrack::moved(QPointF now) {
 }
 
 using recorder::MouseControl;
-
-namespace {
-constexpr double notch = 120.0;           // of QWheelEvent::angleDelta
-constexpr std::size_t drawersAtOnce = 2;  // the picture follows the hand: it is to come as often as the machine can
-constexpr double wantedRate = 100.0 / 3;  // pictures a second, as many as are handed out (ViewTap)
-}  // namespace
 
 OperationView::OperationView(std::shared_ptr<recorder::MouseInput> mouse, std::shared_ptr<recorder::ScopeInput> scope,
                              QWidget* parent)

@@ -12,6 +12,8 @@
 #include "recorder/sources/devices/window_input.h"
 #include "sim/scene/samples.h"
 
+class QLabel;
+
 namespace calot::gui {
 
 struct KeyAction {
@@ -64,12 +66,6 @@ class PointerTrack {
  private:
   std::optional<QPointF> last_, put_;
 };
-
-}  // namespace calot::gui
-
-class QLabel;
-
-namespace calot::gui {
 
 /// The picture of the operation, and the hands of whoever looks at it: what mouse and keyboard do over it goes to a
 /// MouseInput while it is active. Where the mouse drives a hand, the picture holds the pointer: it is hidden, and comes

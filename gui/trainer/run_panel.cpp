@@ -1,19 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "gui/trainer/run_panel.h"
 
+#include <algorithm>
 #include <cmath>
 #include <QAccessible>
 #include <QApplication>
-#include <QBoxLayout>
 #include <QGridLayout>
 #include <QLabel>
 #include <QListWidget>
+#include <QLocale>
 #include <QProgressBar>
 #include <QPushButton>
 #include <QRegularExpression>
 #include <QStackedWidget>
+#include <QTextToSpeech>
+#include <utility>
 
-#include "gui/attempt/theme.h"
 #include "gui/attempt/widget_parts.h"
 
 namespace calot::gui {
@@ -30,9 +32,11 @@ constexpr const char* hintStyle =
 
 constexpr const char* assistantKeys = "assistantKeys";
 
+/// Remedy where nothing can be read aloud.
+constexpr const char* remedy = "; install qt6-speech-speechd-plugin and speech-dispatcher, or qt6-speech-flite-plugin";
+
 QWidget* keyPage(bool mouse, bool scope, bool pauses) {
-  auto* const page = new QWidget;
-  auto* const grid = parts::bare<QGridLayout>(page);
+  auto* const grid = new QGridLayout;
   grid->setVerticalSpacing(3);
   grid->setColumnStretch(1, 1);
   int row = 0;
@@ -50,7 +54,7 @@ QWidget* keyPage(bool mouse, bool scope, bool pauses) {
     ++row;
   }
   grid->setRowStretch(row, 1);
-  return page;
+  return parts::boxed(grid);
 }
 
 }  // namespace
@@ -86,10 +90,10 @@ RunPanel::RunPanel(recorder::Mode mode, bool mouse, bool scope, QWidget* parent)
       progress_(parts::named("progress", new QProgressBar)),
       lower_(new QStackedWidget),
       keys_(parts::scrolled(keyPage(mouse, scope, mode == recorder::Mode::practice))),
-      mistakes_(new QWidget),
       mistakesTitle_(plainLabel("mistakesTitle")),
       list_(parts::named("mistakes", new QListWidget)),
       back_(button("Go &back to 2 s before it", "back")),
+      mistakes_(parts::boxed(parts::column({mistakesTitle_, {list_, 1}, back_}))),
       pause_(button("&Pause", "pause")),
       finish_(button("&End the attempt", "finish")),
       restart_(button("Sta&rt again", "restart")),
@@ -105,33 +109,18 @@ RunPanel::RunPanel(recorder::Mode mode, bool mouse, bool scope, QWidget* parent)
   list_->setWordWrap(true);
   back_->setToolTip("Simulates the attempt again up to two seconds before the mistake, and goes on from there");
 
-  auto* const lower = parts::bare<QVBoxLayout>(mistakes_);
   mistakesTitle_->setAlignment(Qt::AlignTop | Qt::AlignLeft);  // also where there is no list below it
-  lower->addWidget(mistakesTitle_);
-  lower->addWidget(list_, 1);
-  lower->addWidget(back_);
   lower_->addWidget(keys_);
   lower_->addWidget(mistakes_);
-
-  auto* const head = new QHBoxLayout;
-  head->addWidget(stage_, 1);
-  head->addWidget(modeLabel_);
   auto* const buttons = new QGridLayout;
   buttons->addWidget(pause_, 0, 0);
   buttons->addWidget(finish_, 0, 1);
   buttons->addWidget(restart_, 1, 0);
   buttons->addWidget(scenes_, 1, 1);
-
-  auto* const layout = new QVBoxLayout(this);
-  layout->addLayout(head);
-  parts::fill(*layout, {progress_, time_, deadlines_});
-  layout->addSpacing(6);
-  parts::fill(*layout, {phase_, score_, hint_, pointer_, result_});
-  layout->addSpacing(6);
-  parts::fill(*layout, {hand_[0], hand_[1], assistant_});
-  layout->addSpacing(10);
-  layout->addWidget(lower_, 1);
-  layout->addLayout(buttons);
+  QBoxLayout* const rows = parts::column({parts::row({{stage_, 1}, modeLabel_}), progress_, time_, deadlines_});
+  parts::fill(rows, {parts::space(6), phase_, score_, hint_, pointer_, result_});
+  parts::fill(rows, {parts::space(6), hand_[0], hand_[1], assistant_, parts::space(10), {lower_, 1}, buttons});
+  setLayout(rows);
 
   connect(pause_, &QPushButton::clicked, this, &RunPanel::pauseRequested);
   connect(finish_, &QPushButton::clicked, this, &RunPanel::finishRequested);
@@ -199,6 +188,66 @@ void RunPanel::showMistakes(const TrainingStatus& status, double stepSeconds) {
 
 void RunPanel::goBack() {
   if (const auto time = chosenBranch(*list_)) emit backRequested(*time);
+}
+
+Voice::Voice(QObject* parent) : QObject(parent) {
+  if (QTextToSpeech::availableEngines().isEmpty()) return;
+  speech_ = new QTextToSpeech(this);
+  // The words are English whatever the system speaks.
+  const QList<QLocale> locales = speech_->availableLocales();
+  const auto english = std::find_if(locales.begin(), locales.end(),
+                                    [](const QLocale& locale) { return locale.language() == QLocale::English; });
+  if (english != locales.end() && speech_->locale().language() != QLocale::English) speech_->setLocale(*english);
+  connect(speech_, &QTextToSpeech::stateChanged, this, [this](QTextToSpeech::State state) {
+    if (state == QTextToSpeech::Ready) sayNext();
+  });
+  connect(speech_, &QTextToSpeech::errorOccurred, this, [this] {
+    waiting_.clear();
+    present_.clear();
+    emit failed(fault());
+  });
+}
+
+QString Voice::fault() const {
+  if (speech_ == nullptr) return QString("no speech synthesis is installed") + remedy;
+  if (speech_->state() != QTextToSpeech::Error) return {};
+  const QString why = speech_->errorString().simplified();
+  return "speech synthesis \"" + speech_->engine() + "\" does not work" + (why.isEmpty() ? "" : ": " + why) + remedy;
+}
+
+void Voice::say(const QString& subject, const QString& words) {
+  if (!fault().isEmpty()) return;
+  const auto same =
+      std::find_if(waiting_.begin(), waiting_.end(), [&](const News& news) { return news.subject == subject; });
+  if (same != waiting_.end()) {
+    same->words = words;
+    return;
+  }
+  if (present_ == subject) {
+    // A replaced sentence is not finished, and its replacement goes first.
+    waiting_.push_front({subject, words});
+    speech_->stop();
+    // An engine that was silent already has no change of state to tell.
+    if (present_ == subject && speech_->state() == QTextToSpeech::Ready) sayNext();
+    return;
+  }
+  waiting_.push_back({subject, words});
+  if (present_.isEmpty()) sayNext();
+}
+
+void Voice::stop() {
+  waiting_.clear();
+  if (speech_ != nullptr) speech_->stop();
+  present_.clear();
+}
+
+void Voice::sayNext() {
+  present_.clear();
+  if (waiting_.empty()) return;
+  const News news = std::move(waiting_.front());
+  waiting_.pop_front();
+  present_ = news.subject;
+  speech_->say(news.words);
 }
 
 }  // namespace calot::gui

@@ -2,8 +2,11 @@
 #pragma once
 
 #include <array>
+#include <deque>
 #include <memory>
 #include <optional>
+#include <QObject>
+#include <QString>
 #include <QWidget>
 #include <vector>
 
@@ -15,6 +18,7 @@ class QListWidget;
 class QProgressBar;
 class QPushButton;
 class QStackedWidget;
+class QTextToSpeech;
 
 namespace calot::gui {
 
@@ -52,11 +56,42 @@ class RunPanel : public QWidget {
   QLabel* assistant_;
   QProgressBar* progress_;
   QStackedWidget* lower_;
-  QWidget *keys_, *mistakes_;
+  QWidget* keys_;
   QLabel* mistakesTitle_;
   QListWidget* list_;
-  QPushButton *back_, *pause_, *finish_, *restart_, *scenes_;
+  QPushButton* back_;
+  QWidget* mistakes_;
+  QPushButton *pause_, *finish_, *restart_, *scenes_;
   std::shared_ptr<const std::vector<Mistake>> listed_;
+};
+
+/// Reads words aloud by the system's speech synthesis, through whichever of Qt's engines is installed. News waits for
+/// what is being said; of one subject only the latest is worth saying, and cuts off what it replaces.
+class Voice : public QObject {
+  Q_OBJECT
+ public:
+  explicit Voice(QObject* parent = nullptr);
+
+  /// In one line why nothing can be read aloud, and what to do; empty: it can.
+  [[nodiscard]] QString fault() const;
+
+  /// @param subject what the words are of
+  void say(const QString& subject, const QString& words);
+  void stop();
+
+ signals:
+  /// Synthesis ended in the middle: nothing more will be heard.
+  void failed(const QString& why);
+
+ private:
+  struct News {
+    QString subject, words;
+  };
+  void sayNext();
+
+  QTextToSpeech* speech_ = nullptr;  ///< null where no engine is installed
+  QString present_;                  ///< subject of what is being said; empty: silence
+  std::deque<News> waiting_;
 };
 
 }  // namespace calot::gui

@@ -2,7 +2,6 @@
 #include "gui/trainer/scenes_page.h"
 
 #include <algorithm>
-#include <QBoxLayout>
 #include <QIcon>
 #include <QLabel>
 #include <QListWidget>
@@ -11,11 +10,9 @@
 #include <system_error>
 #include <utility>
 
-#include "gui/attempt/figure_standing.h"
 #include "gui/attempt/figure_text.h"
 #include "gui/attempt/widget_parts.h"
 #include "gui/trainer/trainer_texts.h"
-#include "gui/words/problem_words.h"
 #include "recorder/base/errors.h"
 
 namespace calot::gui {
@@ -26,7 +23,7 @@ std::vector<PastAttempt> historyIn(const std::filesystem::path& cohort, const st
   std::error_code ignored;
   if (participant.empty() || cohort.empty() || !std::filesystem::exists(cohort, ignored)) return {};
   const analytics::CohortDatabase database(cohort.string(), Access::read);
-  const std::vector<analytics::Norm> norms = analytics::AssessmentDatabase(cohort.string(), Access::read).norms();
+  const std::vector<analytics::Norm> norms = database.norms();
   std::vector<PastAttempt> history;
   for (const analytics::AttemptRow& row : database.listAttempts()) {
     if (row.participant != participant || row.synthetic) continue;
@@ -85,7 +82,7 @@ ScenesPage::ScenesPage(bool practice, bool demonstrates, QWidget* parent)
       list_(parts::named("scenes", new QListWidget)),
       past_(parts::named("past", new QListWidget)),
       pastTitle_(parts::plainLabel("pastTitle")),
-      pastSide_(new QWidget),
+      pastSide_(parts::boxed(parts::column({pastTitle_, {past_, 1}}))),
       begin_(parts::button("&Begin", "begin")),
       tutorial_(parts::button("&Learn the controls", "tutorial")),
       demonstration_(parts::button("&Watch a demonstration", "demonstration")) {
@@ -111,50 +108,32 @@ ScenesPage::ScenesPage(bool practice, bool demonstrates, QWidget* parent)
   tutorial_->setVisible(practice);
   for (QPushButton* const button : {begin_, tutorial_, demonstration_}) button->setEnabled(false);
 
-  auto* const side = parts::bare<QVBoxLayout>(pastSide_);
-  side->addWidget(pastTitle_);
-  side->addWidget(past_, 1);
   pastSide_->hide();
-  auto* const middle = new QHBoxLayout;
-  middle->addWidget(list_, 3);
-  middle->addWidget(pastSide_, 2);
-  auto* const buttons = new QHBoxLayout;
-  buttons->addWidget(tutorial_);
-  buttons->addStretch(1);
-  parts::fill(*buttons, {demonstration_, begin_});
   auto* const column = new QWidget;
   column->setMaximumWidth(1300);
-  auto* const inner = new QVBoxLayout(column);
-  parts::fill(*inner, {title, text});
-  inner->addSpacing(6);
-  inner->addLayout(middle, 1);
-  inner->addLayout(buttons);
-  auto* const outer = new QHBoxLayout(this);
+  column->setLayout(parts::column({title,
+                                   text,
+                                   parts::space(6),
+                                   {parts::row({{list_, 3}, {pastSide_, 2}}), 1},
+                                   parts::row({tutorial_, parts::spring(), demonstration_, begin_})}));
+  QBoxLayout* const outer = parts::row({parts::spring(), {column, 20}, parts::spring()});
   outer->setContentsMargins(16, 8, 16, 8);
-  outer->addStretch(1);
-  outer->addWidget(column, 20);
-  outer->addStretch(1);
+  setLayout(outer);
 
-  const auto choose = [this] {
-    if (const QString file = chosenFile(); !file.isEmpty()) emit chosen(file);
+  const auto choose = [this](Purpose purpose) {
+    const int row = list_->currentRow();
+    if (row >= 0) emit chosen(QString::fromStdString(choices_[static_cast<std::size_t>(row)].file.string()), purpose);
   };
-  connect(list_, &QListWidget::itemActivated, this, choose);
+  connect(list_, &QListWidget::itemActivated, this, [choose] { choose(Purpose::own); });
   connect(list_, &QListWidget::currentRowChanged, this, [this](int row) {
     for (QPushButton* const button : {begin_, demonstration_}) button->setEnabled(row >= 0);
     showPast();
   });
-  connect(begin_, &QPushButton::clicked, this, choose);
-  connect(demonstration_, &QPushButton::clicked, this, [this] {
-    if (const QString file = chosenFile(); !file.isEmpty()) emit demonstrationRequested(file);
-  });
+  connect(begin_, &QPushButton::clicked, this, [choose] { choose(Purpose::own); });
+  connect(demonstration_, &QPushButton::clicked, this, [choose] { choose(Purpose::demonstration); });
   connect(tutorial_, &QPushButton::clicked, this, [this] {
-    if (!choices_.empty()) emit tutorialRequested(QString::fromStdString(choices_.front().file.string()));
+    if (!choices_.empty()) emit chosen(QString::fromStdString(choices_.front().file.string()), Purpose::controls);
   });
-}
-
-QString ScenesPage::chosenFile() const {
-  const int row = list_->currentRow();
-  return row < 0 ? QString() : QString::fromStdString(choices_[static_cast<std::size_t>(row)].file.string());
 }
 
 void ScenesPage::setScenes(const std::vector<SceneChoice>& scenes) {

@@ -9,11 +9,21 @@
 #include <string>
 #include <vector>
 
-#include "analytics/cohort/assessment_database.h"
 #include "analytics/cohort/cohort_database.h"
 #include "gui/trainer/course.h"
 
+class QLabel;
+class QListWidget;
+class QPushButton;
+
 namespace calot::gui {
+
+/// Purpose of an attempt.
+enum class Purpose {
+  own,            ///< the trainee's
+  controls,       ///< the trainee's, who is asked for one control after the other; in practice
+  demonstration,  ///< a performer's, to be watched: synthetic, without the trainee's pseudonym
+};
 
 /// One attempt of the past.
 struct PastAttempt {
@@ -37,14 +47,6 @@ QString progressText(const std::vector<PastAttempt>& history, const std::string&
 /// "2026-02-03 14:05 UTC, practice: completed after 1:02.5": one attempt in a line, with what the norm finds.
 QString pastText(const PastAttempt& attempt);
 
-}  // namespace calot::gui
-
-class QLabel;
-class QListWidget;
-class QPushButton;
-
-namespace calot::gui {
-
 /// Page shown when no scene is given: greets, and offers the course's tasks and all other scenes with their pictures;
 /// of the one that is chosen, what the trainee has done so far.
 class ScenesPage : public QWidget {
@@ -58,14 +60,11 @@ class ScenesPage : public QWidget {
   void focusList();
 
  signals:
-  void chosen(const QString& file);
-  void tutorialRequested(const QString& file);       ///< the controls, on this scene
-  void demonstrationRequested(const QString& file);  ///< a performer, on this scene
+  void chosen(const QString& file, calot::gui::Purpose purpose);
 
  private:
   void showTexts();
   void showPast();
-  [[nodiscard]] QString chosenFile() const;
 
   std::vector<SceneChoice> choices_;
   std::optional<std::vector<PastAttempt>> history_;

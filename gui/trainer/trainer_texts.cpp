@@ -112,43 +112,6 @@ QString pointerText(const TrainingStatus& status, recorder::Mode mode, Pointer p
   return {};
 }
 
-}  // namespace
-
-QString clockText(double seconds) {
-  return QString::fromStdString(timeText(seconds)).replace('.', QLocale().decimalPoint());
-}
-
-QString mistakeText(const Mistake& mistake) {
-  return clockText(mistake.time) + (mistake.critical ? "  critical: " : "  ") + QString::fromStdString(mistake.text);
-}
-
-PanelText panelText(const TrainingStatus& status, const SceneDescription& scene, const std::string& summary,
-                    recorder::Mode mode, std::optional<Hand> driven, Pointer pointer) {
-  PanelText out;
-  out.stage = stageText(status);
-  out.mode = mode == recorder::Mode::practice ? "Practice" : "Assessment";
-  if (status.operatorKind != recorder::OperatorKind::human && !status.attempt.empty()) out.mode += ", synthetic";
-  if (status.stage == Stage::preparing) return out;
-  const AttemptFigures& figures = status.figures;
-  const bool practice = mode == recorder::Mode::practice;
-  out.time = clockText(figures.time);
-  out.deadlines = deadlineText(figures);
-  out.late = status.stage == Stage::running && figures.missedLately > 0;
-  if (figures.procedure.phase != Phase::none)
-    out.phase = "Phase: " + QString::fromStdString(wordFor(figures.procedure.phase));
-  if (figures.retraction)
-    out.assistant = QString("Assistant: retracts %1 mm").arg(1e3 * *figures.retraction, 0, 'f', 0);
-  if (practice) out.score = scoreText(scene, figures);
-  if (practice && status.stage == Stage::running) out.hint = QString::fromStdString(hintFor(scene, summary, figures));
-  for (std::size_t h = 0; h < handCount; ++h)
-    out.hand[h] = handText(figures.hand[h], status.exchange[h], h, driven && static_cast<std::size_t>(*driven) == h);
-  out.pointer = pointerText(status, mode, pointer);
-  out.result = resultText(status);
-  return out;
-}
-
-namespace {
-
 bool acts(const AttemptFigures::Hand& hand, InstrumentAction action) {
   return instrumentOf(hand.instrument).action == action;
 }
@@ -199,7 +162,50 @@ std::string viewHint(const SceneDescription& scene, const AttemptFigures& figure
                      spoken(scene.procedure.bed), std::ceil(100.0 * p.lowerThirdAttached));
 }
 
+constexpr double farEnough = 0.015;           // m across the picture
+constexpr double deepEnough = 0.010;          // m along the line of sight
+constexpr double opened = 0.4, closed = 0.1;  // rad
+constexpr double rotated = 0.4;               // rad about the shaft
+
+double rotationAboutShaft(const Quat& from, const Quat& to) {
+  const Quat change = from.conjugate() * to;
+  return 2.0 * std::abs(std::atan2(change.z(), std::abs(change.w())));
+}
+
 }  // namespace
+
+QString clockText(double seconds) {
+  return QString::fromStdString(timeText(seconds)).replace('.', QLocale().decimalPoint());
+}
+
+QString mistakeText(const Mistake& mistake) {
+  return clockText(mistake.time) + (mistake.critical ? "  critical: " : "  ") + QString::fromStdString(mistake.text);
+}
+
+PanelText panelText(const TrainingStatus& status, const SceneDescription& scene, const std::string& summary,
+                    recorder::Mode mode, std::optional<Hand> driven, Pointer pointer) {
+  PanelText out;
+  out.stage = stageText(status);
+  out.mode = mode == recorder::Mode::practice ? "Practice" : "Assessment";
+  if (status.operatorKind != recorder::OperatorKind::human && !status.attempt.empty()) out.mode += ", synthetic";
+  if (status.stage == Stage::preparing) return out;
+  const AttemptFigures& figures = status.figures;
+  const bool practice = mode == recorder::Mode::practice;
+  out.time = clockText(figures.time);
+  out.deadlines = deadlineText(figures);
+  out.late = status.stage == Stage::running && figures.missedLately > 0;
+  if (figures.procedure.phase != Phase::none)
+    out.phase = "Phase: " + QString::fromStdString(wordFor(figures.procedure.phase));
+  if (figures.retraction)
+    out.assistant = QString("Assistant: retracts %1 mm").arg(1e3 * *figures.retraction, 0, 'f', 0);
+  if (practice) out.score = scoreText(scene, figures);
+  if (practice && status.stage == Stage::running) out.hint = QString::fromStdString(hintFor(scene, summary, figures));
+  for (std::size_t h = 0; h < handCount; ++h)
+    out.hand[h] = handText(figures.hand[h], status.exchange[h], h, driven && static_cast<std::size_t>(*driven) == h);
+  out.pointer = pointerText(status, mode, pointer);
+  out.result = resultText(status);
+  return out;
+}
 
 std::string whatIsUndone(const SceneDescription& scene, const AttemptFigures& figures) {
   if (!figures.touched) return "nothing was touched";
@@ -229,20 +235,6 @@ std::string hintFor(const SceneDescription& scene, const std::string& summary, c
                      take(figures, InstrumentAction::burn), spoken(scene.procedure.specimen),
                      std::ceil(100.0 * figures.attached));
 }
-
-namespace {
-
-constexpr double farEnough = 0.015;           // m across the picture
-constexpr double deepEnough = 0.010;          // m along the line of sight
-constexpr double opened = 0.4, closed = 0.1;  // rad
-constexpr double rotated = 0.4;               // rad about the shaft
-
-double rotationAboutShaft(const Quat& from, const Quat& to) {
-  const Quat change = from.conjugate() * to;
-  return 2.0 * std::abs(std::atan2(change.z(), std::abs(change.w())));
-}
-
-}  // namespace
 
 std::vector<ControlsTutorial::Lesson> ControlsTutorial::lessonsFor(bool mouse) {
   using Hand = AttemptFigures::Hand;

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <chrono>
 #include <iterator>
-#include <QBoxLayout>
 #include <QCoreApplication>
 #include <QEvent>
 #include <QLabel>
@@ -18,8 +17,6 @@
 #include "gui/trainer/end_page.h"
 #include "gui/trainer/operation_view.h"
 #include "gui/trainer/run_panel.h"
-#include "gui/trainer/scenes_page.h"
-#include "gui/trainer/voice.h"
 #include "gui/words/problem_words.h"
 #include "recorder/base/errors.h"
 
@@ -45,15 +42,11 @@ TrainerWindow::TrainerWindow(TrainerSetup setup, QWidget* parent)
   problem_->setStyleSheet(
       "QLabel { background: #fbe3d6; color: #5a1e00; border-left: 6px solid #d55e00; padding: 8px; }");
   problem_->hide();
-  auto* const row = parts::bare<QHBoxLayout>(operation_);
-  row->addWidget(view_, 1);
-  row->addWidget(panel_);
+  operation_->setLayout(parts::bare(parts::row({{view_, 1}, panel_})));
   for (QWidget* const page : {static_cast<QWidget*>(scenes_), operation_, static_cast<QWidget*>(end_)})
     stack_->addWidget(page);
   auto* const centre = new QWidget;
-  auto* const layout = new QVBoxLayout(centre);
-  layout->addWidget(problem_);
-  layout->addWidget(stack_, 1);
+  centre->setLayout(parts::column({problem_, {stack_, 1}}));
   setCentralWidget(centre);
   buildMenus();
   resize(sizeHint());  // not what a small screen would make of it: the picture has 1280 by 720
@@ -68,11 +61,7 @@ TrainerWindow::TrainerWindow(TrainerSetup setup, QWidget* parent)
 TrainerWindow::~TrainerWindow() { endSession(); }
 
 void TrainerWindow::connectPages() {
-  connect(scenes_, &ScenesPage::chosen, this, [this](const QString& file) { openScene(file); });
-  connect(scenes_, &ScenesPage::tutorialRequested, this,
-          [this](const QString& file) { openScene(file, Purpose::controls); });
-  connect(scenes_, &ScenesPage::demonstrationRequested, this,
-          [this](const QString& file) { openScene(file, Purpose::demonstration); });
+  connect(scenes_, &ScenesPage::chosen, this, &TrainerWindow::openScene);
   connect(view_, &OperationView::mountRequested, this, &TrainerWindow::mount);
   connect(view_, &OperationView::retractionRequested, this, [this](bool more) {
     if (session_) session_->askForRetraction(more);
@@ -316,29 +305,25 @@ void TrainerWindow::savePicture(const QString& file) {
 
 void TrainerWindow::buildMenus() {
   QMenu* const attempt = menuBar()->addMenu("&Attempt");
-  pauseAction_ =
-      attempt->addAction("&Pause or go on", QKeySequence(Qt::CTRL | Qt::Key_P), this, [this] { togglePause(); });
+  pauseAction_ = attempt->addAction("&Pause or go on", Qt::CTRL | Qt::Key_P, this, &TrainerWindow::togglePause);
   pauseAction_->setVisible(setup_.settings.attempt.mode == recorder::Mode::practice);
-  finishAction_ = attempt->addAction("&End", QKeySequence(Qt::CTRL | Qt::Key_E), this, [this] {
+  finishAction_ = attempt->addAction("&End", Qt::CTRL | Qt::Key_E, this, [this] {
     if (session_) session_->finish();
     refresh();
   });
-  restartAction_ = attempt->addAction("Start a&gain", QKeySequence(Qt::CTRL | Qt::Key_R), this, [this] { restart(); });
-  skipAction_ = attempt->addAction("&Skip this control", QKeySequence(Qt::CTRL | Qt::Key_K), this, [this] {
+  restartAction_ = attempt->addAction("Start a&gain", Qt::CTRL | Qt::Key_R, this, &TrainerWindow::restart);
+  skipAction_ = attempt->addAction("&Skip this control", Qt::CTRL | Qt::Key_K, this, [this] {
     if (tutorial_) tutorial_->skip();
     refresh();
   });
-  attempt->addAction("&Other scene", QKeySequence(QKeySequence::Open), this, [this] { chooseScene(); });
-  attempt->addAction("&Quit", QKeySequence(Qt::CTRL | Qt::Key_Q), this, [this] { close(); });
+  attempt->addAction("&Other scene", QKeySequence::Open, this, &TrainerWindow::chooseScene);
+  attempt->addAction("&Quit", Qt::CTRL | Qt::Key_Q, this, &TrainerWindow::close);
   QMenu* const look = menuBar()->addMenu("&View");
-  look->addAction("&Full screen", QKeySequence(Qt::Key_F11), this,
-                  [this] { setWindowState(windowState() ^ Qt::WindowFullScreen); });
-  aloudAction_ = look->addAction("Read &aloud");
-  aloudAction_->setShortcut(QKeySequence(Qt::CTRL | Qt::Key_L));
+  look->addAction("&Full screen", Qt::Key_F11, this, [this] { setWindowState(windowState() ^ Qt::WindowFullScreen); });
+  aloudAction_ = look->addAction("Read &aloud", Qt::CTRL | Qt::Key_L, this, &TrainerWindow::setAloud);
   aloudAction_->setToolTip("What the panel asks for and says is spoken, too");
   aloudAction_->setCheckable(true);
-  connect(aloudAction_, &QAction::triggered, this, &TrainerWindow::setAloud);
-  look->addAction("&Operation", QKeySequence(Qt::Key_F6), this, [this] { view_->setFocus(); });
+  look->addAction("&Operation", Qt::Key_F6, this, [this] { view_->setFocus(); });
 }
 
 }  // namespace calot::gui

@@ -44,13 +44,6 @@ struct TrainerSetup {
 class TrainerWindow : public QMainWindow {
   Q_OBJECT
  public:
-  /// Purpose of an attempt.
-  enum class Purpose {
-    own,            ///< the trainee's
-    controls,       ///< the trainee's, who is asked for one control after the other; in practice
-    demonstration,  ///< a performer's, to be watched: synthetic, without the trainee's pseudonym
-  };
-
   explicit TrainerWindow(TrainerSetup setup, QWidget* parent = nullptr);
   /// Ends what runs; its recording is whole.
   ~TrainerWindow() override;

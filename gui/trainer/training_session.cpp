@@ -3,21 +3,19 @@
 
 #include <fmt/format.h>
 #include <algorithm>
-#include <array>
-#include <chrono>
 #include <iterator>
 #include <utility>
 
+#include "analytics/checkpoints/replay_words.h"
 #include "gui/trainer/trainer_texts.h"
 #include "gui/words/problem_words.h"
 #include "recorder/base/errors.h"
-#include "recorder/branch.h"
 #include "recorder/live/worker_pool.h"
-#include "recorder/live/wrapped_sources.h"
 #include "recorder/loop.h"
 #include "recorder/sources/devices/device_source.h"
 #include "recorder/sources/devices/mouse_device.h"
 #include "recorder/sources/scope/scope_source.h"
+#include "recorder/sources/source.h"
 
 namespace calot::gui {
 namespace {
@@ -35,6 +33,8 @@ void setPlaces(recorder::MouseInput& mouse, const SceneDescription& scene, const
   mouse.setPorts(ports);
   mouse.setEyes(eyes);
 }
+
+constexpr std::chrono::milliseconds longSilence(500);
 
 }  // namespace
 
@@ -64,12 +64,6 @@ void MouseAttemptInput::setOut(recorder::SampleSource& source, const SceneDescri
 }
 
 using recorder::Outcome;
-
-namespace {
-
-constexpr std::chrono::milliseconds longSilence(500);
-
-}  // namespace
 
 TrainingSession::TrainingSession(TrainingSettings settings, std::shared_ptr<AttemptInput> input, ViewTap::Sink sink)
     : settings_(std::move(settings)), input_(std::move(input)), tap_(std::move(sink)), thread_([this] { work(); }) {}
@@ -261,7 +255,7 @@ void TrainingSession::attempt(std::optional<double> back) {
 
 void TrainingSession::takeParent(recorder::Recording& parent, recorder::Session& session, std::uint64_t fork,
                                  recorder::RecordingWriter& writer) {
-  recorder::takeParent(parent, session, fork, [&](std::uint64_t step, std::uint64_t of) {
+  const auto divergence = recorder::takeParent(parent, session, fork, [&](std::uint64_t step, std::uint64_t of) {
     giveWay();
     if (writer.failed()) {
       session.end(Outcome::technicalFailure);
@@ -270,6 +264,7 @@ void TrainingSession::takeParent(recorder::Recording& parent, recorder::Session&
     const std::lock_guard lock(mutex_);
     status_.progress = static_cast<double>(step) / static_cast<double>(of);
   });
+  if (divergence) throw Error(ErrorKind::refused, Where{parent.path().string()}, analytics::wordsFor(*divergence));
 }
 
 void TrainingSession::run(recorder::Session& session, recorder::SampleSource& source,
@@ -278,8 +273,22 @@ void TrainingSession::run(recorder::Session& session, recorder::SampleSource& so
                           const std::filesystem::path& file) {
   tap_.begin(session);
   session.join(tap_);
-  awaitPicture(session);
-  if (!header.parent.empty()) countDown(controlled);
+  // Nobody operates blindly. Meanwhile what the first steps need is worked out.
+  const Clock::time_point begin = Clock::now();
+  session.precompute();
+  during(settings_.firstPicture - (Clock::now() - begin), [this](Clock::duration) { return !tap_.isShown(); });
+  // A person who went back looks first and acts then. Motion of the hands meanwhile is discarded.
+  if (!header.parent.empty()) {
+    during(settings_.countdown, [&](Clock::duration left) {
+      {
+        const std::lock_guard lock(mutex_);
+        status_.stage = Stage::countdown;
+        status_.countdown = static_cast<int>(std::chrono::ceil<std::chrono::seconds>(left).count());
+      }
+      controlled.rest();
+      return true;
+    });
+  }
   recorder::RunSettings run;
   run.live = true;
   run.progress = [&](std::uint64_t) {
@@ -317,35 +326,15 @@ void TrainingSession::run(recorder::Session& session, recorder::SampleSource& so
   keepResult(report, source);
 }
 
-/// Nobody operates blindly. Meanwhile what the first steps need is worked out.
-void TrainingSession::awaitPicture(recorder::Session& session) {
-  using Clock = std::chrono::steady_clock;
-  constexpr std::chrono::milliseconds glance(10);
-  const Clock::time_point end = Clock::now() + settings_.firstPicture;
-  session.precompute();
-  while (!tap_.isShown() && Clock::now() < end) {
-    {
-      const std::lock_guard lock(mutex_);
-      if (command_) return;
-    }
-    std::this_thread::sleep_for(glance);
-  }
-}
-
-/// A person who went back looks first and acts then. Motion of the hands meanwhile is discarded.
-void TrainingSession::countDown(recorder::SampleSource& source) {
-  using Clock = std::chrono::steady_clock;
-  constexpr std::chrono::milliseconds glance(10);
-  const Clock::time_point end = Clock::now() + settings_.countdown;
+void TrainingSession::during(Clock::duration time, const std::function<bool(Clock::duration)>& call) {
+  const Clock::time_point end = Clock::now() + time;
   for (Clock::time_point now = Clock::now(); now < end; now = Clock::now()) {
     {
       const std::lock_guard lock(mutex_);
       if (command_) return;
-      status_.stage = Stage::countdown;
-      status_.countdown = static_cast<int>(std::chrono::ceil<std::chrono::seconds>(end - now).count());
     }
-    source.rest();
-    std::this_thread::sleep_for(glance);
+    if (!call(end - now)) return;
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
 }
 
@@ -356,8 +345,8 @@ void TrainingSession::keepResult(const recorder::RunReport& report, const record
     status_.problem = fmt::format(
         "{}: {} ticks got other forces on the haptic thread than when computed again; the recording will not replay",
         status_.file.string(), report.disagreements);
-  } else if (!report.fault.empty()) {
-    status_.problem = fmt::format("{}: {}", status_.file.string(), report.fault);
+  } else if (report.runaway) {
+    status_.problem = fmt::format("{}: {}", status_.file.string(), analytics::wordsFor(*report.runaway));
   } else if (report.outcome == Outcome::technicalFailure) {
     status_.problem = source.statusText();
   }

@@ -16,7 +16,6 @@
 
 #include "gui/trainer/attempt_monitor.h"
 #include "recorder/formats/scene_file.h"
-#include "recorder/live/wrapped_sources.h"
 #include "recorder/loop.h"
 #include "recorder/prepared_scene.h"
 #include "recorder/recording/station_key.h"
@@ -30,9 +29,6 @@ namespace calot::gui {
 /// alone. What open() gave is what the other functions are given.
 class AttemptInput {
  public:
-  AttemptInput() = default;
-  AttemptInput(const AttemptInput&) = delete;
-  AttemptInput& operator=(const AttemptInput&) = delete;
   virtual ~AttemptInput() = default;
 
   /// A source for a new attempt. @throws calot::Error where it is not there
@@ -115,8 +111,6 @@ class TrainingSession {
   TrainingSession(TrainingSettings settings, std::shared_ptr<AttemptInput> input, ViewTap::Sink sink);
   /// Ends what runs as stopped; its recording is whole.
   ~TrainingSession();
-  TrainingSession(const TrainingSession&) = delete;
-  TrainingSession& operator=(const TrainingSession&) = delete;
 
   /// A new attempt from the scene's beginning. One that runs ends as abandoned.
   void start();
@@ -160,8 +154,9 @@ class TrainingSession {
   void run(recorder::Session& session, recorder::SampleSource& source, recorder::ControlledSource& controlled,
            recorder::RecordingWriter& writer, AttemptMonitor& monitor, const recorder::AttemptHeader& header,
            const std::filesystem::path& file);
-  void awaitPicture(recorder::Session& session);
-  void countDown(recorder::SampleSource& source);
+  using Clock = std::chrono::steady_clock;
+  /// Calls again and again, with the time that is left, until that is over, the call returns false, or a command comes.
+  void during(Clock::duration time, const std::function<bool(Clock::duration)>& call);
   void keepResult(const recorder::RunReport& report, const recorder::SampleSource& source);
   void giveWay() const;
 

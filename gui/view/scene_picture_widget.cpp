@@ -44,6 +44,27 @@ namespace {
 /// After which a picture stands still.
 constexpr std::chrono::milliseconds moment(250);
 
+Graphics chosen = Graphics::automatic;  // of the GUI thread
+
+PictureLoop::Draw drawWith(const std::shared_ptr<Renderer>& renderer, bool ready) {
+  RenderSettings settings;
+  settings.quality = Quality::interactive;
+  settings.ready = ready;
+  return [renderer, settings](const SceneView& view, int width, int height) {
+    return renderer->render(view, width, height, settings);
+  };
+}
+
+/// The widget's size in pixels, within what a renderer takes.
+QSize pictureSize(const QSize& size, double ratio) {
+  double width = std::clamp(size.width() * ratio, double(minSide), double(maxSide));
+  double height = std::clamp(size.height() * ratio, double(minSide), double(maxSide));
+  const double shrink = std::min(1.0, std::sqrt(static_cast<double>(maxPixels) / (width * height)));
+  width = std::max(double(minSide), std::floor(width * shrink));
+  height = std::max(double(minSide), std::floor(height * shrink));
+  return {static_cast<int>(width), static_cast<int>(height)};
+}
+
 }  // namespace
 
 PictureLoop::PictureLoop(MakeDraw make, Receiver receiver, std::size_t drawers, double rate)
@@ -139,31 +160,6 @@ void PictureLoop::run() {
       receiver_.failed(fault);
   }
 }
-
-namespace {
-
-Graphics chosen = Graphics::automatic;  // of the GUI thread
-
-PictureLoop::Draw drawWith(const std::shared_ptr<Renderer>& renderer, bool ready) {
-  RenderSettings settings;
-  settings.quality = Quality::interactive;
-  settings.ready = ready;
-  return [renderer, settings](const SceneView& view, int width, int height) {
-    return renderer->render(view, width, height, settings);
-  };
-}
-
-/// The widget's size in pixels, within what a renderer takes.
-QSize pictureSize(const QSize& size, double ratio) {
-  double width = std::clamp(size.width() * ratio, double(minSide), double(maxSide));
-  double height = std::clamp(size.height() * ratio, double(minSide), double(maxSide));
-  const double shrink = std::min(1.0, std::sqrt(static_cast<double>(maxPixels) / (width * height)));
-  width = std::max(double(minSide), std::floor(width * shrink));
-  height = std::max(double(minSide), std::floor(height * shrink));
-  return {static_cast<int>(width), static_cast<int>(height)};
-}
-
-}  // namespace
 
 ScenePictureWidget::ScenePictureWidget(QWidget* parent, std::size_t drawers, double rate) : QWidget(parent) {
   setObjectName("scene");

@@ -79,8 +79,6 @@ class PictureLoop {
   PictureLoop(MakeDraw make, Receiver receiver, std::size_t drawers = 1, double rate = 0.0);
   /// Waits for pictures in progress and drops waiting views.
   ~PictureLoop();
-  PictureLoop(const PictureLoop&) = delete;
-  PictureLoop& operator=(const PictureLoop&) = delete;
 
   /// Any thread; returns at once. @pre view is not null and is changed by nobody any more
   void show(std::shared_ptr<const SceneView> view);

@@ -54,13 +54,9 @@ bool waitFor(int descriptor, Channel::Deadline deadline) {
 
 }  // namespace
 
-Channel::~Channel() {
-  if (descriptor_ >= 0) ::close(descriptor_);
-}
-
 bool Channel::send(std::span<const std::byte> bytes) const {
   while (!bytes.empty()) {
-    const ssize_t n = ::send(descriptor_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
+    const ssize_t n = ::send(descriptor(), bytes.data(), bytes.size(), MSG_NOSIGNAL);
     if (n < 0 && errno == EINTR) continue;
     if (n <= 0) return false;
     bytes = bytes.subspan(static_cast<std::size_t>(n));
@@ -70,8 +66,8 @@ bool Channel::send(std::span<const std::byte> bytes) const {
 
 Channel::Received Channel::receive(std::span<std::byte> bytes, Deadline deadline) const {
   while (!bytes.empty()) {
-    if (!waitFor(descriptor_, deadline)) return Received::late;
-    const ssize_t n = ::recv(descriptor_, bytes.data(), bytes.size(), 0);
+    if (!waitFor(descriptor(), deadline)) return Received::late;
+    const ssize_t n = ::recv(descriptor(), bytes.data(), bytes.size(), 0);
     if (n < 0 && errno == EINTR) continue;
     if (n <= 0) return Received::ended;
     bytes = bytes.subspan(static_cast<std::size_t>(n));
@@ -82,8 +78,8 @@ Channel::Received Channel::receive(std::span<std::byte> bytes, Deadline deadline
 Channel::Received Channel::receiveRest(std::vector<std::byte>& out, Deadline deadline) const {
   std::array<std::byte, 65536> piece;
   for (;;) {
-    if (!waitFor(descriptor_, deadline)) return Received::late;
-    const ssize_t n = ::recv(descriptor_, piece.data(), piece.size(), 0);
+    if (!waitFor(descriptor(), deadline)) return Received::late;
+    const ssize_t n = ::recv(descriptor(), piece.data(), piece.size(), 0);
     if (n < 0 && errno == EINTR) continue;
     if (n <= 0) return Received::all;
     out.insert(out.end(), piece.begin(), piece.begin() + n);

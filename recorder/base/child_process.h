@@ -15,6 +15,8 @@
 #include <utility>
 #include <vector>
 
+#include "recorder/base/files.h"
+
 namespace calot::recorder {
 
 /// One end of a connection between two processes; closed with the object. Sending to a process that has ended is an
@@ -25,14 +27,6 @@ class Channel {
   static constexpr Deadline never = Deadline::max();
 
   explicit Channel(int descriptor = -1) : descriptor_(descriptor) {}
-  Channel(Channel&& o) noexcept : descriptor_(std::exchange(o.descriptor_, -1)) {}
-  Channel& operator=(Channel&& o) noexcept {
-    std::swap(descriptor_, o.descriptor_);
-    return *this;
-  }
-  Channel(const Channel&) = delete;
-  Channel& operator=(const Channel&) = delete;
-  ~Channel();
 
   /// @return false where the other end is closed
   [[nodiscard]] bool send(std::span<const std::byte> bytes) const;
@@ -47,16 +41,15 @@ class Channel {
   /// @return nothing where the other end is closed
   [[nodiscard]] std::optional<std::vector<std::byte>> receiveMessage() const;
 
-  [[nodiscard]] int descriptor() const { return descriptor_; }
+  [[nodiscard]] int descriptor() const { return descriptor_.get(); }
 
  private:
-  int descriptor_ = -1;
+  Descriptor descriptor_;
 };
 
 /// This process's end of a new connection, and the end for a child. @throws Error (failure)
 std::pair<Channel, Channel> newConnection();
 
-/// How a process ended.
 struct ProcessEnd {
   bool signalled = false;
   int number = 0;  ///< signal, or exit code

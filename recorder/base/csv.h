@@ -1,11 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reads tables of text from elsewhere, without trust: RFC 4180, a header line. csv_writer.h writes them.
+// Tables of text, RFC 4180 with a header line: read without trust, written with commas and lines ending in LF.
 #pragma once
 
+#include <fmt/format.h>
 #include <cstddef>
+#include <cstdio>
+#include <filesystem>
+#include <iterator>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace calot {
@@ -50,5 +57,55 @@ struct CsvNumbers {
 /// no row, more than a million rows.
 CsvNumbers readCsvNumbers(std::span<const std::byte> bytes, const std::string& file, char delimiter,
                           std::span<const std::string> wanted);
+
+/// A cell of text, quoted where it holds a comma, quote or line break.
+std::string csvQuoted(const std::string& text);
+
+/// The same for tables that people open in a spreadsheet: an apostrophe precedes what it would evaluate as a formula.
+std::string csvCell(const std::string& text);
+
+/// Such cells, separated by commas, and the end of the line. @pre there is one
+std::string csvLine(const std::vector<std::string>& texts);
+
+/// A CSV file that is written value by value. Numbers read back to the same bits; text stands as it is.
+class CsvFile {
+ public:
+  /// @throws Error failure.
+  explicit CsvFile(std::filesystem::path path);
+
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+
+  void put(double v) { value("{:.17g}", v); }
+  void put(float v) { value("{:.9g}", v); }
+  void put(bool v) { value("{}", v ? 1 : 0); }
+  template <class T>
+  requires std::is_enum_v<T>
+  void put(T v) { value("{}", static_cast<unsigned>(v)); }
+  void put(const std::string& v) { value("{}", csvQuoted(v)); }
+  template <class T>
+  requires(std::is_integral_v<T> && !std::is_same_v<T, bool>) void put(T v) { value("{}", v); }
+
+  /// @throws Error failure.
+  void endRow();
+  /// @throws Error failure.
+  void close();
+
+ private:
+  template <class... Args>
+  void value(fmt::format_string<Args...> format, Args&&... args) {
+    if (!first_) line_.push_back(',');
+    first_ = false;
+    fmt::format_to(std::back_inserter(line_), format, std::forward<Args>(args)...);
+  }
+  [[noreturn]] void fail() const;
+
+  struct Closer {
+    void operator()(std::FILE* f) const { std::fclose(f); }
+  };
+  std::filesystem::path path_;
+  std::unique_ptr<std::FILE, Closer> file_;
+  fmt::memory_buffer line_;
+  bool first_ = true;
+};
 
 }  // namespace calot

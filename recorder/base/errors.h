@@ -10,7 +10,6 @@
 
 namespace calot {
 
-/// Kinds of errors.
 enum class ErrorKind : std::uint8_t {
   failure,    ///< the machine: disk full, no memory, a device that is gone, another program in the way
   invalid,    ///< the request: a name, a value or an output that cannot be
@@ -56,7 +55,6 @@ enum class Remedy : std::uint8_t {
   nameCheckpoints,        ///< name figures that judge
 };
 
-/// Location of an error.
 struct Where {
   std::string file;        ///< a file, folder or database, as it was named
   std::string place = {};  ///< in the file: "/observables", "line 3"; may be empty

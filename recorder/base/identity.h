@@ -30,12 +30,12 @@ inline constexpr std::uint32_t oldestFormatVersion = 1;
 /// A source's description of itself; copied into every recording that it feeds.
 struct Provenance {
   OperatorKind kind = OperatorKind::performer;
-  std::string profile;  ///< performer's profile name, or empty
-  std::string profileVersion;
-  std::string sourceFile;    ///< kinematics: base name, never a path
-  std::string sourceSha256;  ///< hex, or empty
-  std::string device;        ///< device class, or empty
-  std::string calibration;   ///< identifier and date, or empty
+  std::string profile = {};  ///< performer's profile name, or empty
+  std::string profileVersion = {};
+  std::string sourceFile = {};    ///< kinematics: base name, never a path
+  std::string sourceSha256 = {};  ///< hex, or empty
+  std::string device = {};        ///< device class, or empty
+  std::string calibration = {};   ///< identifier and date, or empty
 };
 
 /// A file that the scene names, byte for byte. The first one is the scene file itself.

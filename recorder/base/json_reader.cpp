@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "recorder/base/json_reader.h"
 
 #include <fmt/format.h>
@@ -10,7 +9,7 @@
 #include <string_view>
 
 #include "recorder/base/errors.h"
-#include "recorder/base/nearest_word.h"
+#include "recorder/base/text_words.h"
 
 namespace calot::recorder {
 namespace {

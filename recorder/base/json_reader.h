@@ -57,7 +57,6 @@ class JsonPlace {
   [[nodiscard]] bool boolean() const;
   [[nodiscard]] double number(const Range& range) const;
   [[nodiscard]] std::uint32_t integer(const Range& range) const;
-  /// Three numbers.
   [[nodiscard]] Vec3 vector(const Range& range) const;
 
  private:
@@ -84,8 +83,7 @@ class JsonFaults {
   /// Notes the fault where faults are noted. @throws the fault where they are not
   static void report(const Error& fault);
   /// Runs a part of the reading whose fault does not keep other parts from being read.
-  template <class Work>
-  static void part(Work&& work) {
+  static void part(auto&& work) {
     try {
       work();
     } catch (const Error& fault) {

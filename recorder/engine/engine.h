@@ -74,9 +74,7 @@ class Engine {
   Engine& operator=(const Engine&) = delete;
   virtual ~Engine() = default;
 
-  /// Layout of its digests.
   [[nodiscard]] virtual const DigestLayout& layout() const = 0;
-  /// Begins an attempt.
   virtual void start(std::uint64_t seed) = 0;
   /// Goes on from a keyframe. @param named by the last ticks before it; none: not known
   /// @returns false, leaving all as it was, where it is no State of the scene
@@ -94,7 +92,6 @@ class Engine {
   virtual void announce(const StepInput& /*input*/) {}
   /// Digest of the last step. @pre steps() > 0
   [[nodiscard]] virtual Keyframe keyframe() = 0;
-  /// Scene view of the present state.
   [[nodiscard]] virtual SceneView view() = 0;
   /// How a keyframe differs from the engine's own after the last step.
   [[nodiscard]] virtual std::optional<KeyframeDifference> explain(const Keyframe& recorded) = 0;

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <cstring>
 #include <functional>
 #include <span>
 #include <string>
@@ -24,6 +25,13 @@ struct HandTick {
   Vec3 torque = Vec3::Zero();    ///< about the instrument's tip, in W (N m)
   std::int64_t contactSet = -1;  ///< step whose contact set the tick used; -1 before the first
 };
+
+/// Bit for bit.
+inline bool sameForces(const HandTick& a, const HandTick& b) {
+  constexpr std::size_t bytes = 3 * sizeof(double);
+  return std::memcmp(a.force.data(), b.force.data(), bytes) == 0 &&
+         std::memcmp(a.torque.data(), b.torque.data(), bytes) == 0;
+}
 
 /// A tick is over when the next one is due (s): one that is later missed its deadline.
 inline constexpr float tickDeadline = 0.001F;
@@ -49,7 +57,6 @@ enum class PartForm : std::uint64_t {
   unchanged = 4,          ///< all of it, from the keyframe before; made by the writer alone
 };
 
-/// One field of a keyframe.
 struct KeyframePart {
   std::uint32_t bytes = 0;
   PartForm form = PartForm::plain;
@@ -98,6 +105,9 @@ inline constexpr const char* wordFor(Outcome outcome) {
   if (outcome == Outcome::technicalFailure) return "technical failure";
   return outcomeNames[static_cast<std::size_t>(outcome)];
 }
+
+/// Called with steps done, of all.
+using StepProgress = std::function<void(std::uint64_t step, std::uint64_t of)>;
 
 class Observer {
  public:

@@ -82,7 +82,6 @@ class Session {
   [[nodiscard]] const HapticStates& haptics() const { return haptic_; }
   [[nodiscard]] const ContactSets& contactSets() const { return setsOf(newest_); }
 
-  /// Scene view of the present state.
   [[nodiscard]] SceneView view();
 
  private:

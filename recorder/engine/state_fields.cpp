@@ -47,8 +47,7 @@ struct Flatten {
 struct FlattenVisitor {
   std::vector<StateField>& out;
   const DigestLayout& layout;
-  template <class T>
-  void operator()(const char* /*name*/, const T& value) {
+  void operator()(const char* /*name*/, const auto& value) {
     Flatten flat;
     flat.add(value);
     const std::string& name = layout.fields[out.size()].name;

@@ -36,7 +36,6 @@ struct FieldDifference {
 std::optional<FieldDifference> firstDifference(const std::vector<StateField>& first,
                                                const std::vector<StateField>& second);
 
-/// The first difference of two keyframes' States, or of their haptic bytes.
 std::optional<KeyframeDifference> differenceOf(const Model& model, const Keyframe& recorded, const Keyframe& here);
 
 /// The columns of today's version of StepResult in a scene, in the order of recordings.

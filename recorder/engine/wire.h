@@ -304,8 +304,7 @@ inline MessageHead parseHead(std::span<const std::byte> bytes) {
 }
 
 /// A payload alone.
-template <class Payload>
-wire::Bytes encodePayload(const Payload& payload) {
+wire::Bytes encodePayload(const auto& payload) {
   wire::Bytes bytes;
   ByteWriter(bytes).write(payload);
   return bytes;
@@ -323,16 +322,14 @@ void appendMessage(const Payload& payload, wire::Bytes& out) {
   std::memcpy(out.data() + at + sizeof(std::uint32_t), &length, sizeof length);
 }
 
-template <class Payload>
-wire::Bytes encode(const Payload& payload) {
+wire::Bytes encode(const auto& payload) {
   wire::Bytes bytes;
   appendMessage(payload, bytes);
   return bytes;
 }
 
 /// @return false where bytes are missing or left over
-template <class Payload>
-[[nodiscard]] bool decode(std::span<const std::byte> payload, Payload& out) {
+[[nodiscard]] bool decode(std::span<const std::byte> payload, auto& out) {
   ByteReader reader(payload);
   reader.read(out);
   return reader.complete();

@@ -1,26 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "recorder/formats/mesh_file.h"
 
 #include <fmt/format.h>
 #include <algorithm>
 #include <iterator>
 
-#include "recorder/base/file_bytes.h"
-#include "recorder/base/text_output.h"
+#include "recorder/base/files.h"
 
 namespace calot::recorder {
 
 TriangleMesh readSurface(const std::filesystem::path& path, LengthUnit unit, const SurfaceLimits& limits) {
   return parseSurface(readFileBytes(path, path.string(), limits.bytes), path.string(), unit, limits);
-}
-
-TriangleMesh readObj(const std::filesystem::path& path, LengthUnit unit, const SurfaceLimits& limits) {
-  return parseObj(readFileBytes(path, path.string(), limits.bytes), path.string(), unit, limits);
-}
-
-void writeObj(const std::filesystem::path& path, const TriangleMesh& mesh, const std::string& comment, bool force) {
-  writeText(path, formatObj(mesh, comment), force);
 }
 
 std::string formatVtk(const TetrahedralMesh& mesh, const std::string& title) {
@@ -38,10 +28,6 @@ std::string formatVtk(const TetrahedralMesh& mesh, const std::string& title) {
   fmt::format_to(out, "CELL_TYPES {}\n", mesh.tetrahedron.size());
   for (std::size_t t = 0; t < mesh.tetrahedron.size(); ++t) text += "10\n";
   return text;
-}
-
-void writeVtk(const std::filesystem::path& path, const TetrahedralMesh& mesh, const std::string& title, bool force) {
-  writeText(path, formatVtk(mesh, title), force);
 }
 
 }  // namespace calot::recorder

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-#include "recorder/formats/ply.h"
-
 #include <fmt/format.h>
 #include <algorithm>
 #include <bit>
@@ -12,13 +10,14 @@
 #include <utility>
 #include <vector>
 
-#include "recorder/base/errors.h"
 #include "recorder/base/text_words.h"
+#include "recorder/formats/surface_reader.h"
 
 namespace calot::recorder {
 namespace {
 
 enum class PlyFormat : std::uint8_t { ascii, littleEndian, bigEndian };
+constexpr std::string_view plyFormats[] = {"ascii", "binary_little_endian", "binary_big_endian"};
 enum class PlyType : std::uint8_t { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
 
 /// Bytes and names of the types, in their order.
@@ -57,29 +56,43 @@ struct PlyElement {
   }
 };
 
-struct PlyHeader {
-  PlyFormat format = PlyFormat::ascii;
-  std::vector<PlyElement> elements;  ///< names differ, as do those of each one's properties
-  std::size_t lines = 0;             ///< of the header
-};
-
 constexpr std::size_t maxElements = 32;
 constexpr std::size_t maxProperties = 128;
 
-/// Parses and removes the header of a file's text, up to and including the line "end_header". The element `vertex` has
-/// x, y and z and `face` a list of indices, both within the limits.
-class HeaderReader {
+class PlyReader : public SurfaceReader {
  public:
-  HeaderReader(std::string_view& text, const std::string& name, const SurfaceLimits& limits)
-      : text_(text), name_(name), limits_(limits) {}
+  explicit PlyReader(const SurfaceReader& start) : SurfaceReader(start) {}
 
-  PlyHeader read() {
-    if (Words first(nextLine()); first.next() != "ply" || !first.next().empty()) {
+  TriangleMesh read() {
+    readHeader();
+    for (const PlyElement& element : elements_) {
+      element_ = &element;
+      if (format_ != PlyFormat::ascii) part_ = element.name;
+      for (row_ = 0; row_ < element.count; ++row_) {
+        if (format_ != PlyFormat::ascii) number_ = row_;
+        if (element.name == "vertex") {
+          readVertex();
+        } else if (element.name == "face") {
+          readFace();
+        } else {
+          for (const PlyProperty& property : element.properties) pass(property);
+        }
+      }
+    }
+    checkTriangles("face", 0, " (from 0)");
+    return std::move(mesh_);
+  }
+
+ private:
+  /// Reads up to and including the line "end_header". The element `vertex` has x, y and z and `face` a list of indices,
+  /// both within the limits.
+  void readHeader() {
+    if (Words first(headerLine()); first.next() != "ply" || !first.next().empty()) {
       fail("a PLY file begins with \"ply\"");
     }
     while (true) {
       if (text_.empty()) fail("the file ends before \"end_header\"");
-      Words words(nextLine());
+      Words words(headerLine());
       const std::string_view keyword = words.next();
       if (keyword == "end_header") break;
       if (keyword == "comment" || keyword == "obj_info" || keyword.empty()) continue;
@@ -93,36 +106,20 @@ class HeaderReader {
         fail(fmt::format("\"{}\" is not a keyword of a PLY header", shown(keyword)));
       }
     }
-    check();
-    return std::move(header_);
+    checkHeader();
   }
 
- private:
-  [[noreturn]] void fail(const std::string& what) const {
-    throw Error(ErrorKind::damaged, Where{name_, fmt::format("line {}", header_.lines)}, what);
-  }
-
-  std::string_view nextLine() {
-    ++header_.lines;
-    const std::string_view line = takeLine(text_);
-    if (line.find('\0') != std::string_view::npos) fail("a zero byte in the header");
-    return line;
-  }
+  std::string_view headerLine() { return nextLine("a zero byte in the header"); }
 
   void readFormat(Words& words) {
     const std::string_view format = words.next();
     const std::string_view version = words.next();
     if (hasFormat_) fail("a second \"format\"");
     hasFormat_ = true;
-    if (format == "ascii") {
-      header_.format = PlyFormat::ascii;
-    } else if (format == "binary_little_endian") {
-      header_.format = PlyFormat::littleEndian;
-    } else if (format == "binary_big_endian") {
-      header_.format = PlyFormat::bigEndian;
-    } else {
-      fail(fmt::format("format \"{}\"; known are ascii, binary_little_endian, binary_big_endian", shown(format)));
-    }
+    const auto* const known = std::find(std::begin(plyFormats), std::end(plyFormats), format);
+    if (known == std::end(plyFormats))
+      fail(fmt::format("format \"{}\"; known are {}", shown(format), fmt::join(plyFormats, ", ")));
+    format_ = static_cast<PlyFormat>(known - std::begin(plyFormats));
     if (version != "1.0") fail(fmt::format("version \"{}\" of PLY; 1.0 is known", shown(version)));
   }
 
@@ -140,12 +137,11 @@ class HeaderReader {
     if (element.name == "face" && element.count > limits_.triangles) {
       fail(fmt::format("more than {} triangles", limits_.triangles));
     }
-    const auto& all = header_.elements;
-    if (std::any_of(all.begin(), all.end(), [&](const PlyElement& e) { return e.name == element.name; })) {
+    if (std::any_of(elements_.begin(), elements_.end(), [&](const PlyElement& e) { return e.name == element.name; })) {
       fail(fmt::format("a second element \"{}\"", element.name));
     }
-    if (all.size() >= maxElements) fail(fmt::format("more than {} elements", maxElements));
-    header_.elements.push_back(std::move(element));
+    if (elements_.size() >= maxElements) fail(fmt::format("more than {} elements", maxElements));
+    elements_.push_back(std::move(element));
   }
 
   PlyType readType(std::string_view word) const {
@@ -156,8 +152,8 @@ class HeaderReader {
   }
 
   void readProperty(Words& words) {
-    if (header_.elements.empty()) fail("a property before any element");
-    PlyElement& element = header_.elements.back();
+    if (elements_.empty()) fail("a property before any element");
+    PlyElement& element = elements_.back();
     PlyProperty property;
     std::string_view word = words.next();
     if (word == "list") {
@@ -174,11 +170,11 @@ class HeaderReader {
     element.properties.push_back(std::move(property));
   }
 
-  void check() const {
+  void checkHeader() const {
     if (!hasFormat_) fail("the header does not say its format");
     bool hasVertices = false;
     bool hasFaces = false;
-    for (const PlyElement& element : header_.elements) {
+    for (const PlyElement& element : elements_) {
       if (element.properties.empty()) fail(fmt::format("element \"{}\" has no property", element.name));
       if (element.name == "vertex") {
         hasVertices = element.count > 0;
@@ -200,60 +196,12 @@ class HeaderReader {
     if (!hasFaces) fail("no face; a surface is expected");
   }
 
-  std::string_view& text_;
-  const std::string& name_;
-  const SurfaceLimits& limits_;
-  PlyHeader header_;
-  bool hasFormat_ = false;
-};
-
-class PlyBody {
- public:
-  PlyBody(std::string_view body, PlyHeader header, const std::string& name, double scale, const SurfaceLimits& limits)
-      : body_(body), words_(""), header_(std::move(header)), name_(name), scale_(scale), limits_(limits) {
-    line_ = header_.lines;
-  }
-
-  TriangleMesh read() {
-    for (const PlyElement& element : header_.elements) {
-      element_ = &element;
-      const bool vertices = element.name == "vertex";
-      const bool faces = element.name == "face";
-      for (number_ = 0; number_ < element.count; ++number_) {
-        if (vertices) {
-          readVertex();
-        } else if (faces) {
-          readFace();
-        } else {
-          for (const PlyProperty& property : element.properties) pass(property);
-        }
-      }
-    }
-    // Faces may come before the vertices.
-    for (std::size_t t = 0; t < mesh_.triangle.size(); ++t) {
-      for (int k = 0; k < 3; ++k) {
-        if (mesh_.triangle[t][k] < mesh_.vertices()) continue;
-        throw Error(
-            ErrorKind::damaged, Where{name_, fmt::format("face {}", face_[t])},
-            fmt::format("vertex {} is expected, but the file has {} (from 0)", mesh_.triangle[t][k], mesh_.vertices()));
-      }
-    }
-    return std::move(mesh_);
-  }
-
- private:
-  [[noreturn]] void fail(const std::string& what) const {
-    const std::string place = header_.format == PlyFormat::ascii ? fmt::format("line {}", line_)
-                                                                 : fmt::format("{} {}", element_->name, number_);
-    throw Error(ErrorKind::damaged, Where{name_, place}, what);
-  }
-
   std::string_view nextWord() {
     std::string_view word = words_.next();
     while (word.empty()) {
-      if (body_.empty()) fail(fmt::format("the file ends at {} {} of {}", element_->name, number_, element_->count));
-      words_ = Words(takeLine(body_));
-      ++line_;
+      if (text_.empty()) fail(fmt::format("the file ends at {} {} of {}", element_->name, row_, element_->count));
+      words_ = Words(takeLine(text_));
+      ++number_;
       word = words_.next();
     }
     return word;
@@ -261,20 +209,15 @@ class PlyBody {
 
   /// The next value; a whole number of at most 32 bits is exact in a double.
   double next(PlyType type) {
-    if (header_.format == PlyFormat::ascii) {
-      std::string fault;
-      const double value = readFiniteNumber(nextWord(), fault);
-      if (!fault.empty()) fail(fault);
-      return value;
-    }
+    if (format_ == PlyFormat::ascii) return finiteNumber(nextWord());
     const std::size_t size = plyTypes[static_cast<std::size_t>(type)].bytes;
-    if (body_.size() < size) fail(fmt::format("the file ends here, with {} wanted", element_->count));
+    if (text_.size() < size) fail(fmt::format("the file ends here, with {} wanted", element_->count));
     std::uint64_t bits = 0;
     for (std::size_t k = 0; k < size; ++k) {
-      const std::size_t at = header_.format == PlyFormat::littleEndian ? size - 1 - k : k;
-      bits = (bits << 8U) | static_cast<unsigned char>(body_[at]);
+      const std::size_t at = format_ == PlyFormat::littleEndian ? size - 1 - k : k;
+      bits = (bits << 8U) | static_cast<unsigned char>(text_[at]);
     }
-    body_.remove_prefix(size);
+    text_.remove_prefix(size);
     switch (type) {
       case PlyType::int8:
         return static_cast<double>(static_cast<std::int8_t>(bits));
@@ -307,25 +250,18 @@ class PlyBody {
     const std::uint32_t count = property.list ? nextCount(property.countType, "a length of a list") : 1;
     for (std::uint32_t i = 0; i < count; ++i) {
       // Unused values may be anything, including NaN.
-      header_.format == PlyFormat::ascii ? static_cast<void>(nextWord()) : static_cast<void>(next(property.type));
+      format_ == PlyFormat::ascii ? static_cast<void>(nextWord()) : static_cast<void>(next(property.type));
     }
   }
 
   void readVertex() {
     Vec3 p = Vec3::Zero();
     for (const PlyProperty& property : element_->properties) {
-      const bool coordinate = property.name.size() == 1 && property.name[0] >= 'x' && property.name[0] <= 'z';
-      if (!coordinate) {
+      if (property.name.size() != 1 || property.name[0] < 'x' || property.name[0] > 'z') {
         pass(property);
         continue;
       }
-      const double value = next(property.type);
-      if (!std::isfinite(value)) fail("a coordinate that is not a finite number");
-      const double length = value * scale_;
-      if (!(std::abs(length) <= farthestCoordinate)) {
-        fail(fmt::format("a coordinate of {} m: is the unit right?", length));
-      }
-      p[property.name[0] - 'x'] = length;
+      p[property.name[0] - 'x'] = coordinate(next(property.type));
     }
     mesh_.vertex.push_back(p);
   }
@@ -343,10 +279,8 @@ class PlyBody {
       const int first = nextIndex(property.type);
       int before = nextIndex(property.type);
       for (std::uint32_t i = 2; i < count; ++i) {
-        if (mesh_.triangle.size() >= limits_.triangles) fail(fmt::format("more than {} triangles", limits_.triangles));
         const int last = nextIndex(property.type);
-        mesh_.triangle.emplace_back(first, before, last);
-        face_.push_back(number_);
+        addTriangle(first, before, last, row_);
         before = last;
       }
     }
@@ -358,29 +292,16 @@ class PlyBody {
     return static_cast<int>(index);
   }
 
-  std::string_view body_;
-  Words words_;
-  PlyHeader header_;
-  const std::string& name_;
-  double scale_;
-  SurfaceLimits limits_;
-  TriangleMesh mesh_;
-  std::vector<std::uint64_t> face_;  ///< of each triangle
+  Words words_{""};  ///< of an ASCII file's line
+  PlyFormat format_ = PlyFormat::ascii;
+  bool hasFormat_ = false;
+  std::vector<PlyElement> elements_;  ///< names differ, as do those of each one's properties
   const PlyElement* element_ = nullptr;
-  std::uint64_t number_ = 0;  ///< of the element, from 0
-  std::size_t line_ = 0;
+  std::uint64_t row_ = 0;  ///< of the element, from 0
 };
 
 }  // namespace
 
-TriangleMesh parsePly(std::span<const std::byte> bytes, const std::string& name, LengthUnit unit,
-                      const SurfaceLimits& limits) {
-  if (bytes.size() > limits.bytes) {
-    throw Error(ErrorKind::damaged, Where{name}, fmt::format("larger than {} bytes", limits.bytes));
-  }
-  std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  PlyHeader header = HeaderReader(text, name, limits).read();
-  return PlyBody(text, std::move(header), name, metres(unit), limits).read();
-}
+TriangleMesh readPly(const SurfaceReader& start) { return PlyReader(start).read(); }
 
 }  // namespace calot::recorder

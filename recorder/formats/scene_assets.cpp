@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "recorder/formats/scene_assets.h"
 
 #include <fmt/format.h>
@@ -9,9 +8,7 @@
 
 #include "recorder/base/errors.h"
 #include "recorder/base/json_reader.h"
-#include "recorder/base/record_reader.h"
-#include "recorder/formats/mesh_report.h"
-#include "recorder/formats/scene_rules.h"
+#include "recorder/base/record_json.h"
 #include "sim/geometry/surface_report.h"
 #include "sim/math/elementary.h"
 #include "sim/math/floating_point.h"
@@ -91,6 +88,19 @@ SurfaceDescription closedSurface(NamedSurface surface, const char* what) {
 SurfaceDescription readOrganSurface(const JsonPlace& mesh, const FetchAsset& fetch) {
   NamedSurface surface = readMesh(mesh, fetch);
   return surface.file.empty() ? SurfaceDescription{} : closedSurface(std::move(surface), "an organ");
+}
+
+std::string repairSummary(const SurfaceRepair& repair) {
+  std::string text;
+  const auto add = [&text](int count, const char* what) {
+    if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, what);
+  };
+  add(repair.weldedVertices, "vertices welded");
+  add(repair.droppedDegenerate, "triangles without area dropped");
+  add(repair.droppedDuplicates, "duplicate triangles dropped");
+  add(repair.droppedVertices, "unused vertices dropped");
+  add(repair.flippedTriangles, "triangles turned");
+  return text;
 }
 
 SurfaceDescription readFatSurface(const JsonPlace& mesh, const FetchAsset& fetch, std::vector<std::string>& warnings) {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A scene from the bytes of its file and of what that names; no file is touched. What is in them:
+// A scene from the bytes of its file and of the surfaces that it names; no file is touched. What is in them:
 // docs/reference/scenes.md.
-// Surfaces that a scene file names.
 #pragma once
 
 #include <functional>
@@ -11,6 +10,7 @@
 #include "recorder/base/identity.h"
 #include "recorder/base/json_reader.h"
 #include "recorder/formats/surface_bytes.h"
+#include "sim/geometry/surface_report.h"
 #include "sim/math/linear.h"
 #include "sim/scene/description.h"
 #include "sim/tissue/structure.h"
@@ -35,6 +35,9 @@ struct MeshFile {
 /// @throws Error (damaged), naming the place or the file
 SurfaceDescription readOrganSurface(const JsonPlace& mesh, const FetchAsset& fetch);
 
+/// Repairs of a surface, or empty: "12 vertices welded, 3 triangles turned".
+std::string repairSummary(const SurfaceRepair& repair);
+
 /// Fat's surface. Repairs that invent no surface (repairSurface) are made and reported in a warning. Self-intersection
 /// is a warning as well: the inside is then what the surface winds around (the potential field's rule). A surface with
 /// holes or with edges of more than two triangles is refused, and so is a self-intersecting one whose triangles had to
@@ -43,7 +46,6 @@ SurfaceDescription readOrganSurface(const JsonPlace& mesh, const FetchAsset& fet
 /// @throws Error (damaged), naming the place or the file
 SurfaceDescription readFatSurface(const JsonPlace& mesh, const FetchAsset& fetch, std::vector<std::string>& warnings);
 
-/// A scene with all its assets.
 struct LoadedScene {
   SceneDescription description;       ///< what a Model is built from
   std::string summary;                ///< one sentence for people
@@ -63,5 +65,17 @@ LoadedScene sceneFromAssets(std::vector<Asset> assets);
 /// Direction of gravity in a scene file that another version's engine reads: its key "gravity" alone is read.
 /// @return unit; SceneView's default where the file has none
 [[nodiscard]] Vec3 downOf(const Asset& sceneFile);
+
+/// Checks a scene whose fields and surfaces were read, and completes what other fields decide: the camera's
+/// orientation, and roles. Rules over fields that have faults are skipped.
+/// @param root the scene file
+/// @throws Error (damaged), naming the place
+void applySceneRules(const JsonPlace& root, SceneDescription& scene);
+
+/// Gives roles to the tissue of a scene that states none, as recordings made before scenes had roles: liver and
+/// gallbladder by appearance; a vessel grown to a gallbladder is the cystic duct or, where it does not look like a
+/// duct, the cystic artery; other vessels are bile ducts or arteries by appearance; connective tissue on a gallbladder
+/// is the cystic plate, and all fat is that of Calot's triangle. Nowhere else is appearance more than a look.
+void deriveRoles(SceneDescription& scene);
 
 }  // namespace calot::recorder

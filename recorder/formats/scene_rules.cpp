@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "recorder/formats/scene_rules.h"
+#include "recorder/formats/scene_assets.h"
 
 #include <fmt/format.h>
 

@@ -1,20 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "recorder/formats/stl.h"
 
 #include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <numeric>
 #include <string_view>
 #include <vector>
 
-#include "recorder/base/errors.h"
 #include "recorder/base/text_words.h"
+#include "recorder/formats/surface_reader.h"
 
 namespace calot::recorder {
 namespace {
@@ -22,117 +19,99 @@ namespace {
 constexpr std::size_t headBytes = 84;
 constexpr std::size_t triangleBytes = 50;
 
-std::uint32_t littleEndian(const std::byte* at) {
-  std::uint32_t value = 0;
-  for (unsigned k = 0; k < 4; ++k) value |= std::to_integer<std::uint32_t>(at[k]) << (8 * k);
-  return value;
-}
-
-std::uint64_t binaryLength(std::span<const std::byte> bytes) {
-  return headBytes + triangleBytes * std::uint64_t{littleEndian(bytes.data() + 80)};
-}
-
-bool beginsWithSolid(std::span<const std::byte> bytes) {
-  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), std::min<std::size_t>(bytes.size(), 256));
-  const std::size_t begin = std::min(text.find_first_not_of(" \t\r\n"), text.size());
-  return lowerCase(text.substr(begin, 5)) == "solid";
-}
-
-/// Explains why the unit cannot be metres; empty if it can.
-std::string coordinateFault(double value) {
-  if (std::abs(value) <= farthestCoordinate) return {};
-  return fmt::format("a coordinate of {} m: is the unit right?", value);
-}
-
-/// One vertex for all corners at exactly one place, numbered in order of first mention.
-TriangleMesh joined(const std::vector<Vec3>& corner, const std::string& name, const SurfaceLimits& limits) {
-  std::vector<std::size_t> order(corner.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  const auto key = [&corner](std::size_t i) { return std::array<double, 3>{corner[i][0], corner[i][1], corner[i][2]}; };
-  std::sort(order.begin(), order.end(), [&key](std::size_t a, std::size_t b) {
-    const auto ka = key(a);
-    const auto kb = key(b);
-    return ka != kb ? ka < kb : a < b;
-  });
-  std::vector<std::size_t> first(corner.size());
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    const bool same = i > 0 && key(order[i]) == key(order[i - 1]);
-    first[order[i]] = same ? first[order[i - 1]] : order[i];
-  }
-  TriangleMesh mesh;
-  std::vector<int> number(corner.size());
-  mesh.triangle.resize(corner.size() / 3);
-  for (std::size_t i = 0; i < corner.size(); ++i) {
-    if (first[i] == i) {
-      if (mesh.vertex.size() >= limits.vertices) {
-        throw Error(ErrorKind::damaged, Where{name}, fmt::format("more than {} vertices", limits.vertices));
-      }
-      number[i] = mesh.vertices();
-      mesh.vertex.push_back(corner[i]);
-    } else {
-      number[i] = number[first[i]];
-    }
-    mesh.triangle[i / 3][static_cast<int>(i % 3)] = number[i];
-  }
-  return mesh;
-}
-
-std::vector<Vec3> readBinary(std::span<const std::byte> bytes, const std::string& name, double scale,
-                             const SurfaceLimits& limits) {
-  const std::uint32_t triangles = littleEndian(bytes.data() + 80);
-  if (triangles > limits.triangles) {
-    throw Error(ErrorKind::damaged, Where{name}, fmt::format("more than {} triangles", limits.triangles));
-  }
-  std::vector<Vec3> corner;
-  corner.reserve(3 * std::size_t{triangles});
-  for (std::size_t t = 0; t < triangles; ++t) {
-    const auto fail = [&name, t](const std::string& what) {
-      throw Error(ErrorKind::damaged, Where{name, fmt::format("triangle {}", t)}, what);
-    };
-    const std::byte* at = bytes.data() + headBytes + triangleBytes * t + 12;  // after the normal
-    for (int k = 0; k < 3; ++k) {
-      Vec3 p;
-      for (int a = 0; a < 3; ++a, at += 4) {
-        const auto value = static_cast<double>(std::bit_cast<float>(littleEndian(at)));
-        if (!std::isfinite(value)) fail("a coordinate that is not a finite number");
-        p[a] = value * scale + 0.0;  // -0 is 0
-        if (const std::string fault = coordinateFault(p[a]); !fault.empty()) fail(fault);
-      }
-      corner.push_back(p);
-    }
-  }
-  return corner;
-}
-
-/// The words of a text file, with the line that they stand in.
-class StlText {
+class StlReader : public SurfaceReader {
  public:
-  StlText(std::string_view text, const std::string& name, double scale, const SurfaceLimits& limits)
-      : text_(text), words_(""), name_(name), scale_(scale), limits_(limits) {}
+  explicit StlReader(const SurfaceReader& start) : SurfaceReader(start) {}
 
-  std::vector<Vec3> read() {
+  TriangleMesh read() {
+    const std::size_t bytes = text_.size();
+    const std::uint32_t triangles = bytes < headBytes ? 0 : littleEndian(80);
+    const std::uint64_t binaryBytes = headBytes + triangleBytes * std::uint64_t{triangles};
+    if (bytes == binaryBytes) {
+      readBinary(triangles);
+    } else if (const std::size_t begin = text_.substr(0, 256).find_first_not_of(" \t\r\n");
+               begin < bytes && lowerCase(text_.substr(begin, 5)) == "solid") {
+      readText();
+    } else if (bytes < headBytes) {
+      failFile(fmt::format("{} bytes, which is neither an STL text nor a binary STL file", bytes));
+    } else {
+      failFile(
+          fmt::format("{} triangles in a binary STL file take {} bytes, but it has {}", triangles, binaryBytes, bytes));
+    }
+    if (corner_.empty()) failFile("no triangle; a surface is expected");
+    joinCorners();
+    return std::move(mesh_);
+  }
+
+ private:
+  [[nodiscard]] std::uint32_t littleEndian(std::size_t at) const {
+    std::uint32_t value = 0;
+    for (unsigned k = 0; k < 4; ++k) value |= std::uint32_t{static_cast<unsigned char>(text_[at + k])} << (8 * k);
+    return value;
+  }
+
+  /// One vertex for all corners at exactly one place, numbered in order of first mention.
+  void joinCorners() {
+    std::vector<std::size_t> order(corner_.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    const auto key = [this](std::size_t i) {
+      return std::array<double, 3>{corner_[i][0], corner_[i][1], corner_[i][2]};
+    };
+    std::sort(order.begin(), order.end(), [&key](std::size_t a, std::size_t b) {
+      const auto ka = key(a);
+      const auto kb = key(b);
+      return ka != kb ? ka < kb : a < b;
+    });
+    std::vector<std::size_t> first(corner_.size());
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      const bool same = i > 0 && key(order[i]) == key(order[i - 1]);
+      first[order[i]] = same ? first[order[i - 1]] : order[i];
+    }
+    std::vector<int> number(corner_.size());
+    mesh_.triangle.resize(corner_.size() / 3);
+    for (std::size_t i = 0; i < corner_.size(); ++i) {
+      if (first[i] == i) {
+        if (mesh_.vertex.size() >= limits_.vertices) failFile(fmt::format("more than {} vertices", limits_.vertices));
+        number[i] = mesh_.vertices();
+        mesh_.vertex.push_back(corner_[i]);
+      } else {
+        number[i] = number[first[i]];
+      }
+      mesh_.triangle[i / 3][static_cast<int>(i % 3)] = number[i];
+    }
+  }
+
+  void readBinary(std::uint32_t triangles) {
+    if (triangles > limits_.triangles) failFile(fmt::format("more than {} triangles", limits_.triangles));
+    corner_.reserve(3 * std::size_t{triangles});
+    part_ = "triangle";
+    for (number_ = 0; number_ < triangles; ++number_) {
+      std::size_t at = headBytes + triangleBytes * number_ + 12;  // after the normal
+      for (int k = 0; k < 3; ++k) {
+        Vec3 p;
+        for (int a = 0; a < 3; ++a, at += 4) p[a] = place(static_cast<double>(std::bit_cast<float>(littleEndian(at))));
+        corner_.push_back(p);
+      }
+    }
+  }
+
+  /// A coordinate of a corner; -0 is 0.
+  [[nodiscard]] double place(double value) const { return coordinate(value) + 0.0; }
+
+  void readText() {
     for (std::string word = nextWord(); !word.empty(); word = nextWord()) {
       if (word != "solid") fail(fmt::format("\"solid\" is expected, not \"{}\"", shown(word)));
       words_ = Words("");  // its name
       readSolid();
       words_ = Words("");
     }
-    return std::move(corner_);
-  }
-
- private:
-  [[noreturn]] void fail(const std::string& what) const {
-    throw Error(ErrorKind::damaged, Where{name_, fmt::format("line {}", line_)}, what);
   }
 
   /// In small letters; empty at the end of the file.
   std::string nextWord() {
     std::string_view word = words_.next();
     while (word.empty() && !text_.empty()) {
-      const std::string_view line = takeLine(text_);
-      ++line_;
-      if (line.find('\0') != std::string_view::npos) fail("a zero byte; this is not a text file");
-      words_ = Words(line);
+      words_ = Words(nextLine());
       word = words_.next();
     }
     return lowerCase(word);
@@ -172,46 +151,17 @@ class StlText {
     for (int k = 0; k < 3; ++k) {
       const std::string word = nextWord();
       if (word.empty()) fail("the file ends in a vertex");
-      std::string fault;
-      p[k] = readFiniteNumber(word, fault) * scale_ + 0.0;
-      if (fault.empty()) fault = coordinateFault(p[k]);
-      if (!fault.empty()) fail(fault);
+      p[k] = place(finiteNumber(word));
     }
     return p;
   }
 
-  std::string_view text_;
-  Words words_;
-  const std::string& name_;
-  double scale_;
-  SurfaceLimits limits_;
-  std::vector<Vec3> corner_;
-  std::size_t line_ = 0;
+  Words words_{""};
+  std::vector<Vec3> corner_;  ///< three of each triangle
 };
 
 }  // namespace
 
-TriangleMesh parseStl(std::span<const std::byte> bytes, const std::string& name, LengthUnit unit,
-                      const SurfaceLimits& limits) {
-  if (bytes.size() > limits.bytes) {
-    throw Error(ErrorKind::damaged, Where{name}, fmt::format("larger than {} bytes", limits.bytes));
-  }
-  std::vector<Vec3> corner;
-  if (bytes.size() >= headBytes && binaryLength(bytes) == bytes.size()) {
-    corner = readBinary(bytes, name, metres(unit), limits);
-  } else if (beginsWithSolid(bytes)) {
-    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    corner = StlText(text, name, metres(unit), limits).read();
-  } else if (bytes.size() < headBytes) {
-    throw Error(ErrorKind::damaged, Where{name},
-                fmt::format("{} bytes, which is neither an STL text nor a binary STL file", bytes.size()));
-  } else {
-    throw Error(ErrorKind::damaged, Where{name},
-                fmt::format("{} triangles in a binary STL file take {} bytes, but it has {}",
-                            littleEndian(bytes.data() + 80), binaryLength(bytes), bytes.size()));
-  }
-  if (corner.empty()) throw Error(ErrorKind::damaged, Where{name}, "no triangle; a surface is expected");
-  return joined(corner, name, limits);
-}
+TriangleMesh readStl(const SurfaceReader& start) { return StlReader(start).read(); }
 
 }  // namespace calot::recorder

@@ -1,20 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "recorder/formats/surface_bytes.h"
 
 #include <fmt/format.h>
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <cmath>
 #include <iterator>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "recorder/base/errors.h"
 #include "recorder/base/text_words.h"
-#include "recorder/formats/ply.h"
-#include "recorder/formats/stl.h"
+#include "recorder/formats/surface_reader.h"
 
 namespace calot::recorder {
 
@@ -37,33 +35,29 @@ LengthUnit parseLengthUnit(const std::string& word) {
 
 namespace {
 
-enum class Format { none, obj, stl, ply };
+using Reader = TriangleMesh (*)(const SurfaceReader& start);
 
-Format formatOf(const std::string& name) {
+/// Reader for the format that the name's end states, or null.
+Reader readerOf(const std::string& name) {
+  constexpr std::pair<std::string_view, Reader> readers[] = {{".obj", readObj}, {".stl", readStl}, {".ply", readPly}};
   const std::string end = lowerCase(std::string_view(name).substr(name.size() < 4 ? 0 : name.size() - 4));
-  if (end == ".obj") return Format::obj;
-  if (end == ".stl") return Format::stl;
-  if (end == ".ply") return Format::ply;
-  return Format::none;
+  for (const auto& [ending, reader] : readers) {
+    if (end == ending) return reader;
+  }
+  return nullptr;
 }
 
 }  // namespace
 
-bool isSurfaceName(const std::string& name) { return formatOf(name) != Format::none; }
+bool isSurfaceName(const std::string& name) { return readerOf(name) != nullptr; }
 
 TriangleMesh parseSurface(std::span<const std::byte> bytes, const std::string& name, LengthUnit unit,
                           const SurfaceLimits& limits) {
-  switch (formatOf(name)) {
-    case Format::obj:
-      return parseObj(bytes, name, unit, limits);
-    case Format::stl:
-      return parseStl(bytes, name, unit, limits);
-    case Format::ply:
-      return parsePly(bytes, name, unit, limits);
-    case Format::none:
-      break;
-  }
-  throw Error(ErrorKind::damaged, Where{name}, "surfaces are read from .obj, .stl and .ply files");
+  const SurfaceReader start({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, name, unit, limits);
+  const Reader read = readerOf(name);
+  if (read == nullptr) start.failFile("surfaces are read from .obj, .stl and .ply files");
+  if (bytes.size() > limits.bytes) start.failFile(fmt::format("larger than {} bytes", limits.bytes));
+  return read(start);
 }
 
 namespace {
@@ -72,38 +66,20 @@ constexpr std::array<std::string_view, 17> passedOver = {"vt",     "vn",     "vp
                                                          "usemtl", "mtllib", "l",        "p",      "mg",      "lod",
                                                          "bevel",  "usemap", "c_interp", "maplib", "d_interp"};
 
-class ObjParser {
+class ObjReader : public SurfaceReader {
  public:
-  ObjParser(const std::string& name, LengthUnit unit, const SurfaceLimits& limits)
-      : name_(name), scale_(metres(unit)), limits_(limits) {}
+  explicit ObjReader(const SurfaceReader& start) : SurfaceReader(start) {}
 
-  TriangleMesh parse(std::string_view text) {
-    while (!text.empty()) {
-      ++line_;
-      readLine(takeLine(text));
-    }
-    // A positive index may name a vertex that comes later.
-    for (std::size_t t = 0; t < mesh_.triangle.size(); ++t) {
-      for (int k = 0; k < 3; ++k) {
-        if (mesh_.triangle[t][k] < mesh_.vertices()) continue;
-        line_ = triangleLine_[t];
-        fail(fmt::format("vertex {} is expected, but the file has {}", mesh_.triangle[t][k] + 1, mesh_.vertices()));
-      }
-    }
-    if (mesh_.vertex.empty())
-      throw Error(ErrorKind::damaged, Where{name_}, "no vertex; not an OBJ file, or an empty one");
-    if (mesh_.triangle.empty())
-      throw Error(ErrorKind::damaged, Where{name_}, "vertices but no face; a surface is expected");
+  TriangleMesh read() {
+    while (!text_.empty()) readLine(nextLine());
+    checkTriangles("line", 1, "");
+    if (mesh_.vertex.empty()) failFile("no vertex; not an OBJ file, or an empty one");
+    if (mesh_.triangle.empty()) failFile("vertices but no face; a surface is expected");
     return std::move(mesh_);
   }
 
  private:
-  [[noreturn]] void fail(const std::string& what) const {
-    throw Error(ErrorKind::damaged, Where{name_, fmt::format("line {}", line_)}, what);
-  }
-
   void readLine(std::string_view line) {
-    if (line.find('\0') != std::string_view::npos) fail("a zero byte; this is not a text file");
     Words words(line, '#');
     const std::string_view keyword = words.next();
     if (keyword.empty()) return;
@@ -119,24 +95,17 @@ class ObjParser {
     }
   }
 
-  double readNumber(std::string_view word) const {
-    std::string fault;
-    const double value = readFiniteNumber(word, fault);
-    if (!fault.empty()) fail(fault);
-    return value;
-  }
-
   void readVertex(Words& words) {
     if (mesh_.vertex.size() >= limits_.vertices) fail(fmt::format("more than {} vertices", limits_.vertices));
     Vec3 p;
     for (int k = 0; k < 3; ++k) {
       const std::string_view word = words.next();
       if (word.empty()) fail(fmt::format("a vertex with {} of 3 coordinates", k));
-      p[k] = readNumber(word) * scale_;
-      if (!(std::abs(p[k]) <= farthestCoordinate)) fail(fmt::format("a coordinate of {} m: is the unit right?", p[k]));
+      p[k] = coordinate(finiteNumber(word));
     }
     // A weight or a colour may follow.
-    for (std::string_view word = words.next(); !word.empty(); word = words.next()) static_cast<void>(readNumber(word));
+    for (std::string_view word = words.next(); !word.empty(); word = words.next())
+      static_cast<void>(finiteNumber(word));
     mesh_.vertex.push_back(p);
   }
 
@@ -166,34 +135,18 @@ class ObjParser {
   }
 
   void readFace(Words& words) {
-    face_.clear();
-    for (std::string_view word = words.next(); !word.empty(); word = words.next()) face_.push_back(readCorner(word));
-    if (face_.size() < 3) fail(fmt::format("a face with {} corners", face_.size()));
-    for (std::size_t k = 2; k < face_.size(); ++k) {
-      if (mesh_.triangle.size() >= limits_.triangles) fail(fmt::format("more than {} triangles", limits_.triangles));
-      mesh_.triangle.emplace_back(face_[0], face_[k - 1], face_[k]);
-      triangleLine_.push_back(line_);
-    }
+    corner_.clear();
+    for (std::string_view word = words.next(); !word.empty(); word = words.next()) corner_.push_back(readCorner(word));
+    if (corner_.size() < 3) fail(fmt::format("a face with {} corners", corner_.size()));
+    for (std::size_t k = 2; k < corner_.size(); ++k) addTriangle(corner_[0], corner_[k - 1], corner_[k], number_);
   }
 
-  const std::string& name_;
-  double scale_;
-  SurfaceLimits limits_;
-  TriangleMesh mesh_;
-  std::vector<std::size_t> triangleLine_;
-  std::vector<int> face_;
-  std::size_t line_ = 0;
+  std::vector<int> corner_;  ///< of the face being read
 };
 
 }  // namespace
 
-TriangleMesh parseObj(std::span<const std::byte> bytes, const std::string& name, LengthUnit unit,
-                      const SurfaceLimits& limits) {
-  if (bytes.size() > limits.bytes) {
-    throw Error(ErrorKind::damaged, Where{name}, fmt::format("larger than {} bytes", limits.bytes));
-  }
-  return ObjParser(name, unit, limits).parse({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
-}
+TriangleMesh readObj(const SurfaceReader& start) { return ObjReader(start).read(); }
 
 std::string formatObj(const TriangleMesh& mesh, const std::string& comment) {
   std::string text;

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "recorder/base/errors.h"
+#include "recorder/base/files.h"
 
 namespace calot::recorder {
 
@@ -30,14 +31,6 @@ std::vector<std::filesystem::path> splitPaths(std::string_view text) {
     text.remove_prefix(std::min(end + 1, text.size()));
   }
   return paths;
-}
-
-std::filesystem::path userFolder() {
-  // Named by the environment alone, as every program of a desktop finds its user's data.
-  if (const char* data = std::getenv("XDG_DATA_HOME"); data != nullptr && *data == '/') return data;
-  if (const char* home = std::getenv("HOME"); home != nullptr && *home == '/')
-    return std::filesystem::path(home) / ".local/share";
-  return {};
 }
 
 std::filesystem::path findInPath(const char* program) {
@@ -114,7 +107,7 @@ EnginePlaces userEnginePlaces(const std::filesystem::path& programFolder,
   if (const char* named = std::getenv("CALOT_ENGINES"); named != nullptr) {
     places.folders = splitPaths(named);
   } else {
-    if (const std::filesystem::path user = userFolder(); !user.empty())
+    if (const std::filesystem::path user = userFolder("XDG_DATA_HOME", ".local/share"); !user.empty())
       places.folders.push_back(user / "calot/engines");
     places.folders.push_back(programFolder / "../lib/calot/engines");
   }

@@ -8,7 +8,7 @@
 
 #include "recorder/base/child_process.h"
 #include "recorder/base/errors.h"
-#include "recorder/base/file_bytes.h"
+#include "recorder/base/files.h"
 #include "recorder/engine/wire.h"
 #include "recorder/kept/engine_process.h"
 

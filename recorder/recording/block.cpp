@@ -30,8 +30,7 @@ struct TakeFields {
   }
 };
 
-template <class Row>
-std::string take(std::span<const std::byte> bytes, Row& out) {
+std::string take(std::span<const std::byte> bytes, auto& out) {
   TakeFields fields{bytes};
   visitRow(out, fields);
   return fields.fault;

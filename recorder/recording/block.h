@@ -67,8 +67,7 @@ struct RawCounts {
 // Each kind of row lists its fields once, in their order and without gaps: bytes, stored type and exported table follow
 // from the list. A visitor is called with (name, unit, value).
 
-template <class Visitor>
-void visitRow(SameAs<Event> auto& e, Visitor& visit) {
+void visitRow(SameAs<Event> auto& e, auto& visit) {
   visit("step", "", e.step);
   visit("kind", "", e.kind);
   visit("hand", "", e.hand);
@@ -77,16 +76,14 @@ void visitRow(SameAs<Event> auto& e, Visitor& visit) {
   visit("value", "", e.value);
 }
 
-template <class Visitor>
-void visitRow(SameAs<KeyframeRow> auto& k, Visitor& visit) {
+void visitRow(SameAs<KeyframeRow> auto& k, auto& visit) {
   visit("step", "", k.step);
   visit("offset", "", k.offset);
   visit("state_bytes", "", k.stateBytes);
   visit("haptics_bytes", "", k.hapticsBytes);
 }
 
-template <class Visitor>
-void visitRow(SameAs<StatusRow> auto& s, Visitor& visit) {
+void visitRow(SameAs<StatusRow> auto& s, auto& visit) {
   visit("ticks", "", s.ticks);
   visit("steps", "", s.steps);
   visit("events", "", s.events);
@@ -98,8 +95,7 @@ void visitRow(SameAs<StatusRow> auto& s, Visitor& visit) {
   visit("chain", "", s.chain);
 }
 
-template <class Visitor>
-void visitRow(SameAs<RawSample> auto& r, Visitor& visit) {
+void visitRow(SameAs<RawSample> auto& r, auto& visit) {
   visit("device_time", "ns", r.sample.deviceTime);
   visit("host_time", "ns", r.sample.hostTime);
   visit("sequence", "", r.sample.sequence);
@@ -112,17 +108,14 @@ void visitRow(SameAs<RawSample> auto& r, Visitor& visit) {
   visit("used", "", r.used);
 }
 
-template <class Visitor>
-void visitRow(SameAs<RawCounts> auto& c, Visitor& visit) {
+void visitRow(SameAs<RawCounts> auto& c, auto& visit) {
   visit("left", "", c.samples[0]);
   visit("right", "", c.samples[1]);
   visit("left_dropped", "", c.dropped[0]);
   visit("right_dropped", "", c.dropped[1]);
 }
 
-/// Appends the bytes of a row.
-template <class Row>
-void appendRow(const Row& row, std::vector<std::byte>& out) {
+void appendRow(const auto& row, std::vector<std::byte>& out) {
   const auto put = [&out](const char* /*name*/, const char* /*unit*/, const auto& value) { appendValue(out, value); };
   visitRow(row, put);
 }
@@ -141,14 +134,8 @@ struct AppendVisitor {
   std::vector<std::vector<std::byte>>& column;
   std::size_t index = 0;
 
-  template <class T>
-  void operator()(const char*, const char*, const char*, const T& value) {
-    appendValue(column[index++], value);
-  }
-  template <class T>
-  void outside(const char*, const char*, const char*, const T& value) {
-    appendValue(column[index++], value);
-  }
+  void operator()(const char*, const char*, const char*, const auto& value) { appendValue(column[index++], value); }
+  void outside(const char*, const char*, const char*, const auto& value) { appendValue(column[index++], value); }
   template <class T>
   void list(const char*, const char*, const char*, const std::vector<T>& values, std::size_t width) {
     appendBytes(column[index++], values.data(), std::min(values.size(), width) * sizeof(T));
@@ -172,8 +159,7 @@ struct RowVisitor {
   std::string fault;
   std::string unfinite = {};  ///< first result that is no finite number
 
-  template <class T>
-  void operator()(const char*, const char*, const char*, T& value) {
+  void operator()(const char*, const char*, const char*, auto& value) {
     read(at(), value);
     ++index;
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "recorder/recording/column_reader.h"
+#include "recorder/recording/file_reader.h"
 
 #include <fmt/format.h>
 

@@ -10,11 +10,11 @@
 #include <fstream>
 #include <system_error>
 
-#include "recorder/base/file_bytes.h"
+#include "recorder/base/files.h"
 #include "recorder/recording/block.h"
+#include "recorder/recording/file_reader.h"
 #include "recorder/recording/hdf5.h"
 #include "recorder/recording/layout.h"
-#include "recorder/recording/open_file.h"
 
 namespace calot::recorder {
 
@@ -125,8 +125,7 @@ class Builder {
   }
 
   /// A data set of the column that grows, with its first row.
-  template <class Row>
-  void firstRow(const Column& column, const Row& row) const {
+  void firstRow(const Column& column, const auto& row) const {
     std::vector<std::byte> packed;
     appendRow(row, packed);
     write(column.path, hdf5::elementType(column.element).get(), 1, column.chunkRows, packed.data(), 0, true);

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "recorder/recording/header_reader.h"
+#include "recorder/recording/file_reader.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <regex>
 
-#include "recorder/base/file_bytes.h"
+#include "recorder/base/files.h"
 #include "recorder/recording/layout.h"
 
 namespace calot::recorder {
@@ -160,10 +160,7 @@ class HeaderReader {
 struct ReadAttributes {
   const HeaderReader& reader;
   void operator()(const char* name, std::string& v) { v = reader.text(reader.root(), "/", name); }
-  template <class T>
-  void operator()(const char* name, T& v) {
-    reader.number(reader.root(), "/", name, v);
-  }
+  void operator()(const char* name, auto& v) { reader.number(reader.root(), "/", name, v); }
   void constant(const char* name, const std::string& expected) {
     if (reader.text(reader.root(), "/", name) != expected)
       throw damaged(reader.path(), std::string("/@") + name, "the file is not a recording");

@@ -67,8 +67,7 @@ constexpr Element storedAs() {
 }
 
 /// Calls use(number) with a stored number.
-template <class Use>
-void withNumber(Element element, const std::byte* at, Use use) {
+void withNumber(Element element, const std::byte* at, auto use) {
   const auto as = [&]<class T>(T number) {
     std::memcpy(&number, at, sizeof number);
     use(number);
@@ -165,8 +164,7 @@ std::vector<std::string> namesOf(const AttemptHeader& header) {
 
 /// Lists what one tick stores. A visitor is called with (folder, name, unit, value); `outside` is for what the chain
 /// leaves out.
-template <class Samples, class Outcome, class Visitor>
-void visitTick(Samples& s, Outcome& o, Visitor& visit) {
+void visitTick(auto& s, auto& o, auto& visit) {
   static constexpr std::array<const char*, handCount> folder{"/ticks/left", "/ticks/right"};
   for (std::size_t h = 0; h < folder.size(); ++h) {
     visit(folder[h], "position", "m", s.hand[h].position);
@@ -198,8 +196,7 @@ struct ResultColumns {
       visit(group.path, field.name, unitOf(field), value);
     }
   }
-  template <class Parts, class Member>
-  void each(const ResultGroup& group, const ResultField& field, Parts& parts, Member member) {
+  void each(const ResultGroup& group, const ResultField& field, auto& parts, auto member) {
     if (visit.layout.countOf(parts) > 0) visit.each(group.path, field.name, unitOf(field), parts, member);
   }
 
@@ -219,8 +216,7 @@ void visitResult(Result& r, Visitor& visit) {
 }
 
 /// Lists what version 3 of StepResult stored of the procedure: the judgement of its time.
-template <class Procedure, class Visitor>
-void visitProcedure(Procedure& p, Visitor& visit) {
+void visitProcedure(auto& p, auto& visit) {
   static constexpr const char* procedure = "/observables/procedure";
   visit(procedure, "phase", "", p.phase);
   visit(procedure, "triangle_cleared", "", p.triangleCleared);
@@ -242,9 +238,7 @@ TickOutcome asStored(const TickOutcome& tick);
 void shorten(const StateDigest& digest, BriefDigest& out);
 
 /// Lists what one step stores, but for its events. @param forces digest of its ticks' forces
-template <class Digest, class Brief, class Forces, class Lateness, class Result, class Procedure, class Visitor>
-void visitStep(Digest& digest, Brief& brief, Forces& forces, Lateness& lateness, Result& r, Procedure& procedure,
-               Visitor& visit) {
+void visitStep(auto& digest, auto& brief, auto& forces, auto& lateness, auto& r, auto& procedure, auto& visit) {
   const Layout& layout = visit.layout;
   if (layout.brief) {
     visit("/steps", "state_digest", "", brief.state);
@@ -261,8 +255,7 @@ void visitStep(Digest& digest, Brief& brief, Forces& forces, Lateness& lateness,
 
 /// Lists the root attributes in the order of the chain. Values: std::string, std::uint32_t, std::uint64_t,
 /// std::int64_t, double; `choice` is a string from a list.
-template <class Header, class Visitor>
-void visitAttributes(Header& h, Visitor& visit) {
+void visitAttributes(auto& h, auto& visit) {
   visit.constant("format", std::string(formatName));
   visit("format_version", h.formatVersion);
   visit("attempt_uuid", h.attempt);
@@ -297,10 +290,7 @@ void visitAttributes(Header& h, Visitor& visit) {
 template <class Use>
 struct AttributeValues {
   Use use;
-  template <class T>
-  void operator()(const char* name, const T& value) {
-    use(name, value);
-  }
+  void operator()(const char* name, const auto& value) { use(name, value); }
   void constant(const char* name, const std::string& value) { use(name, value); }
   template <class T, std::size_t N>
   void choice(const char* name, const T& value, const std::array<const char*, N>& names) {

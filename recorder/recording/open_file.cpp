@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "recorder/recording/open_file.h"
+#include "recorder/recording/file_reader.h"
 
 #include <fmt/format.h>
 
@@ -44,15 +44,11 @@ Superblock readSuperblock(const std::filesystem::path& path) {
   return s;
 }
 
-namespace {
-
 std::uint64_t sizeOfFile(const std::filesystem::path& path) {
   std::error_code error;
   const std::uintmax_t bytes = std::filesystem::file_size(path, error);
   return error ? 0 : bytes;
 }
-
-}  // namespace
 
 hdf5::Id openForReading(const std::filesystem::path& path, Access access) {
   const Superblock superblock = readSuperblock(path);
@@ -95,7 +91,6 @@ constexpr std::size_t maxLinkName = 255;
 constexpr std::uint64_t mostUnfolding = 1040;
 constexpr unsigned externalFiles = 7;  ///< type of the message that names them (HDF5 File Format Specification 3.0)
 
-/// Members of a group.
 struct Links {
   std::vector<std::string> names;
   const char* fault = nullptr;  ///< of the one that comes next; its name is `at`

@@ -14,7 +14,7 @@
 #include <thread>
 #include <utility>
 
-#include "recorder/recording/hdf5.h"
+#include "recorder/recording/file_reader.h"
 
 namespace calot::recorder {
 
@@ -92,7 +92,6 @@ void limitMemory(std::size_t bytes) {
   ::setrlimit(RLIMIT_AS, &limit);
 }
 
-/// Request to a guarding process.
 struct Request {
   std::int64_t seconds = 0;
   std::uint64_t memory = 0;
@@ -125,7 +124,6 @@ void serve(const Channel& parent, const GuardProcesses::Task& task) {
   }
 }
 
-/// Reads all of a recording.
 std::string readThrough(const std::string& file) {
   Recording recording(file);
   for (std::uint64_t n = 0; n < recording.stepCount(); ++n) recording.step(n);
@@ -146,10 +144,8 @@ Shared& shared() {
 }  // namespace
 
 GuardLimits readingLimits(const std::filesystem::path& file) {
-  std::error_code error;
-  const std::uintmax_t bytes = std::filesystem::file_size(file, error);
   GuardLimits limits;
-  limits.time = std::chrono::seconds(60 + (error ? 0 : std::min<std::uintmax_t>(bytes / mebibyte, 3600)));
+  limits.time = std::chrono::seconds(60 + std::min<std::uint64_t>(sizeOfFile(file) / mebibyte, 3600));
   return limits;
 }
 

@@ -37,7 +37,6 @@ class ProbeProcesses {
   bool first_ = false;
 };
 
-/// Limits of a child process.
 struct GuardLimits {
   std::chrono::seconds time{600};
   std::size_t memory = std::size_t{1} << 30U;  ///< beyond what its parent holds (bytes)
@@ -53,23 +52,20 @@ std::string runGuarded(const std::string& what, const std::function<std::string(
                        const GuardLimits& limits = {});
 
 /// A record as bytes, by its list of fields (sim/math/fields.h), and back.
-template <class Record>
-std::string packed(const Record& record) {
+std::string packed(const auto& record) {
   std::vector<std::byte> bytes;
   ByteWriter(bytes).write(record);
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 /// @return false where these are not the bytes of such a record: a process that a file has broken may send anything
-template <class Record>
-[[nodiscard]] bool unpack(const std::string& bytes, Record& out) {
+[[nodiscard]] bool unpack(const std::string& bytes, auto& out) {
   ByteReader reader(std::as_bytes(std::span(bytes)));
   reader.read(out);
   return reader.complete();
 }
 
 /// runGuarded() of a task that returns a record.
-template <class Task>
-auto guardedRecord(const std::string& what, const Task& task, const GuardLimits& limits = {}) {
+auto guardedRecord(const std::string& what, const auto& task, const GuardLimits& limits = {}) {
   decltype(task()) record{};
   if (!unpack(runGuarded(
                   what, [&] { return packed(task()); }, limits),

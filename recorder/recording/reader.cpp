@@ -8,21 +8,9 @@
 #include <cmath>
 
 #include "recorder/recording/block.h"
-#include "recorder/recording/column_reader.h"
-#include "recorder/recording/header_reader.h"
-#include "recorder/recording/open_file.h"
+#include "recorder/recording/file_reader.h"
 
 namespace calot::recorder {
-
-namespace {
-
-std::uint64_t sizeOf(const std::filesystem::path& path) {
-  std::error_code error;
-  const std::uintmax_t size = std::filesystem::file_size(path, error);
-  return error ? 0 : size;
-}
-
-}  // namespace
 
 struct Recording::Impl {
   std::filesystem::path path;
@@ -43,7 +31,7 @@ struct Recording::Impl {
   Impl(const std::filesystem::path& from, Access access) : path(from) {
     const hdf5::Session session;
     file = openForReading(path, access);
-    fileBytes = sizeOf(path);
+    fileBytes = sizeOfFile(path);
     header = readHeader(path, file, fileBytes);
     layout = std::make_unique<Layout>(header);
     columns = std::make_unique<ColumnReader>(path, file, *layout, fileBytes);

@@ -39,7 +39,6 @@ struct StatusRow {
   std::array<std::uint64_t, handCount> rawDropped{};
 };
 
-/// One step as recorded.
 struct RecordedStep {
   std::uint64_t step = 0;
   std::vector<TickSamples> samples;  ///< ticksPerStep of them

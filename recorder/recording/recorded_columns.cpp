@@ -9,7 +9,7 @@
 #include <system_error>
 #include <type_traits>
 
-#include "recorder/base/csv_writer.h"
+#include "recorder/base/csv.h"
 #include "recorder/base/errors.h"
 #include "recorder/recording/block.h"
 #include "recorder/recording/layout.h"
@@ -19,8 +19,7 @@ namespace calot::recorder {
 namespace {
 
 /// Reads and checks every step; after the last one of each flush, calls use(first step, end).
-template <class Use>
-void forEachFlush(Recording& recording, const std::function<void(std::uint64_t)>& progress, Use use) {
+void forEachFlush(Recording& recording, const std::function<void(std::uint64_t)>& progress, auto use) {
   std::uint64_t first = 0;
   for (const StatusRow& row : recording.status()) {
     for (std::uint64_t n = first; n < row.steps; ++n) {
@@ -165,8 +164,7 @@ void putTitles(CsvFile& file) {
   visitRow(row, put);
   file.endRow();
 }
-template <class Row>
-void putRow(CsvFile& file, const Row& row) {
+void putRow(CsvFile& file, const auto& row) {
   const auto put = [&file]<class T>(const char* /*name*/, const char* /*unit*/, const T& value) {
     if constexpr (std::is_same_v<T, Vec3>) {
       for (int i = 0; i < 3; ++i) file.put(value[i]);

@@ -24,14 +24,12 @@ struct RecordedColumn {
   std::vector<std::byte> values;
 };
 
-/// All of a recording's rows.
 struct RecordedColumns {
   std::vector<RecordedColumn> ticks;  ///< a row a tick: /ticks and /camera
   std::vector<RecordedColumn> steps;  ///< a row a step: /steps and /observables
   std::vector<std::byte> events;      ///< packed as schemas/recording.md says: 45 bytes each
 };
 
-/// Events in their packed form.
 std::vector<std::byte> packedEvents(const std::vector<Event>& events);
 
 /// Reads the columns of every step. @throws Error as Recording::step() does

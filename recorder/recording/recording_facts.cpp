@@ -13,8 +13,8 @@
 #include <string_view>
 
 #include "recorder/base/errors.h"
+#include "recorder/recording/file_reader.h"
 #include "recorder/recording/hdf5.h"
-#include "recorder/recording/open_file.h"
 #include "recorder/recording/probe.h"
 #include "recorder/recording/reader.h"
 
@@ -89,8 +89,7 @@ std::vector<StoredBytes> storedBytes(const std::filesystem::path& path) {
   }
   std::uint64_t sum = 0;
   for (const auto& [group, bytes] : groups) sum += bytes;
-  std::error_code ignored;
-  const std::uint64_t whole = std::filesystem::file_size(path, ignored);
+  const std::uint64_t whole = sizeOfFile(path);
   groups["structure"] += whole > sum ? whole - sum : 0;
   std::vector<StoredBytes> out;
   for (const auto& [group, bytes] : groups) out.push_back({group, bytes});

@@ -13,7 +13,6 @@
 
 namespace calot::recorder {
 
-/// Identity of a recording's attempt.
 struct RecordingIdentity {
   std::string attempt, parent;  ///< uuids; parent empty: no branch
   std::string participant;      ///< pseudonym, or empty
@@ -52,7 +51,6 @@ struct StoredBytes {
 /// all of them add up to the file's size. @pre probe() accepted the file @throws Error damaged
 std::vector<StoredBytes> storedBytes(const std::filesystem::path& path);
 
-/// Statistics of a hand's device from its raw samples.
 struct RawStatistics {
   std::uint64_t samples = 0;  ///< in the recording
   std::uint64_t valid = 0;    ///< of these

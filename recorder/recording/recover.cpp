@@ -6,12 +6,10 @@
 #include <memory>
 #include <system_error>
 
-#include "recorder/base/text_output.h"
+#include "recorder/base/files.h"
 #include "recorder/recording/block.h"
-#include "recorder/recording/column_reader.h"
+#include "recorder/recording/file_reader.h"
 #include "recorder/recording/file_writer.h"
-#include "recorder/recording/header_reader.h"
-#include "recorder/recording/open_file.h"
 #include "recorder/recording/probe.h"
 
 namespace calot::recorder {

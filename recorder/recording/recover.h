@@ -7,7 +7,6 @@
 
 namespace calot::recorder {
 
-/// Result of recover().
 struct Recovered {
   std::uint64_t steps = 0;  ///< saved
   std::uint64_t ticks = 0;  ///< saved

@@ -5,9 +5,9 @@
 
 #include <system_error>
 
-#include "recorder/base/text_output.h"
+#include "recorder/base/files.h"
+#include "recorder/recording/file_reader.h"
 #include "recorder/recording/hdf5.h"
-#include "recorder/recording/open_file.h"
 #include "recorder/recording/probe.h"
 #include "sim/math/fields.h"
 

@@ -8,8 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "recorder/base/errors.h"
-#include "recorder/base/file_bytes.h"
-#include "recorder/base/secret_file.h"
+#include "recorder/base/files.h"
 
 namespace calot::recorder {
 namespace {

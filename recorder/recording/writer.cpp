@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "recorder/recording/writer.h"
 
 #include <fmt/format.h>
@@ -15,8 +14,8 @@
 #include <system_error>
 #include <thread>
 
-#include "recorder/base/spsc_queue.h"
-#include "recorder/base/text_output.h"
+#include "recorder/base/files.h"
+#include "recorder/base/queues.h"
 #include "recorder/recording/file_writer.h"
 #include "recorder/recording/keyframe_code.h"
 #include "recorder/recording/layout.h"

@@ -67,11 +67,7 @@ void ControllerSamples::next(const HandCommands& wanted, std::span<TickSamples> 
 Provenance controllerProvenance(const std::string& name, const std::string& version) {
   checkText(name, "name");
   checkText(version, "version");
-  Provenance provenance;
-  provenance.kind = OperatorKind::performer;
-  provenance.profile = "controller:" + name;
-  provenance.profileVersion = version;
-  return provenance;
+  return {OperatorKind::performer, "controller:" + name, version};
 }
 
 }  // namespace calot::recorder

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Freeing the specimen from its bed with the hook.
 // Clearing vessels and the triangle between them of fat.
-
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -14,7 +14,7 @@
 
 #include "recorder/engine/observer.h"
 #include "recorder/sources/performer_profile.h"
-#include "recorder/sources/unsteadiness.h"
+#include "recorder/sources/pointing.h"
 #include "sim/math/random.h"
 #include "sim/scene/description.h"
 
@@ -47,8 +47,6 @@ class PerformerHand {
   PerformerHand(const PerformerProfile& profile, const HandDescription& hand, std::size_t index, std::uint64_t seed);
 
   void add(const HandMove& move);
-  /// Drops commands that have not started.
-  void clear();
   [[nodiscard]] std::size_t waiting() const { return queue_.size(); }
   /// Is the hand idle at `time` (s)?
   [[nodiscard]] bool idle(double time) const { return queue_.empty() && time >= end_; }
@@ -99,7 +97,6 @@ struct SeenVessel {
 
 struct SeenStrand {
   std::array<Vec3, 2> end{Vec3::Zero(), Vec3::Zero()};  ///< on the specimen and on the liver (m, W)
-  double alpha = 1.0;
   bool attached = false;
 };
 
@@ -111,7 +108,6 @@ struct SeenColumn {
 };
 
 struct SeenHand {
-  Vec3 tip = Vec3::Zero();  ///< p_WI of the instrument in the picture (m)
   bool holds = false;       ///< its jaws hold tissue
   std::uint32_t clips = 0;  ///< left in the applier
 };
@@ -121,8 +117,7 @@ struct Sight {
   std::vector<SeenStrand> strand;
   std::vector<SeenColumn> column;  ///< in the order of PerformerSight::columns()
   std::array<SeenHand, handCount> hand;
-  Vec3 grip = Vec3::Zero();         ///< the place on the specimen that is to be held (m, W)
-  Vec3 gripNormal = Vec3::UnitY();  ///< outward there, at rest
+  Vec3 grip = Vec3::Zero();  ///< the place on the specimen that is to be held (m, W)
 };
 
 /// Reference positions, which an operator knows from anatomy.
@@ -185,7 +180,6 @@ class PerformerSight {
   bool divides_ = false;
   double triangleDepth_ = 0.0;
   std::size_t gripVertex_ = 0;
-  Vec3 gripNormal_ = Vec3::UnitY();
 };
 
 /// Both hands of an operation, its anatomy, and the operator's interpretation of its perception.

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Works of the operation on vessels: clipping, cutting.
 // Clearing the triangle between the vessels: strokes through the whole thickness of its fat, row by row.
-
 #include <algorithm>
 #include <array>
 #include <cmath>

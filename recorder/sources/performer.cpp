@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "recorder/sources/performer.h"
 
 #include <algorithm>
@@ -30,16 +29,13 @@ constexpr double atHome = 0.5;  // at home before the start, at rest after the e
 OperationSource::OperationSource(const PerformerProfile& profile, const SceneDescription& scene, std::uint64_t seed)
     : profile_(profile),
       scene_(scene),
+      provenance_{OperatorKind::performer, profile.name, profile.version},
       anatomy_(scene_, worker),
       hand_{PerformerHand(profile_, scene_.hands[0], 0, seed), PerformerHand(profile_, scene_.hands[1], 1, seed)},
       holding_({profile_, scene_, anatomy_, hand_}, 1 - worker, seed),
       working_({profile_, scene_, anatomy_, hand_}, worker, seed),
       judge_(scene),
-      random_(seed, 23) {
-  provenance_.kind = OperatorKind::performer;
-  provenance_.profile = profile.name;
-  provenance_.profileVersion = profile.version;
-}
+      random_(seed, 23) {}
 
 Outcome OperationSource::ending() const { return gaveUp_ ? Outcome::abandoned : Outcome::completed; }
 
@@ -253,11 +249,8 @@ void StrokePlan::touch(const TouchTarget& target) {
 void StrokePlan::goHome() { strokeTo(scene_.hands[hand_].home, profile_.motor.strokeSpeed, 0.0, 0.0); }
 
 PerformerSource::PerformerSource(const PerformerProfile& profile, const SceneDescription& scene, std::uint64_t seed)
-    : hands_(scene.hands), camera_(scene.camera) {
+    : provenance_{OperatorKind::performer, profile.name, profile.version}, hands_(scene.hands), camera_(scene.camera) {
   const FloatingPointScope environment;
-  provenance_.kind = OperatorKind::performer;
-  provenance_.profile = profile.name;
-  provenance_.profileVersion = profile.version;
   const SceneSurfaces surfaces(scene);
   std::vector<StrokePlan> plans;
   plans.reserve(handCount);

@@ -6,9 +6,9 @@
 #include <set>
 
 #include "recorder/base/errors.h"
-#include "recorder/base/file_bytes.h"
-#include "recorder/base/nearest_word.h"
-#include "recorder/base/record_reader.h"
+#include "recorder/base/files.h"
+#include "recorder/base/record_json.h"
+#include "recorder/base/text_words.h"
 #include "sim/math/floating_point.h"
 
 namespace calot::recorder {
@@ -146,26 +146,7 @@ PerformerProfile loadPerformer(const fs::path& file) {
 }
 
 fs::path findPerformer(const std::string& name, const std::vector<fs::path>& roots) {
-  std::error_code ignored;
-  if (name.size() > 5 && name.substr(name.size() - 5) == ".json") {
-    if (fs::is_regular_file(name, ignored)) return name;
-    throw Error(ErrorKind::invalid, Where{name}, "there is no such profile");
-  }
-  std::set<std::string> known;
-  for (const fs::path& root : roots) {
-    std::error_code fault;
-    for (fs::directory_iterator it(root / "performers", fault), end; !fault && it != end; it.increment(fault)) {
-      if (it->path().extension() != ".json") continue;
-      if (it->path().stem() == name) return it->path();
-      known.insert(it->path().stem().string());
-    }
-  }
-  std::string names;
-  for (const std::string& n : known) names += (names.empty() ? "" : ", ") + n;
-  throw Error(
-      ErrorKind::invalid,
-      fmt::format("there is no performer \"{}\"{}; {}", name, didYouMean(name, {known.begin(), known.end()}),
-                  names.empty() ? std::string("no assets folder was found (set CALOT_ASSETS)") : "there are " + names));
+  return findJsonFile(name, roots, "performers", "performer", "profile");
 }
 
 }  // namespace calot::recorder

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Fat as a performer sees it: on the vessels, and in the triangle between them.
-
 #include "recorder/sources/operation_mind.h"
 
 #include <algorithm>
@@ -119,7 +118,6 @@ void PerformerSight::findSpecimen(const SceneDescription& scene) {
     if (!(score > best)) continue;
     best = score;
     gripVertex_ = i;
-    gripNormal_ = n;
   }
 }
 
@@ -173,17 +171,15 @@ Sight PerformerSight::look(const StepRecord& record) const {
   for (const ConnectiveView& tissue : view.connective) {
     if (tissue.name != bed_) continue;
     for (std::size_t s = 0; s < tissue.strand.size(); ++s) {
-      sight.strand.push_back(
-          {tissue.strand[s], static_cast<double>(tissue.alpha[s]), tissue.condition[s] == StrandCondition::attached});
+      sight.strand.push_back({tissue.strand[s], tissue.condition[s] == StrandCondition::attached});
     }
   }
   for (std::size_t h = 0; h < handCount; ++h) {
     const HandResult& hand = record.result.hand[h];
-    sight.hand[h] = {view.instrument[h].pose.position, hand.grasping != 0, hand.clips};
+    sight.hand[h] = {hand.grasping != 0, hand.clips};
   }
   if (hasSpecimen()) {
     if (const SurfaceView* skin = surfaceNamed(view, specimenName_)) sight.grip = skin->position[gripVertex_];
-    sight.gripNormal = gripNormal_;
   }
   return sight;
 }

@@ -3,7 +3,11 @@
 // the jaw's hinge. Only + - * / sqrt and the elementary functions of sim/: the same bits everywhere.
 #pragma once
 
+#include <array>
+#include <cstddef>
+
 #include "sim/math/linear.h"
+#include "sim/math/random.h"
 
 namespace calot::recorder {
 
@@ -42,5 +46,19 @@ Quat interpolated(const Quat& from, const Quat& to, double s);
 /// coordination of arm movements", J. Neuroscience 5:1688). Speed and acceleration are zero at both ends; the greatest
 /// speed is 1.875 times the mean.
 double minimumJerk(double s);
+
+/// Movement about the planned tip: a sum of sines with frequencies and phases drawn once.
+class Unsteadiness {
+ public:
+  Unsteadiness() = default;
+  /// @param amplitude root mean square of each axis (m). @param lower, upper band (Hz).
+  Unsteadiness(double amplitude, double lower, double upper, Random& random);
+  [[nodiscard]] Vec3 at(double time) const;
+
+ private:
+  static constexpr std::size_t sines = 4;
+  double amplitude_ = 0.0;
+  std::array<std::array<double, sines>, 3> omega_{}, phase_{};
+};
 
 }  // namespace calot::recorder

@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Sources of samples, and sources around other sources.
 #pragma once
 
+#include <array>
+#include <atomic>
 #include <cstdint>
+#include <mutex>
+#include <optional>
 #include <string>
 
 #include "recorder/base/identity.h"
@@ -69,6 +74,125 @@ class SampleSource {
 
   /// One line of reason if the status is not ok, else empty.
   [[nodiscard]] virtual std::string statusText() const { return {}; }
+};
+
+/// A source around another: what a derived class does not change is the other's.
+class WrappedSource : public SampleSource {
+ public:
+  /// @param source outlives this
+  explicit WrappedSource(SampleSource& source) : source_(source) {}
+
+  [[nodiscard]] const Provenance& provenance() const override { return source_.provenance(); }
+  bool next(std::uint64_t tick, TickSamples& out) override { return source_.next(tick, out); }
+  SourceStatus status() override { return source_.status(); }
+  void rest() override { source_.rest(); }
+  [[nodiscard]] Observer* watcher() override { return source_.watcher(); }
+  [[nodiscard]] DeviceSource* device() override { return source_.device(); }
+  [[nodiscard]] Outcome ending() const override { return source_.ending(); }
+  [[nodiscard]] std::string statusText() const override { return source_.statusText(); }
+
+ protected:
+  SampleSource& source_;
+};
+
+/// Wraps a source so that a trainer's window may pause the run, exchange instruments and end the
+/// attempt, with any device.
+///
+/// Changes are made in the samples and are thus recorded: an exchanged instrument appears in the ticks,
+/// a pause produces none. So they replay as they were, whatever the simulation makes of them.
+class ControlledSource final : public WrappedSource {
+ public:
+  /// @param source outlives this
+  explicit ControlledSource(SampleSource& source) : WrappedSource(source) {}
+
+  // Any thread:
+  /// Pauses the run before its next step (SourceStatus::paused) or resumes it. A failed source is not paused.
+  void hold(bool held) { held_ = held; }
+  [[nodiscard]] bool held() const { return held_; }
+  /// From the next tick on this hand has that instrument, whatever the source says; a hand without any stays so.
+  void mount(Hand hand, InstrumentKind instrument) {
+    mounted_[static_cast<std::size_t>(hand)] = static_cast<std::int16_t>(instrument);
+  }
+  /// The same as a person does it: the old instrument is drawn out through the port and the new one put in, and for so
+  /// long the hand has none. Nothing happens to a hand without any, or that has this one already; a newer wish on the
+  /// way begins again. @param ticks how long it takes (ms)
+  void exchange(Hand hand, InstrumentKind instrument, std::uint32_t ticks);
+  /// An exchange that is under way.
+  struct Exchange {
+    InstrumentKind coming = InstrumentKind::none;
+    std::uint32_t ticks = 0;  ///< still to go
+  };
+  [[nodiscard]] std::optional<Exchange> exchanging(Hand hand) const;
+  /// Asks the assistant for more or less retraction: a press of one tick, by the right hand where it is measured, else
+  /// by the left one.
+  void ask(bool more) { ++(more ? more_ : less_); }
+  /// The source ends with the next tick. @pre outcome is not running
+  void finish(Outcome outcome) { finished_ = outcome; }
+
+  bool next(std::uint64_t tick, TickSamples& out) override;
+  SourceStatus status() override;
+  [[nodiscard]] Outcome ending() const override;
+
+ private:
+  static constexpr std::int16_t asGiven = -1;
+  void press(TickSamples& out);
+
+  std::atomic<bool> held_{false};
+  struct Exchanging {
+    std::atomic<std::uint64_t> wish{0};  ///< kind in the upper half, ticks in the lower; 0: none
+    std::atomic<std::uint32_t> left{0};  ///< ticks
+  };
+  std::array<std::atomic<std::int16_t>, handCount> mounted_{asGiven, asGiven};
+  std::array<Exchanging, handCount> exchange_;
+  std::atomic<Outcome> finished_{Outcome::running};
+  std::atomic<std::uint32_t> more_{0}, less_{0};  ///< requests that are still to be pressed
+  bool pressed_ = false;                          ///< in the last tick; a new press follows a release
+};
+
+/// A source with a watcher in a live run: one thread requests ticks, another reports steps. Sources are not
+/// thread-safe; this serialises the two.
+class GuardedSource final : public WrappedSource, private Observer {
+ public:
+  /// @param source outlives this; it has a watcher
+  explicit GuardedSource(SampleSource& source) : WrappedSource(source), watcher_(*source.watcher()) {}
+
+  bool next(std::uint64_t tick, TickSamples& out) override {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return source_.next(tick, out);
+  }
+  void rest() override {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    source_.rest();
+  }
+  [[nodiscard]] Observer* watcher() override { return this; }
+
+ private:
+  void onStep(const StepRecord& record) override {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    watcher_.onStep(record);
+  }
+  void onEnd(Outcome outcome) override { watcher_.onEnd(outcome); }
+
+  Observer& watcher_;
+  std::mutex mutex_;
+};
+
+/// Another source from its tick 0 on, whose hands and camera set out from where a recording left them: for `blendTime`
+/// the pose goes from the last measured one to the source's own by minimum jerk,
+///   p = p_0 + s (p_source(t) - p_0),  s = 10 u^3 - 15 u^4 + 6 u^5,  u = t / blendTime
+/// (orientation on the shorter arc, jaw angle likewise), so that neither place nor speed jumps at the fork. Instrument,
+/// buttons and validity are the source's own from the first tick. Samples are rounded as every source's are.
+class BlendedSource final : public WrappedSource {
+ public:
+  static constexpr double blendTime = 1.0;  ///< s
+
+  /// @param source outlives this. @param start the last measured pose of hands and camera.
+  BlendedSource(SampleSource& source, const TickSamples& start) : WrappedSource(source), start_(start) {}
+
+  bool next(std::uint64_t tick, TickSamples& out) override;
+
+ private:
+  TickSamples start_;
 };
 
 }  // namespace calot::recorder

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "recorder/sources/tracked_motion.h"
-#include "recorder/base/record_reader.h"
+#include "recorder/base/record_json.h"
 
 #include <fmt/format.h>
 #include <charconv>
@@ -11,8 +10,8 @@
 
 #include "recorder/base/csv.h"
 #include "recorder/base/errors.h"
-#include "recorder/base/file_bytes.h"
-#include "recorder/base/record_reader.h"
+#include "recorder/base/files.h"
+#include "recorder/base/text_words.h"
 #include "recorder/sources/pointing.h"
 
 namespace calot::recorder {
@@ -24,17 +23,13 @@ constexpr std::array<std::size_t, handCount> slaveColumn{2 * groupColumns, 3 * g
 constexpr std::size_t maxBytes = std::size_t{1} << 30U;
 constexpr std::size_t maxRows = 1000000;
 
-bool isBlank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
-
 /// @param fail throws with this fault @param hint on what may be wrong
-template <class Fail>
-void checkPosition(const Vec3& position, const char* hint, const Fail& fail) {
+void checkPosition(const Vec3& position, const char* hint, const auto& fail) {
   if (!(position.cwiseAbs().maxCoeff() <= maxPosition))
     fail(fmt::format("a position farther than {} m{}", maxPosition, hint));
 }
 
-template <class Fail>
-Quat checkedRotation(const Mat3& matrix, const Fail& fail) {
+Quat checkedRotation(const Mat3& matrix, const auto& fail) {
   const double off = rotationDefect(matrix);  // rounding in the format of kinematics is below 1e-4
   if (!(off <= rotationTolerance))
     fail(fmt::format("no rotation matrix (off by {:.2g}; {:.2g} is allowed)", off, rotationTolerance));
@@ -50,18 +45,10 @@ class LineReader {
   }
 
   void numbers(std::string_view text, std::array<double, columns>& out) const {
+    Words words(text);
     std::size_t count = 0;
-    for (std::size_t at = 0; at < text.size();) {
-      if (isBlank(text[at])) {
-        ++at;
-        continue;
-      }
-      std::size_t end = at;
-      while (end < text.size() && !isBlank(text[end])) ++end;
-      const std::string_view word = text.substr(at, end - at);
+    for (std::string_view word = words.next(); !word.empty(); word = words.next(), ++count) {
       if (count < columns) out[count] = number(word, count + 1);
-      ++count;
-      at = end;
     }
     if (count != columns) fail(fmt::format("{} columns; {} are expected", count, columns));
   }
@@ -84,11 +71,8 @@ class LineReader {
   [[nodiscard]] double number(std::string_view word, std::size_t column) const {
     double value = 0.0;
     const auto [end, fault] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (fault != std::errc() || end != word.data() + word.size() || !std::isfinite(value)) {
-      std::string shown;
-      for (const char c : word.substr(0, 20)) shown += c > 0x20 && c < 0x7f ? c : '?';
-      fail(fmt::format("column {}: \"{}\" is not a finite number", column, shown));
-    }
+    if (fault != std::errc() || end != word.data() + word.size() || !std::isfinite(value))
+      fail(fmt::format("column {}: \"{}\" is not a finite number", column, shown(word.substr(0, 20))));
     return value;
   }
 
@@ -104,16 +88,14 @@ KinematicsMotion readKinematics(const std::filesystem::path& file) {
 }
 
 KinematicsMotion parseKinematics(std::span<const std::byte> bytes, const std::string& file) {
-  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   if (text.empty()) throw Error(ErrorKind::damaged, Where{file}, "the file is empty");
   KinematicsMotion motion;
   motion.file = file;
   std::array<double, columns> values{};
   std::size_t line = 0, blank = 0;
-  for (std::size_t at = 0; at < text.size();) {
-    const std::size_t end = std::min(text.find('\n', at), text.size());
-    const std::string_view row = text.substr(at, end - at);
-    at = end + 1;
+  while (!text.empty()) {
+    const std::string_view row = takeLine(text);
     ++line;
     const LineReader reader(file, line);
     if (row.find_first_not_of(" \t\r") == std::string_view::npos) {
@@ -235,15 +217,6 @@ void checkHand(const JsonPlace& place, HandColumns& hand) {
   hand.axis = rotations[place.at("axis").word(axes)];
 }
 
-/// Wanted columns in the order in which they are asked for.
-struct Wanted {
-  std::vector<std::string> names;
-  std::size_t add(const std::string& name) {
-    names.push_back(name);
-    return names.size() - 1;
-  }
-};
-
 class RowReader {
  public:
   RowReader(const std::string& file, const CsvNumbers& numbers) : file_(file), numbers_(numbers) {}
@@ -307,17 +280,17 @@ TrackedMotion readCsvMotion(const std::filesystem::path& file, const ColumnMap& 
 }
 
 TrackedMotion parseCsvMotion(std::span<const std::byte> bytes, const std::string& file, const ColumnMap& map) {
-  Wanted wanted;
+  std::vector<std::string> wanted;
   std::array<std::size_t, handCount> position{}, orientation{};
-  if (map.rate == 0.0) wanted.add(map.time);
+  if (map.rate == 0.0) wanted.push_back(map.time);
   for (std::size_t h = 0; h < map.hand.size(); ++h) {
     if (!map.hand[h]) continue;
-    position[h] = wanted.names.size();
-    for (const std::string& name : map.hand[h]->position) wanted.add(name);
-    orientation[h] = wanted.names.size();
-    for (const std::string& name : map.hand[h]->orientation) wanted.add(name);
+    position[h] = wanted.size();
+    wanted.insert(wanted.end(), map.hand[h]->position.begin(), map.hand[h]->position.end());
+    orientation[h] = wanted.size();
+    wanted.insert(wanted.end(), map.hand[h]->orientation.begin(), map.hand[h]->orientation.end());
   }
-  const CsvNumbers numbers = readCsvNumbers(bytes, file, map.delimiter, wanted.names);
+  const CsvNumbers numbers = readCsvNumbers(bytes, file, map.delimiter, wanted);
   const std::size_t rows = numbers.line.size();
   if (rows < 2) throw Error(ErrorKind::damaged, Where{file}, "1 row; a motion has at least 2");
   const RowReader reader(file, numbers);

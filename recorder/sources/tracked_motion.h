@@ -46,7 +46,6 @@ KinematicsMotion readKinematics(const std::filesystem::path& file);
 /// The same from bytes.
 KinematicsMotion parseKinematics(std::span<const std::byte> bytes, const std::string& file);
 
-/// One hand's rows.
 struct TrackedHand {
   bool present = false;           ///< the file has this hand
   bool oriented = false;          ///< and its orientation
@@ -68,7 +67,6 @@ struct TrackedMotion {
 /// The slave instruments of a kinematics file.
 TrackedMotion trackedMotion(const KinematicsMotion& motion);
 
-/// Columns of one hand's instrument.
 struct HandColumns {
   std::array<std::string, 3> position;   ///< x y z
   std::vector<std::string> orientation;  ///< none; 4: quaternion w x y z; 9: rotation matrix row by row

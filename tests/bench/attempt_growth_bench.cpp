@@ -14,9 +14,9 @@
 #include <string>
 #include <vector>
 
-#include "recorder/attempt.h"
 #include "recorder/engine/session.h"
 #include "recorder/formats/scene_file.h"
+#include "recorder/loop.h"
 #include "recorder/recording/reader.h"
 #include "recorder/recording/writer.h"
 #include "recorder/replay.h"

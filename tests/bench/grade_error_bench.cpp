@@ -15,8 +15,8 @@
 #include <vector>
 
 #include "analytics/uncertainty/uncertainty.h"
-#include "recorder/attempt.h"
 #include "recorder/formats/scene_file.h"
+#include "recorder/loop.h"
 #include "tests/bench/benchmarks.h"
 #include "tests/bench/figures.h"
 #include "tests/bench/performed.h"

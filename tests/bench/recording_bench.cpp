@@ -12,13 +12,13 @@
 #include <string>
 #include <vector>
 
-#include "recorder/attempt.h"
 #include "recorder/engine/session.h"
 #include "recorder/formats/scene_file.h"
+#include "recorder/loop.h"
 #include "recorder/recording/reader.h"
 #include "recorder/recording/writer.h"
 #include "recorder/replay.h"
-#include "recorder/segments.h"
+#include "recorder/verification.h"
 #include "sim/math/random.h"
 #include "tests/bench/benchmarks.h"
 #include "tests/bench/figures.h"
@@ -115,7 +115,7 @@ void replay(benchmark::State& bench) {
     spent = processSeconds() - begin;
     bench.SetIterationTime(spent);
   }
-  if (report.verdict != recorder::ReplayVerdict::exact) throw std::runtime_error(report.message);
+  if (report.verdict != recorder::ReplayVerdict::exact) throw std::runtime_error("does not replay: " + report.error);
   auto& counters = bench.counters;
   counters["attempt_s"] = report.seconds;
   counters["x_realtime"] = report.seconds / spent;
@@ -145,7 +145,7 @@ void segments(benchmark::State& bench) {
     const auto timed = [&](const std::vector<recorder::Segment>& some, unsigned threads) {
       const auto begin = std::chrono::steady_clock::now();
       const recorder::SegmentsVerdict verdict = recorder::verifySegments(file, inside, some, threads);
-      if (verdict.divergence) throw std::runtime_error(recorder::describe(*verdict.divergence));
+      if (verdict.divergence) throw std::runtime_error("diverged at step " + std::to_string(verdict.divergence->step));
       return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     };
     alone.clear();

@@ -5,6 +5,7 @@ import json
 import os
 import pathlib
 import shutil
+import signal
 import sqlite3
 import subprocess
 import sys
@@ -24,6 +25,19 @@ def stored(database):
         return query(database, "SELECT count(*) FROM attempt")[0][0]
     except sqlite3.Error:
         return 0
+
+
+def kill_program(run_folder):
+    """Kills a calot that works on a share of this run, as a lack of memory does. @return its id, or none where none runs"""
+    for status in pathlib.Path("/proc").glob("[0-9]*"):
+        try:
+            words = (status / "cmdline").read_bytes().split(b"\0")
+        except OSError:
+            continue
+        if words[0] == str(PROGRAM).encode() and any(w.startswith(str(run_folder).encode()) for w in words):
+            os.kill(int(status.name), signal.SIGKILL)
+            return int(status.name)
+    return None
 
 
 def make(folder):

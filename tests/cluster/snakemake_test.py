@@ -11,7 +11,7 @@ import tempfile
 import time
 import unittest
 
-from cohort_setup import CLUSTER, COUNT, PROGRAM, calot, content, figures, make, stored
+from cohort_setup import CLUSTER, COUNT, PROGRAM, calot, content, figures, kill_program, make, stored
 
 SHARES = 6
 
@@ -59,6 +59,15 @@ class SnakemakeRun(unittest.TestCase):
         self.assertEqual(content(self.folder / "c.db"), content(self.folder / "alone.db"))
         nothing = subprocess.run(self.command(), capture_output=True, text=True, check=False)
         self.assertIn("Nothing to be done", nothing.stderr + nothing.stdout)
+
+    def test_killed_program(self):
+        make(self.folder)
+        process = self.start()
+        while self.done() < 1 or kill_program(self.run_folder) is None:
+            self.assertIsNone(process.poll(), "it ended before a program could be killed")
+            time.sleep(0.01)
+        self.assertEqual(process.wait(), 0)  # the share is tried again
+        self.assertEqual(content(self.folder / "c.db"), content(self.folder / "alone.db"))
 
     def test_assess(self):
         make(self.folder)

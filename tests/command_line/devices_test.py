@@ -216,7 +216,7 @@ class Calibrating(ProgramTest):
         self.assertEqual((found["device"], found["passed"], found["declaredPixel"]), ("mouse", True, 5e-5))
         for pixel in (0, -1, 100, "nan"):
             self.refused(2, "devices", "calibrate", "mouse", "--pixel", pixel, "-o", self.path("d.json"), names=("pixel",))
-        self.refused(2, "devices", "calibrate", self.device, "--pixel", 0.05, "-o", self.path("d.json"), names=("only a mouse",))
+        self.refused(2, "devices", "calibrate", self.device, "--pixel", 0.05, "-o", self.path("d.json"), names=("scripted:",))
 
     def test_failed_is_written_and_exits_3(self):
         answer = self.refused(3, "devices", "calibrate", self.device, "--from", self.path("noisy.json"), "-o", self.path("c.json"),
@@ -245,9 +245,9 @@ class Calibrating(ProgramTest):
         write(date="2999-01-01T00:00:00Z")
         self.refused(3, *run, "--calibration", self.path("c.json"), names=("future",))
         write(identity="scripted:other")
-        self.refused(3, *run, "--calibration", self.path("c.json"), names=("another device",))
+        self.refused(3, *run, "--calibration", self.path("c.json"), names=("c.json", "scripted:other"))
         write(hands={"left": good["hands"]["left"]})
-        self.refused(3, *run, "--calibration", self.path("c.json"), names=("1 of the 2 hands",))
+        self.refused(3, *run, "--calibration", self.path("c.json"), names=("c.json", "1", "2"))
         write(passed=False)
         self.refused(4, *run, "--calibration", self.path("c.json"), names=("/passed",))
         self.path("c.json").write_text("[]", encoding="utf-8")

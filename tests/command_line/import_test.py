@@ -283,8 +283,8 @@ class Exported(program.ProgramTest):
         said = self.well("export", path, "--motion", self.path("out")).out.split()
         self.assertEqual(sorted(said), sorted(str(file) for file in self.path("out").iterdir()))
         self.assertGives(self.path("out"), values)
-        self.refused(2, "export", path, "--motion", self.path("out"), names=("already exists",))
-        self.refused(2, "export", path, "--motion", self.path("new"), "--csv", self.path("csv"), names=("k.txt", "not a recording"))
+        self.refused(2, "export", path, "--motion", self.path("out"), names=(self.path("out"),))
+        self.refused(2, "export", path, "--motion", self.path("new"), "--csv", self.path("csv"), names=("k.txt", "--motion"))
 
     def test_motion_of_a_recording(self):
         recording = program.skilled()
@@ -427,10 +427,10 @@ class BadFiles(program.ProgramTest):
             return "".join(good[:4] + [" ".join(words) + "\n"] + good[5:])
 
         self.bad("empty.txt", "", names=("empty",))
-        self.bad("one.txt", good[0], names=("at least 2",))
+        self.bad("one.txt", good[0], names=("1 row", "2"))
         self.bad("nan.txt", with_word(40, "NaN"), names=("line 5", "column 41"))
         self.bad("text.txt", with_word(57, "left"), names=("line 5", "column 58"))
-        self.bad("cut.txt", "".join(good)[:-300], names=("line 60", "columns; 76 are expected"))
+        self.bad("cut.txt", "".join(good)[:-300], names=("line 60", "76"))
         self.bad("metres.txt", with_word(38, "41.5"), names=("line 5", "metres"))
         self.bad("binary.txt", bytes(range(256)) * 50, names=("line 1",))
         self.refused(4, "import", self.path("none.txt"), "--cohort", self.cohort, names=("none.txt",))
@@ -443,18 +443,18 @@ class BadFiles(program.ProgramTest):
         self.refused(4, "import", huge, "--cohort", self.cohort, names=("huge.txt",))
         rows = self.path("rows.csv")
         rows.write_text("x,y,z\n" + "1,2,3\n" * 1000001)
-        self.refused(4, "import", rows, "--columns", self.columns, "--cohort", self.cohort, names=("line 1000002", "more than 1000000 rows"))
+        self.refused(4, "import", rows, "--columns", self.columns, "--cohort", self.cohort, names=("line 1000002", "1000000"))
         self.assertFalse(self.cohort.exists())
 
     def test_csv_files_and_maps(self):
         csv_of = lambda *rows: "x,y,z\n" + "".join(row + "\n" for row in rows)
         with_map = ("--columns", self.columns)
-        self.bad("zero.csv", csv_of(), *with_map, names=("no row",))
-        self.bad("column.csv", "x,y\n1,2\n3,4\n", *with_map, names=("line 1", 'no column "z"', "x, y"))
+        self.bad("zero.csv", csv_of(), *with_map, names=("line 1",))
+        self.bad("column.csv", "x,y\n1,2\n3,4\n", *with_map, names=("line 1", '"z"', "x, y"))
         self.bad("nan.csv", csv_of("1,2,3", "1,nan,3"), *with_map, names=("line 3", 'column "y"'))
         self.bad("text.csv", csv_of("1,2,3", "1,2,three"), *with_map, names=("line 3", "three"))
         self.bad("cut.csv", csv_of("1,2,3", "1,2,3") + "1,2", *with_map, names=("line 4", "2 cells"))
-        self.bad("unit.csv", csv_of("1,2,3", "1,2,9000"), *with_map, names=("line 3", "unit of length"))
+        self.bad("unit.csv", csv_of("1,2,3", "1,2,9000"), *with_map, names=("line 3", "5 m"))
         for change, words in (({"length": "inch"}, ("/length", "cm, m, mm")), ({"rate": 0}, ("/rate",)), ({"more": 1}, ("/more",)),
                               ({"left": {"position": ["x", "y"]}}, ("/left/position",)), ({"rate": "fast"}, ("/rate",))):
             self.columns.write_text(json.dumps({**MAP, **change}))

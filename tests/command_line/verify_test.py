@@ -114,7 +114,7 @@ class Watched(program.ProgramTest):
         process.wait()
         answer, rows = self.once()
         if not rows:  # it had not rested long enough
-            self.assertIn("1 recordings are not finished", answer.err)
+            self.assertIn("1 recordings", answer.err)
             time.sleep(2)
             answer, rows = self.once()
         self.assertEqual([(r["result"], r["report"]["complete"]) for r in rows], [("added", False)])
@@ -230,7 +230,7 @@ class Watched(program.ProgramTest):
             time.sleep(0.05)
         answer = self.once()[0]
         self.assertEqual(answer.code, 1)
-        self.assertOneLine(answer, "c.db.intake", "another program")
+        self.assertOneLine(answer, "c.db.intake")
         self.end(watcher)
         self.refused(2, "verify", "--cohort", self.cohort)
         self.refused(2, "verify", "--watch", self.inbox)

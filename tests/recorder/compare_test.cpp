@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "recorder/compare.h"
+#include "recorder/verification.h"
 
 #include <gtest/gtest.h>
 

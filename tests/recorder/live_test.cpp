@@ -73,7 +73,7 @@ void expectExact(const std::filesystem::path& file) {
     ReplaySettings settings;
     settings.threads = threads;
     const ReplayReport report = replayRecording(file, settings);
-    EXPECT_EQ(report.verdict, ReplayVerdict::exact) << report.message;
+    EXPECT_EQ(report.verdict, ReplayVerdict::exact) << report.error;
     EXPECT_TRUE(report.complete);
   }
 }
@@ -198,8 +198,8 @@ TEST(Live, APausingSourceHoldsTheTicksAndAFailingOneEndsTheAttempt) {
     EXPECT_EQ(recorded.report.outcome, Outcome::technicalFailure);
     EXPECT_EQ(recorded.report.steps, 20U);
     EXPECT_EQ(recorded.report.ticks, 200U);
-    EXPECT_EQ(recorded.report.pauses, 1U);
-    EXPECT_GE(recorded.report.paused, 0.015);
+    EXPECT_EQ(recorded.report.pauses.count, 1U);
+    EXPECT_GE(recorded.report.pauses.seconds, 0.015);
     EXPECT_EQ(source.pauseLeft, 0);
     EXPECT_EQ(Recording(recorded.file).outcome(), Outcome::technicalFailure);
     expectExact(recorded.file);

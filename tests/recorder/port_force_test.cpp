@@ -96,7 +96,7 @@ TEST(PortForceRecorded, ReplayVerifiesIt) {
   EXPECT_GT(most, 0.5) << "the hand feels it";
   EXPECT_EQ(with.felt.digests, without.felt.digests) << "nothing of it enters State";
   const ReplayReport report = replayRecording(folder / "with.h5", {});
-  EXPECT_EQ(report.verdict, ReplayVerdict::exact) << report.message;
+  EXPECT_EQ(report.verdict, ReplayVerdict::exact) << report.error;
   EXPECT_EQ(report.steps, 210U);
 }
 

@@ -14,6 +14,7 @@
 #include "recorder/replay.h"
 #include "tests/recorder/support/lying_recording.h"
 #include "tests/recorder/support/rerun.h"
+#include "tests/support/fault.h"
 
 namespace calot::recorder {
 namespace {
@@ -84,12 +85,7 @@ TEST_F(PreparedScenes, AreBuiltOnce) {
   std::vector<Asset> other = assets_;
   other[1].name += "x";
   EXPECT_NE(complianceKey(assets_), complianceKey(other));
-  try {
-    prepareScene(other, Where{"b"});
-    FAIL();
-  } catch (const Error& e) {
-    EXPECT_EQ(e.kind(), ErrorKind::damaged);
-  }
+  expectFault(ErrorKind::damaged, "", {}, [&] { prepareScene(other, Where{"b"}); });
 }
 
 TEST_F(PreparedScenes, BelieveNoDamagedEntry) {

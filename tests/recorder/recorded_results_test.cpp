@@ -39,7 +39,7 @@ TEST(VersionThree, IsReadWithTheJudgementOfItsTime) {
 
 TEST(VersionThree, IsNotDecidedByThisBuild) {
   const ReplayReport report = replayRecording(ofVersion3, {});
-  EXPECT_EQ(report.verdict, ReplayVerdict::undecided) << report.message;
+  EXPECT_EQ(report.verdict, ReplayVerdict::undecided) << report.error;
 }
 
 /// The same rules come to the same judgement at every step, though it was the simulation that judged then.
@@ -149,7 +149,7 @@ TEST(GoldenContent, ARuleIsChangedAndNoBitIs) {
     return std::vector<Observer*>{usual.get(), stricter.get()};
   };
   const ReplayReport report = replayRecording(root / "assets/golden/clip-and-cut.h5", settings);
-  ASSERT_EQ(report.verdict, ReplayVerdict::exact) << report.message;
+  ASSERT_EQ(report.verdict, ReplayVerdict::exact) << report.error;
   const Judgement& a = usual->judge.judgement();
   const Judgement& b = stricter->judge.judgement();
   EXPECT_EQ(a.phase, Phase::done);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Verification in segments says what a run from the start says.
-#include "recorder/segments.h"
+#include "recorder/verification.h"
 
 #include <gtest/gtest.h>
 
@@ -14,9 +14,9 @@
 #include <vector>
 
 #include "recorder/base/errors.h"
-#include "recorder/compare.h"
 #include "recorder/replay.h"
 #include "tests/recorder/support/lying_recording.h"
+#include "tests/support/fault.h"
 
 namespace calot::recorder {
 namespace {
@@ -31,7 +31,8 @@ ReplayReport verified(const std::filesystem::path& file, unsigned threads) {
 
 void expectSame(const ReplayReport& serial, const ReplayReport& parallel) {
   EXPECT_EQ(serial.verdict, parallel.verdict);
-  EXPECT_EQ(serial.message, parallel.message);
+  EXPECT_EQ(serial.finding, parallel.finding);
+  EXPECT_EQ(serial.chainFault, parallel.chainFault);
   EXPECT_EQ(serial.divergence, parallel.divergence);
   EXPECT_EQ(serial.reproducible, parallel.reproducible);
   EXPECT_EQ(serial.misses, parallel.misses);
@@ -56,8 +57,8 @@ TEST(Segments, NameTheFirstDifferenceThatARunFromTheStartNames) {
     const std::filesystem::path file = folder / (std::to_string(number++) + ".h5");
     test::recordTouches(file, lie);
     const ReplayReport serial = verified(file, 1);
-    EXPECT_EQ(serial.verdict, lie ? ReplayVerdict::diverged : ReplayVerdict::exact) << serial.message;
-    SCOPED_TRACE(serial.message);
+    EXPECT_EQ(serial.verdict, lie ? ReplayVerdict::diverged : ReplayVerdict::exact) << serial.error;
+    SCOPED_TRACE(serial.error);
     expectSame(serial, verified(file, 3));
     std::filesystem::remove(file);
   };
@@ -180,7 +181,9 @@ TEST(Segments, APartIsConsistentWithTheKeyframeBeforeIt) {
   };
   const ReplayReport good = part(0, 1);
   EXPECT_EQ(good.verdict, ReplayVerdict::consistent);
-  EXPECT_EQ(good.message, "segments 0 to 1 consistent (steps 0 to 199); the rest was not looked at");
+  ASSERT_TRUE(good.part);
+  EXPECT_EQ(good.part->segments, (std::array<std::size_t, 2>{0, 1}));
+  EXPECT_EQ(good.part->steps, (std::array<std::uint64_t, 2>{0, 199}));
   EXPECT_EQ(good.fault(), std::nullopt);
   EXPECT_EQ(good.misses.steps, 200U);
   const ReplayReport bad = part(2, 2);

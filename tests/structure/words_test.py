@@ -2,10 +2,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Refuses retired words (docs/glossary.md): old names of functions and types anywhere, most/least/largest/smallest in names of the mechanics,
 words with several meanings in its comments and in the documents; and in the comments and messages of every module, fragments that begin with a
-relative word ("What it does", "Of a mouse alone") and phrases that no engineer writes. Only what can be detected reliably is listed.
+relative word ("What it does", "Of a mouse alone") and phrases that no engineer writes. Refuses assertions that pin a sentence, so that messages
+can be mended: a test checks an error's kind, place and values (tests/support/fault.h). Only what can be detected reliably is listed.
 
 usage: words_test.py ROOT | --self-test
 """
+import ast
 import pathlib
 import re
 import sys
@@ -54,6 +56,65 @@ TRAILING_COMMENT = re.compile(r"///?< ?(.*)|[;{},)\\]\s*// (.*)")
 MESSAGE_SITE = re.compile(r"\b(?:throw|Error|print\w*|cout|cerr|fail\w*|refuse\w*|fault|warn\w*|add_option|add_flag|add_subcommand"
                           r"|addChoice|addNumber|addList|addThreads|addCommand|addGroup)\b")
 
+# Assertions of tests. Two neighbouring words, one of them here, are part of a sentence.
+PROSE = ("a|an|the|of|to|in|is|are|was|were|be|has|have|had|no|not|cannot|can|must|than|with|without|there|this|that|it|its|by|at|from|for|on|as|"
+         "already|only|another|more|before|after|which|who|and|or|neither|both|does|did|would|such")
+SENTENCE = re.compile(rf"(?<![\w-])(?:(?:{PROSE}),? [a-z]{{2,}}|[a-z]{{2,}},? (?:{PROSE}))(?![\w-])", re.IGNORECASE)
+SQL = re.compile(r"\s*(?:SELECT|INSERT|UPDATE|DELETE|PRAGMA|CREATE|DROP|ALTER)\b")
+ASSERTION = re.compile(r"\b(?:EXPECT|ASSERT)_\w+\(|\bexpect\w+\(|\bfault\(|\brefused\(|[.>](?:find|rfind|contains|startsWith|starts_with)\($")
+# Files whose subject is the text itself.
+TEXTS = {
+    "tests/analytics/assessment/attempt_summary_test.cpp",  # sentences of a summary
+    "tests/analytics/report/page_test.cpp",  # layout of text
+    "tests/analytics/report/study_report_test.cpp",  # sections of the report
+    "tests/apps/common/errors_test.cpp",  # advice of the programs
+    "tests/recorder/sources/devices/camera/tracker_accuracy_test.cpp",  # names of conditions
+    "tests/cluster/snakemake_test.py",  # Snakemake's own words
+    "tests/gui/trainer/attempt_report_test.cpp", "tests/gui/trainer/controls_tutorial_test.cpp",
+    "tests/gui/trainer/trainer_texts_test.cpp", "tests/gui/words/event_words_test.cpp", "tests/gui/words/problem_words_test.cpp",
+}
+
+
+def pins_of_cpp(text):
+    """(line number, literal) of each assertion of a C++ test that pins a sentence."""
+    code = cpp_text.code_only(text)
+    asserted, data = [], set()
+    for start, literal in cpp_text.strings(text):
+        prose = literal.strip('"')
+        statement = re.split(r";|[{}]\s*\n", code[max(0, start - 600):start])[-1]
+        if "<<" in statement or not SENTENCE.search(prose) or SQL.match(prose) or literal.startswith("R"):
+            continue
+        if ASSERTION.search(statement.strip()):
+            asserted.append((text.count("\n", 0, start) + 1, prose))
+        else:
+            data.add(prose)
+    return [pin for pin in asserted if pin[1] not in data]
+
+
+def pins_of_python(text):
+    """(line number, literal) of each sentence that a Python test expects on standard error."""
+    def spoken(node):
+        for part in ast.walk(node):
+            if isinstance(part, ast.Constant) and isinstance(part.value, str) and SENTENCE.search(part.value):
+                yield part.lineno, part.value
+
+    def is_error(node):
+        return re.search(r"\.(?:err|stderr)\b|\b(?:declined|refused)\(", ast.unparse(node)) is not None
+    for node in ast.walk(ast.parse(text)):
+        if isinstance(node, ast.Compare) and any(map(is_error, node.comparators)):
+            yield from spoken(node.left)
+        if not isinstance(node, ast.Call) or not isinstance(node.func, ast.Attribute):
+            continue
+        name = node.func.attr
+        if name == "assertOneLine":
+            for argument in node.args[1:]:
+                yield from spoken(argument)
+        elif name.startswith("assert") and len(node.args) > 1 and any(map(is_error, node.args[:2])):
+            yield from (pin for argument in node.args[:2] if not is_error(argument) for pin in spoken(argument))
+        for keyword in node.keywords:
+            if keyword.arg == "names":
+                yield from spoken(keyword.value)
+
 
 def prose_faults(text):
     """(line number, message) of each fault of the comments and messages of a C++ file."""
@@ -92,9 +153,15 @@ def faults_of(root, path):
     name = path.as_posix()
     cpp = path.suffix in (".h", ".cpp")
     document = is_document(path) and path.name not in ("glossary.md", "CHANGELOG.md")
-    if not cpp and not document:
+    test = path.parts[0] == "tests" and path.suffix in (".cpp", ".py") and path.parts[1] != "structure"
+    if not cpp and not document and not test:
         return found
     text = (root / path).read_text(encoding="utf-8")
+    if test and name not in TEXTS:
+        for number, prose in pins_of_cpp(text) if cpp else pins_of_python(text):
+            found.append((number, f"an assertion pins the words {prose[:60]!r}: check kind, place and values"))
+    if not cpp and not document:
+        return found
     for number, line in enumerate(text.split("\n"), 1):
         for m in NAME.finditer(line):
             found.append((number, f"{m.group(1)}: say {NAMES[m.group(1)]}"))
@@ -135,6 +202,9 @@ def self_test():
                            "// so many steps", "// nobody is told", "// takes up the topology", 'throw Error(kind, "What was written is lost");',
                            'throw Error(kind, fmt::format("{} is none", name));', 'command->add_option("--by", by, "Who decides");'],
         "docs/c.md": ["the room to its left", "a lean recording", "`forceRest` decays"],
+        "tests/f.cpp": ['EXPECT_EQ(e.what(), "a.csv: the file is empty");', 'expectFault(kind, "a", {"is not a number"}, call);',
+                        'EXPECT_NE(text.find("was not found"), npos);'],
+        "tests/g.py": ['self.refused(2, "x", names=("no such file",))', 'self.assertIn("is empty", answer.err)', 'assert "not there" in done.stderr'],
     }
     allowed = {
         "sim/contact/a.h": ["double maxSwept = 0.0;", 'visit("largestDisplacement", self.largestDisplacement);', "// at most, at least, the rest of it",
@@ -145,6 +215,9 @@ def self_test():
         "analytics/cohort/d.cpp": ["withdraw(participant);"],
         "docs/c.md": ["a classroom of trainees, `room()`", "the operating-room lights"],
         "docs/glossary.md": ["room: not used"],
+        "tests/f.cpp": ['EXPECT_EQ(name, "path-length left");', 'EXPECT_TRUE(closed) << "it is closed";',
+                        'put("by the window");\nEXPECT_EQ(note, "by the window");', 'EXPECT_EQ(db.exec("SELECT a FROM b"), 1);'],
+        "tests/g.py": ['self.refused(2, "x", names=("a.h5", "--force"))', 'self.assertIn("is empty", answer.out)'],
     }
     wrong = 0
     with tempfile.TemporaryDirectory() as folder:

@@ -6,7 +6,8 @@
 
 #include "analytics/checkpoints/figures/rows.h"
 #include "analytics/checkpoints/phases.h"
-#include "recorder/step_watch.h"
+#include "analytics/checkpoints/replay_words.h"
+#include "recorder/replay.h"
 
 namespace calot::analytics {
 namespace {
@@ -65,7 +66,7 @@ struct StepsMissed {
   void add(const StepResult& result) { misses.add(result.misses); }
   [[nodiscard]] Measured figure() const {
     if (misses.steps == 0) return Measured::notAvailable("no step was done");
-    return Measured::of(static_cast<double>(misses.any) / static_cast<double>(misses.steps), describe(misses));
+    return Measured::of(static_cast<double>(misses.any) / static_cast<double>(misses.steps), wordsFor(misses));
   }
 };
 

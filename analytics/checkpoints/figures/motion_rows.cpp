@@ -12,7 +12,6 @@
 #include <numeric>
 
 #include "analytics/checkpoints/figures/rows.h"
-#include "analytics/checkpoints/movements.h"
 #include "analytics/statistics/descriptive.h"
 #include "sim/math/elementary.h"
 #include "sim/math/linear.h"

@@ -9,7 +9,6 @@
 
 #include "analytics/checkpoints/figures/rows.h"
 #include "analytics/checkpoints/hand_motion.h"
-#include "analytics/checkpoints/movements.h"
 
 namespace calot::analytics {
 namespace {

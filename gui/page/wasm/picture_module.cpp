@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The renderer as a WebAssembly module: an engine's scene view to pixels. Its OpenGL is the host's.
 #include <array>
-#include <cmath>
 #include <cstdint>
-#include <memory>
-#include <optional>
-#include <span>
 #include <string_view>
 #include <vector>
 
@@ -58,6 +54,19 @@ Pictures& pictures() {
   return one;
 }
 
+gui::RenderSettings settingsOf(bool film, bool mask) {
+  return {.quality = film ? gui::Quality::film : gui::Quality::interactive, .endoscopeMask = mask};
+}
+
+/// Draws into the framebuffer that is bound.
+void draw(gui::DrawListMaker& lists, const SceneView& view, int width, int height,
+          const gui::RenderSettings& settings) {
+  const double field = view.verticalFieldOfView;
+  const gui::Sight sight = gui::sightOf(width, height, field, settings.endoscopeMask);
+  Pictures& p = pictures();
+  p.painter.draw(lists.make(view, sight, settings.cavity, p.smoke), sight, field, width, height, settings);
+}
+
 /// Pivot of another camera, and the radius of the visible scene around it.
 std::array<double, 4>& extent() {
   static std::array<double, 4> centreAndRadius{};
@@ -88,11 +97,8 @@ __attribute__((export_name("calot_warm"))) void calot_warm() {
     instrument.pose.position = Vec3(0.0, 0.0, 0.1);
     instrument.port = Vec3(0.0, 0.1, 0.1);
   }
-  Pictures& p = pictures();
-  gui::RenderSettings settings;
-  settings.quality = gui::Quality::interactive;
-  const gui::Sight sight = gui::sightOf(64, 64, view.verticalFieldOfView, true);
-  p.painter.draw(gui::DrawListMaker().make(view, sight, true), sight, view.verticalFieldOfView, 64, 64, settings);
+  gui::DrawListMaker lists;
+  draw(lists, view, 64, 64, settingsOf(false, true));
 }
 
 /// Gravity of the scene whose views are to come; three zeros: none.
@@ -161,14 +167,8 @@ __attribute__((export_name("calot_camera"))) const double* calot_camera() {
 
 /// Draws with the view's own camera into the framebuffer that is bound then. @param film 1: film quality
 __attribute__((export_name("calot_endoscope"))) void calot_endoscope(int width, int height, int film, int mask) {
-  Pictures& p = pictures();
   gui::checkPictureSize(width, height);
-  gui::RenderSettings settings;
-  settings.quality = film == 1 ? gui::Quality::film : gui::Quality::interactive;
-  settings.endoscopeMask = mask == 1;
-  const gui::Sight sight = gui::sightOf(width, height, p.view.verticalFieldOfView, settings.endoscopeMask);
-  p.painter.draw(p.lists[0].make(p.view, sight, settings.cavity, p.smoke), sight, p.view.verticalFieldOfView, width,
-                 height, settings);
+  draw(pictures().lists[0], pictures().view, width, height, settingsOf(film == 1, mask == 1));
 }
 
 /// Draws with another camera: placed are position, orientation (w x y z) and vertical field of view, eight f8.
@@ -178,15 +178,12 @@ __attribute__((export_name("calot_orbit"))) int calot_orbit(int width, int heigh
   Pictures& p = pictures();
   gui::checkPictureSize(width, height);
   const CameraSample own = p.view.camera;
-  const double field = camera[7];
+  const double field = p.view.verticalFieldOfView;
   p.view.camera = {Vec3(camera[0], camera[1], camera[2]), Quat(camera[3], camera[4], camera[5], camera[6])};
-  gui::RenderSettings settings;
-  settings.quality = film == 1 ? gui::Quality::film : gui::Quality::interactive;
-  settings.endoscopeMask = false;
-  const gui::Sight sight = gui::sightOf(width, height, field, false);
-  const gui::DrawList& list = p.lists[1].make(p.view, sight, true, p.smoke);
+  p.view.verticalFieldOfView = camera[7];
+  draw(p.lists[1], p.view, width, height, settingsOf(film == 1, false));
   p.view.camera = own;
-  p.painter.draw(list, sight, field, width, height, settings);
+  p.view.verticalFieldOfView = field;
   return 1;
 }
 

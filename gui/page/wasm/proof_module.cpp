@@ -53,14 +53,6 @@ constexpr std::array<std::array<std::uint8_t, 16>, 10> sigma{{
     {6, 15, 14, 9, 11, 3, 0, 8, 12, 2, 13, 7, 1, 4, 10, 5},
     {10, 2, 8, 4, 7, 6, 1, 5, 15, 11, 9, 14, 3, 12, 13, 0},
 }};
-constexpr std::array<std::array<std::uint8_t, 4>, 8> columnsAndDiagonals{{{0, 4, 8, 12},
-                                                                          {1, 5, 9, 13},
-                                                                          {2, 6, 10, 14},
-                                                                          {3, 7, 11, 15},
-                                                                          {0, 5, 10, 15},
-                                                                          {1, 6, 11, 12},
-                                                                          {2, 7, 8, 13},
-                                                                          {3, 4, 9, 14}}};
 
 Blake2b::Blake2b() : h_(start) { h_[0] ^= parameters; }
 
@@ -99,8 +91,9 @@ void Blake2b::compress(bool last) {
   if (last) v[14] = ~v[14];
   for (std::size_t round = 0; round < 12; ++round) {
     const auto& s = sigma[round % sigma.size()];
-    for (std::size_t g = 0; g < columnsAndDiagonals.size(); ++g) {
-      const auto [a, b, c, d] = columnsAndDiagonals[g];
+    for (std::size_t g = 0; g < 8; ++g) {  // the columns of the state's four rows, then its diagonals
+      const auto at = [g](std::size_t row) { return 4 * row + (g + row * (g / 4)) % 4; };
+      const std::size_t a = at(0), b = at(1), c = at(2), d = at(3);
       v[a] += v[b] + m[s[2 * g]];
       v[d] = std::rotr(v[d] ^ v[a], 32);
       v[c] += v[d];

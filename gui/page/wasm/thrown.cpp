@@ -3,6 +3,7 @@
 // that cannot unwind. Its text is kept and the module traps; the host reads the text and makes a new module.
 #include "gui/page/wasm/thrown.h"
 
+#include <cstdint>
 #include <cstdlib>
 #include <exception>
 #include <string>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "recorder/sources/devices/calibration.h"
 
 #include <fmt/format.h>
@@ -15,9 +14,8 @@
 
 #include "recorder/base/dates.h"
 #include "recorder/base/errors.h"
-#include "recorder/base/file_bytes.h"
-#include "recorder/base/record_reader.h"
-#include "recorder/base/record_writer.h"
+#include "recorder/base/files.h"
+#include "recorder/base/record_json.h"
 #include "recorder/sources/devices/mouse_device.h"
 #include "recorder/sources/pointing.h"
 
@@ -191,7 +189,7 @@ void checkCalibration(const Calibration& c, const DeviceInfo& device, Mode mode,
   const std::vector<std::string> faults = shortcomings(c);
   if (!faults.empty()) refuse("failed: " + faults.front());
   const std::int64_t age = ageInDays(c, now);
-  if (age < 0) refuse("is dated in the future");
+  if (age < 0) refuse(fmt::format("is dated in the future ({})", c.date));
   if (age >= std::int64_t{c.validDays}) refuse(fmt::format("expired: {} days old, valid for {}", age, c.validDays));
   const int measured = static_cast<int>(c.hand[0].has_value()) + static_cast<int>(c.hand[1].has_value());
   if (measured < device.capabilities.hands)

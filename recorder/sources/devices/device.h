@@ -148,7 +148,6 @@ struct TickClock {
   std::int64_t now = 0;  ///< ns
 };
 
-/// A user's request for a device.
 struct DeviceRequest {
   std::string name;      ///< as written: "openigtlink:localhost:18944"
   std::string argument;  ///< behind the first colon, never empty where there is a colon: "localhost:18944"
@@ -168,7 +167,6 @@ struct OpenedDevice {
   std::shared_ptr<TickClock> tickClock;  ///< for devices without real time: DeviceSourceSettings::tickClock
 };
 
-/// One row of `calot devices`.
 struct ListedDevice {
   std::string name;    ///< what to ask for
   std::string detail;  ///< for people

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "recorder/sources/devices/device_script.h"
 
 #include <fmt/format.h>
@@ -8,8 +7,9 @@
 #include <utility>
 
 #include "recorder/base/errors.h"
-#include "recorder/base/file_bytes.h"
-#include "recorder/base/record_reader.h"
+#include "recorder/base/files.h"
+#include "recorder/base/record_json.h"
+#include "recorder/sources/devices/force/force_output.h"
 #include "recorder/sources/tracked_motion.h"
 
 namespace calot::recorder {
@@ -175,22 +175,8 @@ std::string deviceScriptText(const DeviceScript& script) {
   return text + "\n  ]\n}\n";
 }
 
-namespace {
-
-Vec3 clamped(const Vec3& v, double longest) {
-  if (!v.allFinite()) return Vec3::Zero();
-  const double largest = v.cwiseAbs().maxCoeff();
-  if (largest == 0.0) return v;
-  // In two steps, as the square of a huge number overflows.
-  const Vec3 unit = (v / largest).normalized();
-  const double length = largest * (v / largest).norm();
-  return length > longest ? Vec3(longest * unit) : v;
-}
-
-}  // namespace
-
 void WrenchGate::command(const Wrench& wrench, std::int64_t now) {
-  wrench_ = {clamped(wrench.force, force_), clamped(wrench.torque, torque_)};
+  wrench_ = {limited(wrench.force, force_), limited(wrench.torque, torque_)};
   commanded_ = now;
   any_ = true;
 }

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "recorder/sources/devices/device_source.h"
 
 #include <fmt/format.h>
@@ -13,11 +12,15 @@
 #include "sim/math/linear.h"
 
 namespace calot::recorder {
-DevicePump::DevicePump(Device& device) : device_(device), thread_([this] { run(); }) {}
+
+DevicePump::DevicePump(Device& device, bool realTime) : device_(device) {
+  if (realTime) thread_ = std::thread([this] { run(); });
+}
 
 DevicePump::~DevicePump() {
   stop_ = true;
-  thread_.join();
+  if (thread_.joinable()) thread_.join();
+  device_.close();
 }
 
 void DevicePump::run() {
@@ -37,10 +40,24 @@ void DevicePump::run() {
 }
 
 void DevicePump::drain(DeviceInput& out) {
+  out.samples.clear();
+  out.events.clear();
+  if (!thread_.joinable()) {
+    device_.poll(std::chrono::nanoseconds(0), out);
+    ended_ = device_.ended();
+    return;
+  }
   DeviceEvent event;
   while (events_.pop(event)) out.events.push_back(std::move(event));
   DeviceSample sample;
   while (samples_.pop(sample)) out.samples.push_back(sample);
+}
+
+void DevicePump::setWrench(Hand hand, const Wrench& wrench) {
+  if (thread_.joinable())
+    commands_.push({hand, wrench});
+  else
+    device_.setWrench(hand, wrench);
 }
 
 namespace {
@@ -53,7 +70,10 @@ constexpr std::size_t mostTold = 100;
 }  // namespace
 
 DeviceSource::DeviceSource(std::unique_ptr<Device> device, const SceneDescription& scene, DeviceSourceSettings settings)
-    : settings_(std::move(settings)), camera_(scene.camera), device_(std::move(device)) {
+    : settings_(std::move(settings)),
+      camera_(scene.camera),
+      device_(std::move(device)),
+      pump_(*device_, !settings_.tickClock) {
   const DeviceInfo& info = device_->info();
   provenance_.kind = info.operatorKind;
   provenance_.device = info.name;
@@ -77,12 +97,6 @@ DeviceSource::DeviceSource(std::unique_ptr<Device> device, const SceneDescriptio
     hand_.push_back(state);
   }
   fresh_.reserve(freshRoom);
-  if (!settings_.tickClock) pump_ = std::make_unique<DevicePump>(*device_);
-}
-
-DeviceSource::~DeviceSource() {
-  pump_.reset();
-  device_->close();
 }
 
 std::int64_t DeviceSource::now() const {
@@ -90,14 +104,8 @@ std::int64_t DeviceSource::now() const {
 }
 
 void DeviceSource::gather() {
-  input_.samples.clear();
-  input_.events.clear();
-  if (pump_) {
-    pump_->drain(input_);
-  } else {
-    device_->poll(std::chrono::nanoseconds(0), input_);
-  }
-  ended_ = pump_ ? pump_->ended() : device_->ended();
+  pump_.drain(input_);
+  ended_ = pump_.ended();
   for (const DeviceEvent& event : input_.events) {
     if (counts_.told.size() < mostTold) counts_.told.push_back(event.text);
     if (event.kind == DeviceEvent::Kind::disconnected) {
@@ -231,11 +239,8 @@ void DeviceSource::setOutFrom(const TickSamples& start) {
 void DeviceSource::feedback(const std::array<Wrench, handCount>& inWorld) {
   if (device_->info().capabilities.actuated == 0) return;
   for (std::size_t h = 0; h < handCount; ++h) {
-    const Wrench wrench{hand_[h].mapping.inDevice(inWorld[h].force), hand_[h].mapping.inDevice(inWorld[h].torque)};
-    if (pump_)
-      pump_->setWrench(static_cast<Hand>(h), wrench);
-    else
-      device_->setWrench(static_cast<Hand>(h), wrench);
+    pump_.setWrench(static_cast<Hand>(h),
+                    {hand_[h].mapping.inDevice(inWorld[h].force), hand_[h].mapping.inDevice(inWorld[h].torque)});
   }
 }
 

@@ -9,8 +9,7 @@
 #include <thread>
 #include <vector>
 
-#include "recorder/base/ring.h"
-#include "recorder/base/spsc_queue.h"
+#include "recorder/base/queues.h"
 #include "recorder/recording/device_sample.h"
 #include "recorder/sources/devices/calibration.h"
 #include "recorder/sources/devices/device.h"
@@ -20,19 +19,20 @@
 
 namespace calot::recorder {
 
-/// Polls a device on a thread of its own, so that samples carry the time of their arrival and the loop never waits for
-/// a device. Lock-free between the two threads; its queues allocate only where they grow.
+/// Polls a device in real time on a thread of its own, so that samples carry the time of their arrival and the loop
+/// never waits for a device. Lock-free between the two threads; its queues allocate only where they grow. A device on
+/// the tick clock is polled by who asks. Closes the device at its end.
 class DevicePump {
  public:
-  explicit DevicePump(Device& device);
+  DevicePump(Device& device, bool realTime);
   ~DevicePump();
   DevicePump(const DevicePump&) = delete;
   DevicePump& operator=(const DevicePump&) = delete;
 
-  /// Appends what came in since the last call. One thread.
+  /// Replaces `out` by what came in since the last call. One thread.
   void drain(DeviceInput& out);
   /// For the device's motors. The same thread.
-  void setWrench(Hand hand, const Wrench& wrench) { commands_.push({hand, wrench}); }
+  void setWrench(Hand hand, const Wrench& wrench);
   [[nodiscard]] bool ended() const { return ended_.load(std::memory_order_acquire); }
 
  private:
@@ -58,7 +58,6 @@ class RawSampleQueue final : public RawSampleFeed {
   /// a live run allows itself.
   explicit RawSampleQueue(std::size_t capacity = 4096) : ring_(capacity) {}
 
-  /// Producer.
   void put(const RawSample& sample) {
     if (!ring_.push(sample)) {
       dropped_[static_cast<std::size_t>(sample.sample.hand)].fetch_add(1, std::memory_order_relaxed);
@@ -95,7 +94,6 @@ struct DeviceSourceSettings {
   std::shared_ptr<TickClock> tickClock;
 };
 
-/// Statistics of the device, for the report.
 struct DeviceCounts {
   std::uint64_t samples = 0;
   std::uint64_t invalid = 0;
@@ -116,7 +114,6 @@ class DeviceSource final : public SampleSource {
  public:
   /// The calibration must be one that checkCalibration accepts.
   DeviceSource(std::unique_ptr<Device> device, const SceneDescription& scene, DeviceSourceSettings settings);
-  ~DeviceSource() override;
 
   /// Waits until every hand that the device drives at once was seen, or half a second has passed since the first was.
   /// @param stop ends the waiting. @throws Error (failure) where no hand was seen after `seconds`, naming the device
@@ -167,8 +164,8 @@ class DeviceSource final : public SampleSource {
   CameraSample camera_;
   std::vector<HandState> hand_;
   std::unique_ptr<Device> device_;
-  std::unique_ptr<DevicePump> pump_;  ///< after the device: it ends first
-  std::vector<DeviceSample> fresh_;   ///< gathered since the last tick
+  DevicePump pump_;                  ///< after the device: it ends first
+  std::vector<DeviceSample> fresh_;  ///< gathered since the last tick
   RawSampleQueue raw_;
   DeviceCounts counts_;
   DeviceInput input_;

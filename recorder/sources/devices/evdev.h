@@ -11,8 +11,7 @@
 namespace calot::recorder {
 
 /// Calls take(event) for each event that has come; never waits. @returns false where the device is gone
-template <class Take>
-bool readEvents(int descriptor, const Take& take) {
+bool readEvents(int descriptor, const auto& take) {
   std::array<input_event, 64> events;
   for (;;) {
     const ssize_t n = ::read(descriptor, events.data(), sizeof events);

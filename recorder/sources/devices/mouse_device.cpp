@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The kernel's interface itself (linux/input.h): a reader of relative axes and buttons is shorter than a library's
 // set-up, and takes events from any stream, which tests without a mouse need.
-
 #include "recorder/sources/devices/mouse_device.h"
 
 #include <fcntl.h>
@@ -14,6 +13,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
+#include <map>
 #include <utility>
 
 #include "recorder/sources/devices/evdev.h"
@@ -154,26 +154,24 @@ bool isMouse(int descriptor) {
   return hasBit(axes, REL_X) && hasBit(axes, REL_Y) && hasBit(keys, BTN_LEFT);
 }
 
-int openFile(const std::filesystem::path& path) { return ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC); }
+Descriptor openFile(const std::filesystem::path& path) {
+  return Descriptor(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
+}
 
 }  // namespace
 
 std::vector<ListedMouse> listMice() {
-  std::vector<std::pair<int, ListedMouse>> found;
+  std::map<int, ListedMouse> found;
   std::error_code ignored;
   for (const auto& entry : std::filesystem::directory_iterator("/dev/input", ignored)) {
     const std::string file = entry.path().filename().string();
     if (!file.starts_with("event")) continue;
     int number = 0;
     std::from_chars(file.data() + 5, file.data() + file.size(), number);
-    const int descriptor = openFile(entry.path());
-    if (descriptor < 0) continue;
-    if (isMouse(descriptor)) found.emplace_back(number, ListedMouse{entry.path(), nameOf(descriptor)});
-    ::close(descriptor);
+    const Descriptor opened = openFile(entry.path());
+    if (isMouse(opened.get())) found.emplace(number, ListedMouse{entry.path(), nameOf(opened.get())});
   }
-  std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<ListedMouse> out;
-  out.reserve(found.size());
   for (auto& [number, mouse] : found) out.push_back(std::move(mouse));
   return out;
 }
@@ -183,8 +181,6 @@ EvdevMouse::EvdevMouse(std::string which, Hand hand, DeviceClock clock)
   connectFirst(fmt::format("mouse \"{}\"", which_));
   info_.identity = fmt::format("mouse:{}", name_);
 }
-
-EvdevMouse::~EvdevMouse() { EvdevMouse::disconnect(); }
 
 std::string EvdevMouse::find() {
   std::filesystem::path path;
@@ -203,15 +199,15 @@ std::string EvdevMouse::find() {
                          mice.size());
   }
   descriptor_ = openFile(path);
-  if (descriptor_ < 0) return fmt::format("{}: {}", path.string(), std::strerror(errno));
+  if (!descriptor_.valid()) return fmt::format("{}: {}", path.string(), std::strerror(errno));
   const auto refuse = [&](const char* why) {
     disconnect();
     return fmt::format("{}: {}", path.string(), why);
   };
   // A stream that is no device has no grab; a mouse that another program has grabbed gives nothing.
-  if (::ioctl(descriptor_, EVIOCGRAB, 1) < 0 && errno == EBUSY) return refuse("another program has grabbed it");
+  if (::ioctl(descriptor_.get(), EVIOCGRAB, 1) < 0 && errno == EBUSY) return refuse("another program has grabbed it");
   // Numbers of mice change when one is unplugged: another one is not taken for it.
-  const std::string name = nameOf(descriptor_);
+  const std::string name = nameOf(descriptor_.get());
   if (!name_.empty() && name != name_) return refuse("another mouse");
   name_ = name;
   info_.detail = fmt::format("{}, {}", name_, path.string());
@@ -219,7 +215,7 @@ std::string EvdevMouse::find() {
 }
 
 void EvdevMouse::disconnect() {
-  if (descriptor_ >= 0) ::close(std::exchange(descriptor_, -1));  // which ends the grab, too
+  descriptor_.close();  // which ends the grab, too
   held_.fill(false);
   skipping_ = false;
   right_ = down_ = in_ = 0.0;
@@ -245,7 +241,7 @@ void EvdevMouse::take(std::uint16_t type, std::uint16_t code, std::int32_t value
 }
 
 std::string EvdevMouse::readControls() {
-  const bool there = readEvents(descriptor_, [this](const input_event& e) { take(e.type, e.code, e.value); });
+  const bool there = readEvents(descriptor_.get(), [this](const input_event& e) { take(e.type, e.code, e.value); });
   return there ? "" : "unplugged";
 }
 

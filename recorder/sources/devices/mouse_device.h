@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "recorder/base/files.h"
 #include "recorder/sources/devices/pointer_device.h"
 #include "recorder/sources/devices/window_input.h"
 
@@ -63,9 +64,8 @@ class EvdevMouse final : public PointerDevice {
   /// @param which "0", "1", ...: the n-th mouse that there is; a part of its name; or a path ("/dev/input/event5")
   /// @throws Error (failure) where it is not there or may not be read.
   EvdevMouse(std::string which, Hand hand, DeviceClock clock = monotonicNanoseconds);
-  ~EvdevMouse() override;
 
-  [[nodiscard]] bool connected() const override { return descriptor_ >= 0; }
+  [[nodiscard]] bool connected() const override { return descriptor_.valid(); }
 
  private:
   std::string find() override;
@@ -78,7 +78,7 @@ class EvdevMouse final : public PointerDevice {
   std::string which_;
   std::string name_;  ///< as the kernel has it: the one that may come back
   Hand hand_;
-  int descriptor_ = -1;
+  Descriptor descriptor_;
   bool skipping_ = false;
   std::array<bool, 8> held_{};                  ///< buttons from BTN_MOUSE on
   double right_ = 0.0, down_ = 0.0, in_ = 0.0;  ///< asked for and not yet done (m)

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "recorder/sources/devices/open_device.h"
 
 #include <fmt/format.h>
@@ -9,7 +8,7 @@
 #include <utility>
 
 #include "recorder/base/errors.h"
-#include "recorder/base/nearest_word.h"
+#include "recorder/base/text_words.h"
 #include "recorder/sources/devices/camera/camera_device.h"
 #include "recorder/sources/devices/device_script.h"
 #include "recorder/sources/devices/force/force_device.h"

@@ -22,7 +22,6 @@ struct Pointer {
   void move(const Vec3& way, double reach);
   /// Opens the jaw by an angle, within [0, 1.2] rad.
   void openJaw(double angle);
-  /// The next sample, without buttons.
   DeviceSample sample(Hand hand, std::int64_t now);
 };
 

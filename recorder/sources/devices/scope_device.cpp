@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "recorder/sources/devices/scope_device.h"
 
-#include <chrono>
 #include <utility>
 
 #include "sim/math/elementary.h"
@@ -20,14 +18,8 @@ double rollBetween(const Quat& a, const Quat& b) {
 
 }  // namespace
 
-ScopeDevice::ScopeDevice(OpenedDevice device, bool straight) : device_(std::move(device)), straight_(straight) {
-  if (!device_.tickClock) pump_ = std::make_unique<DevicePump>(*device_.device);
-}
-
-ScopeDevice::~ScopeDevice() {
-  pump_.reset();
-  device_.device->close();
-}
+ScopeDevice::ScopeDevice(OpenedDevice device, bool straight)
+    : device_(std::move(device)), straight_(straight), pump_(*device_.device, !device_.tickClock) {}
 
 void ScopeDevice::setOut(const ScopeJoints& joints) {
   from_ = aim_ = joints;
@@ -35,13 +27,7 @@ void ScopeDevice::setOut(const ScopeJoints& joints) {
 }
 
 void ScopeDevice::gather() {
-  input_.samples.clear();
-  input_.events.clear();
-  if (pump_) {
-    pump_->drain(input_);
-  } else {
-    device_.device->poll(std::chrono::nanoseconds(0), input_);
-  }
+  pump_.drain(input_);
   for (const DeviceEvent& event : input_.events) {
     if (event.kind != DeviceEvent::Kind::disconnected) continue;
     newest_.reset();

@@ -25,7 +25,6 @@ class ScopeDevice final : public ScopeDriver {
 
   /// @param device opened for the right hand @param straight the optic is
   ScopeDevice(OpenedDevice device, bool straight);
-  ~ScopeDevice() override;
 
   void setOut(const ScopeJoints& joints) override;
   [[nodiscard]] ScopeJoints wish(double time, const ScopeJoints& present, const TickSamples& hands) override;
@@ -37,7 +36,7 @@ class ScopeDevice final : public ScopeDriver {
 
   OpenedDevice device_;
   bool straight_;
-  std::unique_ptr<DevicePump> pump_;  ///< after the device: it ends first
+  DevicePump pump_;  ///< after the device: it ends first
   DeviceInput input_;
   std::optional<DeviceSample> newest_, anchor_;  ///< valid
   ScopeJoints from_, aim_;

@@ -9,7 +9,6 @@
 #include <netinet/tcp.h>
 #include <poll.h>
 #include <sys/socket.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -31,41 +30,28 @@ bool waitFor(int descriptor, short what, std::chrono::nanoseconds wait) {
   return ppoll(&p, 1, &t, nullptr) > 0;
 }
 
-int tryAddress(const addrinfo& a, std::chrono::milliseconds wait, int& fault) {
-  const int d = socket(a.ai_family, a.ai_socktype | SOCK_NONBLOCK | SOCK_CLOEXEC, a.ai_protocol);
-  if (d < 0) {
-    fault = errno;
-    return -1;
-  }
-  if (connect(d, a.ai_addr, a.ai_addrlen) < 0) {
-    fault = errno;
-    if (fault == EINPROGRESS) {
-      socklen_t length = sizeof fault;
-      if (!waitFor(d, POLLOUT, wait)) {
-        fault = ETIMEDOUT;
-      } else if (getsockopt(d, SOL_SOCKET, SO_ERROR, &fault, &length) < 0) {
-        fault = errno;
-      }
-    }
-    if (fault != 0) {
-      ::close(d);
-      return -1;
-    }
-  }
+void sendAtOnce(const Descriptor& socket) {
   const int on = 1;
-  setsockopt(d, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
+  setsockopt(socket.get(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
+}
+
+Descriptor tryAddress(const addrinfo& a, std::chrono::milliseconds wait, int& fault) {
+  Descriptor d(socket(a.ai_family, a.ai_socktype | SOCK_NONBLOCK | SOCK_CLOEXEC, a.ai_protocol));
+  fault = d.valid() && connect(d.get(), a.ai_addr, a.ai_addrlen) == 0 ? 0 : errno;
+  if (d.valid() && fault == EINPROGRESS) {
+    socklen_t length = sizeof fault;
+    if (!waitFor(d.get(), POLLOUT, wait)) {
+      fault = ETIMEDOUT;
+    } else if (getsockopt(d.get(), SOL_SOCKET, SO_ERROR, &fault, &length) < 0) {
+      fault = errno;
+    }
+  }
+  if (fault != 0) return Descriptor();
+  sendAtOnce(d);
   return d;
 }
 
 }  // namespace
-
-TcpStream& TcpStream::operator=(TcpStream&& o) noexcept {
-  if (this != &o) {
-    close();
-    descriptor_ = std::exchange(o.descriptor_, -1);
-  }
-  return *this;
-}
 
 TcpStream TcpStream::connect(const std::string& host, int port, std::chrono::milliseconds wait, std::string& fault) {
   addrinfo hints{};
@@ -77,19 +63,22 @@ TcpStream TcpStream::connect(const std::string& host, int port, std::chrono::mil
     fault = gai_strerror(found);
     return {};
   }
-  int number = 0, descriptor = -1;
-  for (const addrinfo* a = list; a != nullptr && descriptor < 0; a = a->ai_next)
-    descriptor = tryAddress(*a, wait, number);
+  int number = 0;
+  TcpStream stream;
+  for (const addrinfo* a = list; a != nullptr && !stream.open(); a = a->ai_next)
+    stream = TcpStream(tryAddress(*a, wait, number));
   freeaddrinfo(list);
-  if (descriptor < 0) fault = std::strerror(number);
-  return TcpStream(descriptor);
+  if (!stream.open()) fault = std::strerror(number);
+  return stream;
 }
 
-bool TcpStream::readable(std::chrono::nanoseconds wait) const { return open() && waitFor(descriptor_, POLLIN, wait); }
+bool TcpStream::readable(std::chrono::nanoseconds wait) const {
+  return open() && waitFor(descriptor_.get(), POLLIN, wait);
+}
 
 std::size_t TcpStream::receive(std::span<std::byte> buffer) {
   if (!open() || buffer.empty()) return 0;
-  const ssize_t n = recv(descriptor_, buffer.data(), buffer.size(), MSG_DONTWAIT);
+  const ssize_t n = recv(descriptor_.get(), buffer.data(), buffer.size(), MSG_DONTWAIT);
   if (n > 0) return static_cast<std::size_t>(n);
   if (n == 0 || (errno != EAGAIN && errno != EWOULDBLOCK && errno != EINTR)) close();
   return 0;
@@ -97,11 +86,11 @@ std::size_t TcpStream::receive(std::span<std::byte> buffer) {
 
 bool TcpStream::send(std::span<const std::byte> bytes) {
   while (open() && !bytes.empty()) {
-    const ssize_t n = ::send(descriptor_, bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+    const ssize_t n = ::send(descriptor_.get(), bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
     if (n > 0) {
       bytes = bytes.subspan(static_cast<std::size_t>(n));
     } else if (n < 0 && (errno == EAGAIN || errno == EWOULDBLOCK)) {
-      if (!waitFor(descriptor_, POLLOUT, maxSend)) close();
+      if (!waitFor(descriptor_.get(), POLLOUT, maxSend)) close();
     } else if (n < 0 && errno == EINTR) {
       continue;
     } else {
@@ -111,12 +100,7 @@ bool TcpStream::send(std::span<const std::byte> bytes) {
   return open();
 }
 
-void TcpStream::close() {
-  if (descriptor_ >= 0) ::close(std::exchange(descriptor_, -1));
-}
-
-TcpListener::TcpListener(int port) {
-  descriptor_ = socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+TcpListener::TcpListener(int port) : descriptor_(socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)) {
   const int on = 1;
   sockaddr_in address{};
   address.sin_family = AF_INET;
@@ -124,28 +108,24 @@ TcpListener::TcpListener(int port) {
   address.sin_port = htons(static_cast<std::uint16_t>(port));
   socklen_t length = sizeof address;
   auto* generic = reinterpret_cast<sockaddr*>(&address);
-  if (descriptor_ < 0 || setsockopt(descriptor_, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on) < 0 ||
-      bind(descriptor_, generic, length) < 0 || listen(descriptor_, 4) < 0 ||
-      getsockname(descriptor_, generic, &length) < 0) {
-    const std::string why = std::strerror(errno);
-    if (descriptor_ >= 0) ::close(descriptor_);
-    throw Error(ErrorKind::failure, fmt::format("port {}: {}; give another one, or 0 for any", port, why));
+  if (!descriptor_.valid() || setsockopt(descriptor_.get(), SOL_SOCKET, SO_REUSEADDR, &on, sizeof on) < 0 ||
+      bind(descriptor_.get(), generic, length) < 0 || listen(descriptor_.get(), 4) < 0 ||
+      getsockname(descriptor_.get(), generic, &length) < 0) {
+    throw Error(ErrorKind::failure,
+                fmt::format("port {}: {}; give another one, or 0 for any", port, std::strerror(errno)));
   }
   port_ = ntohs(address.sin_port);
 }
 
-TcpListener::~TcpListener() { ::close(descriptor_); }
-
 void TcpListener::serve(const std::atomic<bool>& stop, bool once, const std::function<void(const std::string&)>& tell,
                         const std::function<void(TcpStream)>& serveOne) {
   while (!stop) {
-    if (!waitFor(descriptor_, POLLIN, lookPeriod)) continue;
-    const int d = accept4(descriptor_, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
-    if (d < 0) continue;
-    const int on = 1;
-    setsockopt(d, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
+    if (!waitFor(descriptor_.get(), POLLIN, lookPeriod)) continue;
+    Descriptor client(accept4(descriptor_.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
+    if (!client.valid()) continue;
+    sendAtOnce(client);
     tell("a client is there");
-    serveOne(TcpStream(d));
+    serveOne(TcpStream(std::move(client)));
     tell("the client is gone");
     if (once) return;
   }

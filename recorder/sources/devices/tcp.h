@@ -10,29 +10,27 @@
 #include <span>
 #include <string>
 
+#include "recorder/base/files.h"
+
 namespace calot::recorder {
 
 /// A connected stream. Nothing throws: a broken connection is closed, which callers can query.
 class TcpStream {
  public:
   TcpStream() = default;
-  explicit TcpStream(int descriptor) : descriptor_(descriptor) {}
-  ~TcpStream() { close(); }
-  TcpStream(TcpStream&& o) noexcept : descriptor_(o.descriptor_) { o.descriptor_ = -1; }
-  TcpStream& operator=(TcpStream&& o) noexcept;
+  explicit TcpStream(Descriptor socket) : descriptor_(std::move(socket)) {}
 
   /// @returns a stream that is not open where nobody answered within `wait`; `fault` then says why.
   static TcpStream connect(const std::string& host, int port, std::chrono::milliseconds wait, std::string& fault);
 
-  [[nodiscard]] bool open() const { return descriptor_ >= 0; }
+  [[nodiscard]] bool open() const { return descriptor_.valid(); }
   /// Waits for something to read. @returns false after `wait`.
   [[nodiscard]] bool readable(std::chrono::nanoseconds wait) const;
   /// Reads what has arrived, at most the buffer; 0: nothing now. Closes if the other side has closed.
   std::size_t receive(std::span<std::byte> buffer);
   /// Reads what has arrived, piece by piece, until take(bytes) is false. Bounded, so that a sender that never stops
   /// cannot hold the thread. @returns false where take() was
-  template <class Take>
-  bool receiveAll(const Take& take) {
+  bool receiveAll(const auto& take) {
     std::array<std::byte, 65536> buffer;
     for (int i = 0; i < 16; ++i) {
       const std::size_t n = receive(buffer);
@@ -43,10 +41,10 @@ class TcpStream {
   }
   /// All or nothing within a second; closes and returns false where that fails.
   bool send(std::span<const std::byte> bytes);
-  void close();
+  void close() { descriptor_.close(); }
 
  private:
-  int descriptor_ = -1;
+  Descriptor descriptor_;
 };
 
 /// Listens on this machine alone (127.0.0.1).
@@ -54,9 +52,6 @@ class TcpListener {
  public:
   /// @param port 0: any that is free. @throws Error (failure) where the port is taken.
   explicit TcpListener(int port);
-  ~TcpListener();
-  TcpListener(const TcpListener&) = delete;
-  TcpListener& operator=(const TcpListener&) = delete;
 
   [[nodiscard]] int port() const { return port_; }
   /// Serves one client after the other until `stop`, or with `once` until the first has gone.
@@ -65,7 +60,7 @@ class TcpListener {
              const std::function<void(TcpStream)>& serveOne);
 
  private:
-  int descriptor_ = -1;
+  Descriptor descriptor_;
   int port_ = 0;
 };
 

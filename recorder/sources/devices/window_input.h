@@ -33,31 +33,6 @@ inline constexpr std::size_t mouseControls = 14;
 /// thread never calls it.
 class MouseInput {
  public:
-  /// The pointer moved by these pixels.
-  void move(double right, double down);
-  /// The wheel rotated by `notches`; positive: away from the hand, deeper into the picture.
-  void turnWheel(double notches);
-  void hold(MouseControl control, bool held);
-  /// Ratchet of the driven hand's grasper: locks, or lets go.
-  void toggleLock();
-  /// Passes mouse and keyboard to the other hand. The one that is left stays where and as it is, its lock
-  /// too, but without pedals.
-  void switchHand();
-  /// Releases everything and drops pending motion: the window lost the keyboard focus.
-  void release();
-
-  /// The hand that is driven now; the right one first.
-  [[nodiscard]] Hand hand() const;
-  /// A new attempt: the right hand, nothing held, nothing locked.
-  void reset();
-
-  /// Position of each hand's port in D, relative to its tip's start (m): `in` and `out` move along the line from
-  /// there.
-  void setPorts(const std::array<Vec3, handCount>& ports);
-  /// Position of the endoscope's eye in D, relative to each tip's start (m): the wheel moves along the line from
-  /// there.
-  void setEyes(const std::array<Vec3, handCount>& eyes);
-
   /// Input of the device at each of its samples.
   struct Wish {
     Hand hand = Hand::right;
@@ -70,10 +45,79 @@ class MouseInput {
     std::array<Vec3, handCount> eye{Vec3(0.0, 0.0, -1e3), Vec3(0.0, 0.0, -1e3)};
 
     [[nodiscard]] bool holds(MouseControl control) const { return held[static_cast<std::size_t>(control)]; }
+    void dropMotion() {
+      pixels = {};
+      notches = 0.0;
+    }
   };
-  [[nodiscard]] Wish take();
+
+  /// The pointer moved by these pixels.
+  void move(double right, double down) {
+    change([&](Wish& wish) { wish.pixels = {wish.pixels[0] + right, wish.pixels[1] + down}; });
+  }
+  /// The wheel rotated by `notches`; positive: away from the hand, deeper into the picture.
+  void turnWheel(double notches) {
+    change([&](Wish& wish) { wish.notches += notches; });
+  }
+  void hold(MouseControl control, bool held) {
+    change([&](Wish& wish) { wish.held[static_cast<std::size_t>(control)] = held; });
+  }
+  /// Ratchet of the driven hand's grasper: locks, or lets go.
+  void toggleLock() {
+    change([](Wish& wish) {
+      bool& locked = wish.locked[static_cast<std::size_t>(wish.hand)];
+      locked = !locked;
+    });
+  }
+  /// Passes mouse and keyboard to the other hand. The one that is left stays where and as it is, its lock
+  /// too, but without pedals.
+  void switchHand() {
+    change([](Wish& wish) {
+      wish.hand = wish.hand == Hand::right ? Hand::left : Hand::right;
+      wish.dropMotion();
+    });
+  }
+  /// Releases everything and drops pending motion: the window lost the keyboard focus.
+  void release() {
+    change([](Wish& wish) {
+      wish.held = {};
+      wish.dropMotion();
+    });
+  }
+  /// The hand that is driven now; the right one first.
+  [[nodiscard]] Hand hand() const {
+    const std::lock_guard lock(mutex_);
+    return wish_.hand;
+  }
+  /// A new attempt: the right hand, nothing held, nothing locked.
+  void reset() {
+    change([](Wish& wish) { wish = {.port = wish.port, .eye = wish.eye}; });
+  }
+  /// Position of each hand's port in D, relative to its tip's start (m): `in` and `out` move along the line from
+  /// there.
+  void setPorts(const std::array<Vec3, handCount>& ports) {
+    change([&](Wish& wish) { wish.port = ports; });
+  }
+  /// Position of the endoscope's eye in D, relative to each tip's start (m): the wheel moves along the line from
+  /// there.
+  void setEyes(const std::array<Vec3, handCount>& eyes) {
+    change([&](Wish& wish) { wish.eye = eyes; });
+  }
+  [[nodiscard]] Wish take() {
+    Wish taken;
+    change([&](Wish& wish) {
+      taken = wish;
+      wish.dropMotion();
+    });
+    return taken;
+  }
 
  private:
+  void change(const auto& how) {
+    const std::lock_guard lock(mutex_);
+    how(wish_);
+  }
+
   mutable std::mutex mutex_;
   Wish wish_;
 };

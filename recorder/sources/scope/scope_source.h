@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "recorder/sources/pointing.h"
 #include "recorder/sources/scope/endoscope.h"
 #include "recorder/sources/source.h"
-#include "recorder/sources/unsteadiness.h"
 #include "sim/math/record.h"
 
 namespace calot::recorder {
@@ -18,7 +18,7 @@ namespace calot::recorder {
 /// and so is recorded. Replay needs neither the endoscope nor who held it.
 ///
 /// The endoscope is no body: it touches nothing, and the simulation of the tissue is the same whatever it does.
-class ScopeSource final : public SampleSource {
+class ScopeSource final : public WrappedSource {
  public:
   /// @param source, driver not null
   ScopeSource(std::unique_ptr<SampleSource> source, const Endoscope& endoscope, std::unique_ptr<ScopeDriver> driver);
@@ -28,18 +28,12 @@ class ScopeSource final : public SampleSource {
   /// The run must keep the pace of the clock.
   [[nodiscard]] bool realTime() const { return driver_->realTime(); }
 
-  [[nodiscard]] const Provenance& provenance() const override { return source_->provenance(); }
   bool next(std::uint64_t tick, TickSamples& out) override;
-  SourceStatus status() override { return source_->status(); }
   void rest() override;
-  [[nodiscard]] Observer* watcher() override { return source_->watcher(); }
-  [[nodiscard]] DeviceSource* device() override { return source_->device(); }
   [[nodiscard]] ScopeSource* scope() override { return this; }
-  [[nodiscard]] Outcome ending() const override { return source_->ending(); }
-  [[nodiscard]] std::string statusText() const override { return source_->statusText(); }
 
  private:
-  std::unique_ptr<SampleSource> source_;
+  std::unique_ptr<SampleSource> owned_;
   Endoscope endoscope_;
   std::unique_ptr<ScopeDriver> driver_;
   ScopeMotion motion_;

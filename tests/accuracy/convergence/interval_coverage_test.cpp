@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "analytics/uncertainty/uncertainty.h"
-#include "recorder/attempt.h"
+#include "recorder/loop.h"
 #include "tests/accuracy/convergence/support/graded.h"
 
 namespace calot::analytics {

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "analytics/assessment/norm_rule.h"
+#include "analytics/assessment/norm.h"
 #include "analytics/checkpoints/checkpoint.h"
 
 namespace calot::analytics {

@@ -13,13 +13,13 @@
 #include "analytics/report/grade_sheet.h"
 #include "analytics/report/report_document.h"
 #include "tests/analytics/cohort/support/cohort_support.h"
-#include "tests/analytics/support/refusal.h"
+#include "tests/support/fault.h"
+#include "tests/support/message.h"
 
 namespace calot::analytics {
 namespace {
 
 using Access = CohortDatabase::Access;
-using support::expectRefusal;
 using support::Folder;
 using support::humanAttempt;
 using support::uuidOf;
@@ -53,7 +53,7 @@ class Grades : public testing::Test {
   }
 
   void add(unsigned n, const std::string& who, const std::string& group, const std::vector<CheckpointValue>& values) {
-    if (!cohort_.participant(who)) cohort_.addParticipant({who, group, "", "", {}, {}});
+    if (!findParticipant(cohort_, who)) cohort_.addParticipant({who, group, "", "", {}, {}});
     cohort_.storeAttempt(humanAttempt(n, who), values);
   }
 
@@ -91,33 +91,32 @@ TEST_F(Grades, aPassMarkIsWhereTheCurvesCross) {
   EXPECT_EQ(competent.passed, 7U);
   EXPECT_EQ(competent.members, 8U);
   EXPECT_EQ(others.passed, 0U);
-  EXPECT_EQ(ownFailureWarning(norm), "Warning: 1 of the 8 competent members fail by the norm's own rule.");
+  expectNames(ownFailureWarning(norm), {"1", "8"});
 }
 
 TEST_F(Grades, aNormWantsSomeMembersOfEachSide) {
   for (unsigned i = 0; i < 5; ++i) cohort_.excludeAttempts({uuidOf(i)}, "test", "me");
   EXPECT_EQ(made().members.size(), 11U);
   cohort_.excludeAttempts({uuidOf(5)}, "test", "me");
-  expectRefusal(ErrorKind::refused, "a norm wants at least 3 competent members and as many others; there are 2 and 8",
-                [&] { (void)made(); });
+  expectFault(ErrorKind::refused, "", {"3", "2", "8", "2 and 8"}, [&] { (void)made(); });
 }
 
 TEST_F(Grades, theRuleIsDeclaredAndRefusedWhereItCannotBe) {
   request_.checkpoints = {"path-length left"};
   EXPECT_EQ(neededPasses(made()), 1U);
   request_.checkpoints = {"path-length"};
-  expectRefusal(ErrorKind::refused, "path-length right has no pass mark", [&] { made(); });
+  expectFault(ErrorKind::refused, "", {"path-length"}, [&] { made(); });
   request_.checkpoints = {"sparc"};
-  expectRefusal(ErrorKind::invalid, "have no figure \"", [&] { made(); }, {{Remedy::nameCheckpoints}});
+  expectFault(ErrorKind::invalid, "", {"\"sparc\""}, [&] { made(); }, {{Remedy::nameCheckpoints}});
   request_.checkpoints.clear();
   request_.leastPassed = 2;
-  expectRefusal(ErrorKind::refused, "asks for 2 figures, and 1 of 2 have a pass mark", [&] { made(); });
+  expectFault(ErrorKind::refused, "", {"2", "1"}, [&] { made(); });
   request_.leastPassed = 0;
   request_.name = "a b";
-  expectRefusal(ErrorKind::invalid, "norm: a name", [&] { made(); });
+  expectFault(ErrorKind::invalid, "", {"norm"}, [&] { made(); });
   request_.name = "x";
   request_.who.attemptRule = AttemptRule::mean;
-  expectRefusal(ErrorKind::invalid, "a mean of attempts is not an attempt", [&] { made(); });
+  expectFault(ErrorKind::invalid, "", {"norm"}, [&] { made(); });
 }
 
 TEST_F(Grades, figuresOfPhasesCountWhereTheyAreAskedFor) {
@@ -137,14 +136,12 @@ TEST_F(Grades, figuresOfPhasesCountWhereTheyAreAskedFor) {
 }
 
 TEST_F(Grades, aNormOfFewSaysThatItsIntervalsCoverTooLittle) {
-  EXPECT_EQ(passMarkWarning(made()),
-            "Warning: pass mark: with 10 a group an interval at 95 % covers 90.7 % (population: normal, 70 (5) and 50 "
-            "(10)).");
+  expectNames(passMarkWarning(made()), {"10", "95 %", "90.7 %", "70 (5)", "50 (10)"});
 }
 
 TEST_F(Grades, ratersJudgeWhereThereAreRatings) {
   request_.judgedBy = "competence";
-  expectRefusal(ErrorKind::refused, "no attempt was rated with form competence", [&] { made(); });
+  expectFault(ErrorKind::refused, "", {"competence"}, [&] { made(); });
   std::vector<Rating> ratings;
   const auto rate = [&](unsigned n, const std::string& rater, int score) {
     ratings.push_back({"competence", 1, uuidOf(n), rater, "", {{"competent", score}}, ""});
@@ -158,7 +155,7 @@ TEST_F(Grades, ratersJudgeWhereThereAreRatings) {
   rate(10, "R3", 1);  // two against one: still not competent
   Norm norm = made(ratings);
   EXPECT_EQ(norm.members.size(), 16U);
-  EXPECT_EQ(norm.judgedBy, "form competence, majority of raters");
+  expectNames(norm.judgedBy, {"competence", "majority"});
   EXPECT_NEAR(*norm.checkpoints[0].cut, 61.7004517205, 1e-9);
   rate(10, "R4", 1);  // divided: in neither group
   EXPECT_EQ(made(ratings).members.size(), 15U);
@@ -172,12 +169,12 @@ TEST_F(Grades, criticalErrorsComeFirst) {
   const Grade failed = graded(20, norm);
   EXPECT_FALSE(failed.passed);
   EXPECT_EQ(failed.figures[0].passed, true) << "though every figure passed";
-  EXPECT_EQ(failed.verdict, "Not passed: 1 critical error, of which one fails an attempt.");
+  expectNames(failed.verdict, {"1 critical error"});
   EXPECT_EQ(weakFigures(failed).at(0).first, "critical-errors");
   const Grade passed = graded(21, norm);
   EXPECT_TRUE(passed.passed);
   EXPECT_TRUE(weakFigures(passed).empty());
-  EXPECT_EQ(graded(22, norm).criticalMissing, "not computed for this attempt");
+  expectNames(graded(22, norm).criticalMissing, {});
 }
 
 TEST_F(Grades, weakOpenAndMissingFigures) {
@@ -193,11 +190,12 @@ TEST_F(Grades, weakOpenAndMissingFigures) {
   EXPECT_FALSE(open.passed);
   EXPECT_TRUE(open.figures[0].open);
   EXPECT_FALSE(open.certain);
-  EXPECT_NE(open.verdict.find("not certain"), std::string::npos);
+  expectNames(open.verdict, {"certain"});
   const Grade missing = graded(22, norm);
   EXPECT_FALSE(missing.passed) << "a figure without a value is not passed";
-  EXPECT_EQ(missing.figures[0].missing, "the attempt has no such figure");
-  EXPECT_EQ(graded(0, norm).remarks, std::vector<std::string>{"The attempt is itself a member of the norm."});
+  expectNames(missing.figures[0].missing, {});
+  ASSERT_EQ(graded(0, norm).remarks.size(), 1U);
+  expectNames(graded(0, norm).remarks[0], {"member"});
 }
 
 /// A mark inside a figure's interval is not decided by the simulation, whatever the norm's own interval.
@@ -220,10 +218,10 @@ TEST_F(Grades, aMarkInsideTheIntervalIsNotDecided) {
   EXPECT_TRUE(undecided.figures[0].undecided);
   EXPECT_FALSE(undecided.passed) << "the value itself still counts";
   EXPECT_FALSE(undecided.certain);
-  EXPECT_NE(undecided.verdict.find("not decided by this simulation"), std::string::npos) << undecided.verdict;
+  expectNames(undecided.verdict, {"simulation"});
   std::ostringstream sheet;
   printGrade(undecided, sheet);
-  EXPECT_NE(sheet.str().find("no, undecided"), std::string::npos) << sheet.str();
+  expectHolds(sheet.str(), {"undecided"});
   EXPECT_TRUE(gradeTree(undecided)["figures"][0]["undecided"].get<bool>());
 }
 
@@ -243,17 +241,16 @@ TEST_F(Grades, comparesOnlyWhatCompares) {
   AttemptRecord other = humanAttempt(30, "T9");
   other.comparabilityKey = "another/1";
   cohort_.storeAttempt(other, figures(1, 1));
-  expectRefusal(ErrorKind::refused, "does not compare with norm clinic", [&] { graded(30, norm); },
-                {{Remedy::mixKeys}});
+  expectFault(ErrorKind::refused, "", {"clinic", uuidOf(30)}, [&] { graded(30, norm); }, {{Remedy::mixKeys}});
   EXPECT_EQ(graded(30, norm, true).remarks.size(), 1U);
   AttemptRecord bad = humanAttempt(31, "T8");
   bad.verification.verdict = Verdict::diverged;
   cohort_.storeAttempt(bad, {});
-  expectRefusal(ErrorKind::refused, "is diverged", [&] { graded(31, norm); });
+  expectFault(ErrorKind::refused, "", {uuidOf(31)}, [&] { graded(31, norm); });
   AttemptRecord cut = humanAttempt(32, "T7");
   cut.complete = false;
   cohort_.storeAttempt(cut, {});
-  expectRefusal(ErrorKind::refused, "is incomplete", [&] { graded(32, norm); });
+  expectFault(ErrorKind::refused, "", {uuidOf(32)}, [&] { graded(32, norm); });
 }
 
 TEST(Percentile, saysNoMoreThanItsMembersTell) {
@@ -263,10 +260,8 @@ TEST(Percentile, saysNoMoreThanItsMembersTell) {
   EXPECT_DOUBLE_EQ(*percentile(nine, 9.0, Direction::higher), 90.0) << "the best member is at 100 n / (n + 1)";
   EXPECT_DOUBLE_EQ(*percentile(nine, 1.0, Direction::higher), 10.0);
   EXPECT_DOUBLE_EQ(*percentile(nine, 1.5, Direction::lower), 85.0);
-  EXPECT_EQ(percentile(nine, 9.5, Direction::higher).reason(),
-            "better than all; 9 members tell percentiles from 10 to 90");
-  EXPECT_EQ(percentile(nine, 9.5, Direction::lower).reason(),
-            "worse than all; 9 members tell percentiles from 10 to 90");
+  expectNames(percentile(nine, 9.5, Direction::higher).reason(), {"better", "9", "10", "90"});
+  expectNames(percentile(nine, 9.5, Direction::lower).reason(), {"worse", "9", "10", "90"});
   EXPECT_EQ(percentile({1, 2, 3, 4}, 2.0, Direction::lower).reason(), "4 members, 5 wanted");
 }
 
@@ -279,12 +274,13 @@ TEST(Moments, areWhereAFigureGrew) {
   EXPECT_DOUBLE_EQ(found.moments[0].end, 5.0);
   EXPECT_DOUBLE_EQ(found.moments[0].share, 0.6);
   EXPECT_DOUBLE_EQ(found.moments[1].begin, 9.0);
-  EXPECT_EQ(momentsOf({1, 2, 3, 4}, 1.0, Direction::lower).none, "it grew evenly: no moment stands out");
-  EXPECT_EQ(momentsOf({1, 5, 2, 3}, 1.0, Direction::lower).none,
-            "a figure of the whole attempt: it does not add up over time");
-  EXPECT_EQ(momentsOf({NAN, NAN}, 1.0, Direction::lower).none, "the recording's steps do not give this figure");
-  EXPECT_EQ(momentsOf({0, 0}, 1.0, Direction::lower).none,
-            "a figure of the whole attempt: it does not add up over time");
+  const std::string whole = momentsOf({1, 5, 2, 3}, 1.0, Direction::lower).none;
+  EXPECT_EQ(momentsOf({0, 0}, 1.0, Direction::lower).none, whole);
+  EXPECT_EQ(momentsOf({NAN, 0.9, 0.9}, 1.0, Direction::higher).none, whole);
+  // What is known only from the third second on began somewhere before: it does not all belong to that second.
+  EXPECT_EQ(momentsOf({NAN, NAN, 5.0, 5.0}, 1.0, Direction::lower).none, whole);
+  expectDistinct(
+      {whole, momentsOf({1, 2, 3, 4}, 1.0, Direction::lower).none, momentsOf({NAN, NAN}, 1.0, Direction::lower).none});
 }
 
 TEST(Moments, areWhereAFigureGotWorse) {
@@ -293,15 +289,10 @@ TEST(Moments, areWhereAFigureGotWorse) {
   ASSERT_EQ(fell.moments.size(), 1U);
   EXPECT_DOUBLE_EQ(fell.moments[0].begin, 3.0);
   EXPECT_NEAR(fell.moments[0].share, 6.0 / 7.0, 1e-12);
-  EXPECT_EQ(momentsOf({NAN, 0.9, 0.9}, 1.0, Direction::higher).none,
-            "a figure of the whole attempt: it does not add up over time");
   // A filter that looks ahead takes a little back: no share is more than the whole.
   const FigureMoments settling = momentsOf({0.0, 0.0, 0.0, 1.01, 1.0, 1.0}, 1.0, Direction::lower);
   ASSERT_EQ(settling.moments.size(), 1U) << settling.none;
   EXPECT_DOUBLE_EQ(settling.moments[0].share, 1.0);
-  // What is known only from the third second on began somewhere before: it does not all belong to that second.
-  EXPECT_EQ(momentsOf({NAN, NAN, 5.0, 5.0}, 1.0, Direction::lower).none,
-            "a figure of the whole attempt: it does not add up over time");
 }
 
 TEST_F(Grades, historyIsTheParticipantsOwnOfTheSameKey) {
@@ -321,7 +312,7 @@ TEST_F(Grades, historyIsTheParticipantsOwnOfTheSameKey) {
 }
 
 TEST_F(Grades, normsAreKeptInVersionsWithTheirMembers) {
-  AssessmentDatabase database(path_, Access::write);
+  CohortDatabase database(path_, Access::write);
   EXPECT_EQ(database.storeNorm(made()), 1U);
   EXPECT_EQ(database.storeNorm(made()), 2U);
   const Norm stored = database.norm("clinic", 1);
@@ -334,12 +325,12 @@ TEST_F(Grades, normsAreKeptInVersionsWithTheirMembers) {
   }
   EXPECT_EQ(stored.checkpoints[0].cut, fresh.checkpoints[0].cut) << "the same seed, the same bits";
   EXPECT_EQ(stored.checkpoints[0].lower, fresh.checkpoints[0].lower);
-  expectRefusal(ErrorKind::refused, "no norm \"hospital\" (there are: clinic 1, clinic 2)",
-                [&] { (void)database.norm("hospital"); });
+  expectFault(ErrorKind::refused, "", {"\"hospital\"", "1", "2", "clinic 1, clinic 2"},
+              [&] { (void)database.norm("hospital"); });
 }
 
 TEST_F(Grades, aSheetIsFormativeUntilThereIsEvidence) {
-  AssessmentDatabase database(path_, Access::write);
+  CohortDatabase database(path_, Access::write);
   database.storeNorm(made());
   add(20, "T<1>", "", figures(100.0, 2.0));
   Grade grade = graded(20, database.norm("clinic"));
@@ -347,8 +338,8 @@ TEST_F(Grades, aSheetIsFormativeUntilThereIsEvidence) {
   std::ostringstream text;
   printGrade(grade, text);
   EXPECT_NE(text.str().find("FORMATIVE"), std::string::npos);
-  EXPECT_NE(text.str().find("no moments, the recording is not there"), std::string::npos);
-  expectRefusal(ErrorKind::invalid, "say what the evidence shows", [&] {
+  expectHolds(text.str(), {"moments"});
+  expectFault(ErrorKind::invalid, "", {"norm"}, [&] {
     database.attachEvidence(database.norm("clinic"), {"", "v.pdf", std::string(64, 'a'), "me", ""});
   });
   database.attachEvidence(database.norm("clinic"), {"Agrees with raters", "v.pdf", std::string(64, 'a'), "me", ""});
@@ -357,9 +348,9 @@ TEST_F(Grades, aSheetIsFormativeUntilThereIsEvidence) {
   const std::string html = pageHtml(gradeDocument(grade, "a&b.h5", "A & B draws it."));
   EXPECT_EQ(html.find("FORMATIVE"), std::string::npos);
   EXPECT_NE(html.find("Agrees with raters"), std::string::npos);
-  EXPECT_NE(html.find("<a href=\"a&amp;b.h5#t=12.00,13.00\">0:12.0 to 0:13.0 (50 % of it)</a>"), std::string::npos);
+  expectHolds(html, {"href=\"a&amp;b.h5#t=12.00,13.00\">0:12.0", "0:13.0 (50 %"});
   EXPECT_NE(html.find("T&lt;1&gt;"), std::string::npos) << "every text is escaped";
-  EXPECT_NE(html.find("the recording and the seconds. A &amp; B draws it."), std::string::npos);
+  expectHolds(html, {"A &amp; B"});
   EXPECT_EQ(html.find("<script"), std::string::npos);
   const auto json = gradeTree(grade);
   EXPECT_EQ(json["use"], "evidence attached");

@@ -1,21 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Fixed pass marks, the short rule that counts where none is named, and a norm that its own members fail.
-#include "analytics/assessment/norm_rule.h"
+#include "analytics/assessment/norm.h"
 
 #include <gtest/gtest.h>
 
 #include <sstream>
 
 #include "analytics/assessment/grade.h"
-#include "analytics/assessment/norm.h"
 #include "analytics/report/grade_sheet.h"
 #include "tests/analytics/cohort/support/cohort_support.h"
-#include "tests/analytics/support/refusal.h"
+#include "tests/support/fault.h"
+#include "tests/support/message.h"
 
 namespace calot::analytics {
 namespace {
 
-using support::expectRefusal;
 using support::humanAttempt;
 using support::uuidOf;
 
@@ -35,7 +34,7 @@ class NormRule : public testing::Test {
 
   void add(unsigned n, const std::string& who, const std::string& group, double time, double straight, double view,
            double errors) {
-    if (!cohort_.participant(who)) cohort_.addParticipant({who, group, "", "", {}, {}});
+    if (!findParticipant(cohort_, who)) cohort_.addParticipant({who, group, "", "", {}, {}});
     cohort_.storeAttempt(humanAttempt(n, who),
                          {makeValue(*findCheckpoint("elapsed-time"), "", Origin::resimulated, time),
                           makeValue(*findCheckpoint("movement-straightness"), "left", Origin::samples, straight),
@@ -71,9 +70,7 @@ TEST_F(NormRule, theRuleThatNobodyNamesIsShort) {
   const Norm norm = made();
   EXPECT_EQ(inRule(norm), std::vector<std::string>{"elapsed-time"});
   EXPECT_FALSE(markOf(norm, "critical-view").cut);
-  EXPECT_EQ(uncountedWarning(norm),
-            "Warning: harm that does not count, for want of a pass mark (a group has no spread): critical-view, "
-            "clip-errors.");
+  expectNames(uncountedWarning(norm), {"critical-view, clip-errors"});
   request_.checkpoints = {"all"};
   EXPECT_GT(inRule(made()).size(), 1U) << "a difference of 0.0002 counts where it is asked for";
 }
@@ -85,13 +82,13 @@ TEST_F(NormRule, anInstructorFixesWhatIsCritical) {
   EXPECT_EQ(markOf(norm, "critical-view").cut, 5.0);
   EXPECT_TRUE(isFixed(markOf(norm, "critical-view")));
   EXPECT_FALSE(isFixed(markOf(norm, "elapsed-time")));
-  EXPECT_EQ(markOf(norm, "critical-view").reason, "no interval: fixed by A. Instructor");
+  expectNames(markOf(norm, "critical-view").reason, {"A. Instructor"});
   EXPECT_EQ(uncountedWarning(norm), "");
   const auto [competent, others] = passRates(norm);
   EXPECT_EQ(competent.passed, 6U);
   EXPECT_EQ(others.passed, 0U);
   // Stored and read as any other mark.
-  AssessmentDatabase database(path_, CohortDatabase::Access::write);
+  CohortDatabase database(path_, CohortDatabase::Access::write);
   database.storeNorm(norm);
   const Norm stored = database.norm("clinic");
   EXPECT_EQ(markOf(stored, "clip-errors").cut, 0.0);
@@ -110,28 +107,27 @@ TEST_F(NormRule, whatIsFixedHasToBePassedInAnyCase) {
   const Grade failed = graded(31, norm);
   EXPECT_FALSE(failed.passed) << "two of three are passed, too";
   EXPECT_EQ(failed.passedCount, 2U);
-  EXPECT_NE(failed.verdict.find("Clips misplaced or lost has to be passed in any case"), std::string::npos)
-      << failed.verdict;
+  expectNames(failed.verdict, {"Clips misplaced"});
 }
 
 TEST_F(NormRule, aNormThatItsOwnMembersFailIsSaidToBeOne) {
   request_.fixed = {parseFixedCut("elapsed-time<=62")};
   const Norm norm = made();
-  EXPECT_EQ(ownFailureWarning(norm), "Warning: 3 of the 6 competent members fail by the norm's own rule.");
+  expectNames(ownFailureWarning(norm), {"3", "6"});
   std::ostringstream sheet;
   printGrade(graded(0, norm), sheet);
   std::string words = sheet.str();
-  EXPECT_NE(words.find("3 of the 6 competent members"), std::string::npos) << words;
+  expectHolds(words, {ownFailureWarning(norm)});
 }
 
 TEST_F(NormRule, whatCannotBeFixedIsRefused) {
   for (const char* text :
        {"", "clip-errors", "clip-errors=0", "clip-errors<0", "clip-errors<=", "<=0", "clip-errors<=nan"})
-    expectRefusal(ErrorKind::invalid, "a figure, <= or >=, and a number", [&] { parseFixedCut(text); });
+    expectFault(ErrorKind::invalid, "", {"norm", text}, [&] { parseFixedCut(text); });
   request_.fixed = {parseFixedCut("clip-errors>=0")};
-  expectRefusal(ErrorKind::invalid, "of it less is better", [&] { made(); });
+  expectFault(ErrorKind::invalid, "", {"norm", "clip-errors"}, [&] { made(); });
   request_.fixed = {parseFixedCut("sparc left>=0")};
-  expectRefusal(ErrorKind::invalid, "have no figure \"", [&] { made(); }, {{Remedy::nameCheckpoints}});
+  expectFault(ErrorKind::invalid, "", {"\"sparc left\""}, [&] { made(); }, {{Remedy::nameCheckpoints}});
 }
 
 }  // namespace

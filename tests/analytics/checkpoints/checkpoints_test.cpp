@@ -15,6 +15,7 @@
 #include "analytics/checkpoints/checkpoint.h"
 #include "analytics/checkpoints/collector.h"
 #include "tests/analytics/checkpoints/support/steps.h"
+#include "tests/support/message.h"
 
 namespace calot::analytics {
 namespace {
@@ -172,7 +173,7 @@ TEST(ElapsedTime, onlyOfCompletedAttempts) {
   };
   EXPECT_DOUBLE_EQ(*run(Outcome::completed).value, 38.86);
   EXPECT_EQ(run(Outcome::abandoned).availability, Availability::notApplicable);
-  EXPECT_EQ(run(Outcome::abandoned).reason, "not completed: abandoned at 38.860 s");
+  expectNames(run(Outcome::abandoned).reason, {"abandoned", "38.860 s"});
   EXPECT_EQ(run(Outcome::timeLimit).availability, Availability::notAvailable);
   EXPECT_FALSE(run(Outcome::stopped).value);
   EXPECT_FALSE(run(Outcome::technicalFailure).value);
@@ -320,7 +321,7 @@ TEST(Force, maximumPercentileAndMeanPerHand) {
   EXPECT_NEAR(*valueOf(collector, "force-mean", "left").value, 51.0, 1e-12);
   EXPECT_EQ(*valueOf(collector, "force-maximum", "right").value, 0.0);
   EXPECT_EQ(valueOf(collector, "force-mean", "right").availability, Availability::notApplicable);
-  EXPECT_EQ(valueOf(collector, "force-p99", "right").reason, "no force of 0.01 N or more");
+  expectNames(valueOf(collector, "force-p99", "right").reason, {"0.01 N"});
 }
 
 /// A lively attempt from a seed.

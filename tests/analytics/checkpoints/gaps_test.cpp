@@ -11,6 +11,7 @@
 #include "analytics/checkpoints/collector.h"
 #include "analytics/checkpoints/motion.h"
 #include "analytics/statistics/descriptive.h"
+#include "tests/support/message.h"
 
 namespace calot::analytics {
 namespace {
@@ -236,7 +237,7 @@ TEST(Coverage, belowWhatIsDeclaredThereIsNoFigure) {
     if (v.subject == "left") {
       EXPECT_EQ(v.availability, Availability::tooLittleCoverage) << v.name;
       EXPECT_NEAR(*v.coverage, 0.005, 0.001);
-      EXPECT_NE(v.reason.find("samples cover 0.5 % of the time"), std::string::npos) << v.reason;
+      expectNames(v.reason, {"0.5 %"});
     } else {
       EXPECT_EQ(v.availability, Availability::absentHand) << v.name << " " << v.subject;
       EXPECT_FALSE(v.coverage);
@@ -298,7 +299,7 @@ TEST(Smoothness, doesNotDependOnTheNumberOfGaps) {
       EXPECT_LT(std::abs(change), 3.0 * jerkTolerance) << "hand " << h;
       jerk += change;
       path += numberOf(gaps, "path-length") / numberOf(whole, "path-length") - 1.0;
-      EXPECT_NE(valueOf(gaps, "sparc").note.find("s without measurement"), std::string::npos);
+      expectNames(valueOf(gaps, "sparc").note, {"s"});
     }
     EXPECT_LT(std::abs(sparc / hands), sparcTolerance) << count << " gaps of " << length << " s";
     EXPECT_LT(std::abs(jerk / hands), jerkTolerance) << count << " gaps of " << length << " s";
@@ -313,7 +314,7 @@ TEST(Smoothness, isRefusedWhereAGapIsNotBridged) {
   const recorder::TrackedMotion rows = rowsAt(times, hand);
   for (const char* name : {"sparc", "log-dimensionless-jerk"}) {
     EXPECT_EQ(valueOf(rows, name).availability, Availability::tooLittleCoverage) << name;
-    EXPECT_EQ(valueOf(rows, name).reason, "a gap without samples of more than 1 s");
+    expectNames(valueOf(rows, name).reason, {"gap", "1 s"});
   }
   EXPECT_TRUE(valueOf(rows, "path-length").value) << "the rest of the way was measured";
 }
@@ -327,7 +328,7 @@ TEST(Smoothness, spectralArcLengthIsRefusedWhereHalfASecondIsLostAtOnce) {
   };
   const CheckpointValue refused = valueOf(lacking(10.0, 10.7), "sparc");
   EXPECT_EQ(refused.availability, Availability::tooLittleCoverage);
-  EXPECT_EQ(refused.reason, "a gap without samples of more than 0.5 s");
+  expectNames(refused.reason, {"gap", "0.5 s"});
   EXPECT_TRUE(valueOf(lacking(10.0, 10.7), "log-dimensionless-jerk").value) << "it keeps its tolerance";
   EXPECT_TRUE(valueOf(lacking(10.0, 10.45), "sparc").value);
 }
@@ -347,7 +348,7 @@ TEST(MovementThreshold, followsTheHand) {
   const recorder::TrackedMotion still = rowsAt(times, [&](double t) { return Vec3(0.01 * hand(t)); });
   EXPECT_EQ(numberOf(still, "movements"), 0.0);
   EXPECT_EQ(valueOf(still, "movement-jerk").availability, Availability::notApplicable);
-  EXPECT_EQ(valueOf(still, "movement-jerk").reason, "no movement of 5.0 mm/s for 0.2 s");
+  expectNames(valueOf(still, "movement-jerk").reason, {"5.0 mm/s", "0.2 s"});
   // No hand that moves lacks one, whatever its speed.
   for (unsigned h = 0; h < 40; ++h) {
     const Hand one(200 + h);

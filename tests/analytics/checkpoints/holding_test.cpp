@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/analytics/checkpoints/support/operation.h"
+#include "tests/support/message.h"
 
 namespace calot::analytics {
 namespace {
@@ -54,8 +55,8 @@ TEST(Holding, IsContactInEarlierRecordings) {
   o.end();
   EXPECT_NEAR(*o.value("contact-time-union", "v2").value, 0.3, 1e-12);
   EXPECT_NEAR(*o.value("time-held", "v2").value, 0.3, 1e-12);
-  expectNotApplicable(o.value("crush-dose", "v2"), "not recorded in results of version 4");
-  expectNotApplicable(o.value("thermal-injury"), "the scene's procedure names no vessel to be spared");
+  expectNotApplicable(o.value("crush-dose", "v2"), {"version 4"});
+  expectNotApplicable(o.value("thermal-injury"), {"vessel"});
 }
 
 TEST(ThermalInjury, OfWhatIsToBeSpared) {

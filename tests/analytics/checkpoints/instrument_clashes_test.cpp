@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/analytics/checkpoints/support/operation.h"
+#include "tests/support/message.h"
 
 namespace calot::analytics {
 namespace {
@@ -33,7 +34,7 @@ TEST(InstrumentClashes, AreNotKnownOfResultsThatDoNotTellOfThem) {
   o.step();
   o.end();
   for (const char* name : {"instrument-clashes", "instrument-clash-time"})
-    EXPECT_EQ(o.value(name).reason, "not recorded in results of version 5");
+    expectNames(o.value(name).reason, {"version 5"});
 }
 
 TEST(InstrumentClashes, NeedTwoInstruments) {
@@ -42,7 +43,7 @@ TEST(InstrumentClashes, NeedTwoInstruments) {
   o.step();
   o.end();
   EXPECT_EQ(o.value("instrument-clashes").availability, Availability::notApplicable);
-  EXPECT_EQ(o.value("instrument-clashes").reason, "there were never two instruments");
+  expectNames(o.value("instrument-clashes").reason, {"instruments"});
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "analytics/checkpoints/collector.h"
 #include "analytics/checkpoints/motion.h"
 #include "tests/analytics/checkpoints/support/steps.h"
+#include "tests/support/message.h"
 
 namespace calot::analytics {
 namespace {
@@ -73,7 +74,7 @@ TEST(Sparc, isRefusedForALongBridgeButNotForALateBeginning) {
     right.valid = t < 15.0 || t >= 15.8;
   });
   EXPECT_TRUE(a.value("sparc", "left").value) << a.value("sparc", "left").reason;
-  EXPECT_EQ(a.value("sparc", "right").reason, "a gap without samples of more than 0.5 s");
+  expectNames(a.value("sparc", "right").reason, {"gap", "0.5 s"});
 }
 
 TEST(DepthPath, countsTheWayAlongTheShaftAlone) {
@@ -188,10 +189,10 @@ TEST(Jerk, isRefusedBelow30Hz) {
   for (const char* name : {"log-dimensionless-jerk", "movement-jerk"}) {
     EXPECT_TRUE(fast.value(name, "left").value) << name;
     EXPECT_EQ(slow.value(name, "left").availability, Availability::notAvailable);
-    EXPECT_EQ(slow.value(name, "left").reason, "effective rate 25.0 Hz; 30 Hz is wanted");
+    expectNames(slow.value(name, "left").reason, {"25.0 Hz", "30 Hz"});
   }
   EXPECT_TRUE(slow.value("sparc", "left").value);
-  EXPECT_EQ(slower.value("sparc", "left").reason, "effective rate 15.2 Hz; 20 Hz is wanted");
+  expectNames(slower.value("sparc", "left").reason, {"15.2 Hz", "20 Hz"});
   EXPECT_TRUE(slower.value("path-length", "left").value);
 }
 
@@ -220,7 +221,7 @@ TEST(Bimanual, correlationAndLagOfHandsThatGoTogether) {
   EXPECT_EQ(follows.number("bimanual-lag"), 0.25);
   EXPECT_EQ(leads.number("bimanual-lag"), -0.4);
   EXPECT_LT(follows.number("bimanual-correlation"), 0.9);
-  EXPECT_EQ(follows.value("bimanual-lag").note, "correlation 1.000");
+  expectNames(follows.value("bimanual-lag").note, {"1.000"});
 }
 
 TEST(Bimanual, ofHandsInTurnsIsNegativeAndOfOneHandNoQuestion) {
@@ -233,7 +234,7 @@ TEST(Bimanual, ofHandsInTurnsIsNegativeAndOfOneHandNoQuestion) {
   const Attempt never(40.0, [](double t, InstrumentSample& left, InstrumentSample& right) {
     (std::fmod(t, 20.0) < 10.0 ? left : right).position = Vec3(0.01 * std::sin(20.0 * t), 0.0, 0.0);
   });
-  EXPECT_EQ(never.value("bimanual-lag").reason, "the hands' speeds do not go together at any lag within 1 s");
+  expectNames(never.value("bimanual-lag").reason, {"1 s"});
   EXPECT_NEAR(std::abs(turns.number("hand-ratio")), 0.5, 0.01);
   const Attempt one(
       10.0, [](double t, InstrumentSample& left, InstrumentSample&) { left.position = strokes(t, 3, Vec3(1, 0, 0)); });
@@ -242,8 +243,8 @@ TEST(Bimanual, ofHandsInTurnsIsNegativeAndOfOneHandNoQuestion) {
   EXPECT_NEAR(one.number("hand-ratio"), 0.0, 1e-12);
   const Attempt empty(
       10.0, [](double, InstrumentSample&, InstrumentSample& right) { right.instrument = InstrumentKind::none; });
-  EXPECT_EQ(empty.value("bimanual-correlation").reason, "no instrument in the right hand");
-  EXPECT_EQ(empty.value("hand-ratio").reason, "no instrument in the right hand");
+  expectNames(empty.value("bimanual-correlation").reason, {"right hand"});
+  expectNames(empty.value("hand-ratio").reason, {"right hand"});
 }
 
 TEST(HandRatio, isTheRightHandsShareAndNamesTheHandedness) {
@@ -257,7 +258,7 @@ TEST(HandRatio, isTheRightHandsShareAndNamesTheHandedness) {
       },
       1, h);
   EXPECT_NEAR(a.number("hand-ratio"), 0.25, 1e-4);
-  EXPECT_EQ(a.value("hand-ratio").note, "handedness left");
+  expectNames(a.value("hand-ratio").note, {"left"});
   const Attempt still(5.0, [](double, InstrumentSample&, InstrumentSample&) {});
   EXPECT_EQ(still.value("hand-ratio").availability, Availability::notApplicable);
 }
@@ -299,15 +300,15 @@ TEST(Phases, cutTheMotionAndAddUp) {
   // Two pairs of identification's points are none: its two pieces have 399 + 99 pairs.
   EXPECT_NEAR(*valueOf(collector, "phase-path-length", "left identification").value, 0.01 * 4.98, 1e-6);
   EXPECT_NEAR(*valueOf(collector, "phase-path-length", "left clipping").value, 0.01 * 1.99, 1e-6);
-  EXPECT_EQ(valueOf(collector, "phase-path-length", "left cutting").reason, "the attempt has no such phase");
+  expectNames(valueOf(collector, "phase-path-length", "left cutting").reason, {"phase"});
   EXPECT_NEAR(*valueOf(collector, "phase-idle-time", "left dissection").value, 1.0, 0.1);
   EXPECT_EQ(*valueOf(collector, "phase-idle-time", "left clipping").value, 0.0);
   EXPECT_EQ(*valueOf(collector, "phase-movements", "left clipping").value, 1.0);
-  EXPECT_EQ(valueOf(collector, "phase-movements", "left clipping").note, "threshold 5.0 mm/s");
+  expectNames(valueOf(collector, "phase-movements", "left clipping").note, {"5.0 mm/s"});
   EXPECT_EQ(valueOf(collector, "phase-path-length", "left clipping").origin, Origin::resimulated);
   const Attempt none(1.0, [](double, InstrumentSample&, InstrumentSample&) {});
-  EXPECT_EQ(none.value("phase-duration").reason, "the scene has no procedure");
-  EXPECT_EQ(none.value("phase-path-length").reason, "the scene has no procedure");
+  expectNames(none.value("phase-duration").reason, {"procedure"});
+  expectNames(none.value("phase-path-length").reason, {"procedure"});
 }
 
 TEST(Force, impulseAndRateOfChange) {
@@ -321,7 +322,7 @@ TEST(Force, impulseAndRateOfChange) {
   EXPECT_NEAR(*valueOf(collector, "force-impulse", "left").value, 9.0 + 6.0, 0.01);
   EXPECT_NEAR(*valueOf(collector, "force-rate-p95", "left").value, 2.0, 1e-9);
   EXPECT_EQ(*valueOf(collector, "force-impulse", "right").value, 0.0);
-  EXPECT_EQ(valueOf(collector, "force-rate-p95", "right").reason, "no force of 0.01 N or more");
+  expectNames(valueOf(collector, "force-rate-p95", "right").reason, {"0.01 N"});
 }
 
 /// All motion checkpoints of a motion made of integers alone: the bits of every compiler and machine.

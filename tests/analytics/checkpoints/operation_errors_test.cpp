@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/analytics/checkpoints/support/operation.h"
+#include "tests/support/message.h"
 
 namespace calot::analytics {
 namespace {
@@ -13,7 +14,7 @@ using namespace support;
 TEST(ClipErrors, countClipsNotFaults) {
   Operation o;
   o.step();
-  expectNotApplicable(o.value("clip-errors"), "no clip was set or dropped");
+  expectNotApplicable(o.value("clip-errors"), {"clip"});
   o.tell(EventKind::clipSet, 1, cysticDuct, 1.0);
   o.step();
   EXPECT_EQ(*o.value("clip-errors").value, 0.0);
@@ -33,8 +34,7 @@ TEST(ClipErrors, countClipsNotFaults) {
   o.step();
   o.end();
   EXPECT_EQ(*o.value("clip-errors").value, 4.0);
-  EXPECT_EQ(o.value("clip-errors").note,
-            "5 set; half on 1, on another clip 1, too near 1, on another vessel 1, dropped 1");
+  expectNames(o.value("clip-errors").note, {"5", "1"});
 }
 
 TEST(Cautery, withoutContactIsDebouncedAndOfOneHand) {
@@ -56,7 +56,7 @@ TEST(Cautery, withoutContactIsDebouncedAndOfOneHand) {
   current(Cautery::withoutContact, 25);  // through the end
   o.end();
   EXPECT_DOUBLE_EQ(*o.value("cautery-without-contact", "right").value, 0.35);
-  expectNotApplicable(o.value("cautery-without-contact", "left"), "no hook in this hand");
+  expectNotApplicable(o.value("cautery-without-contact", "left"), {"hook"});
 }
 
 TEST(Cautery, aHookThatWasPutDownStillCounts) {
@@ -82,12 +82,12 @@ TEST(CriticalView, isThatOfTheFirstClip) {
   o.step();
   o.end();
   EXPECT_EQ(*o.value("critical-view").value, 5.0);
-  EXPECT_EQ(o.value("critical-view").note, "triangle 2, lower third 1, two structures 2");
+  expectNames(o.value("critical-view").note, {"triangle 2", "third 1", "structures 2"});
   Operation never;
   never.judged.triangleCleared = 1;
   never.step();
   never.end(Outcome::abandoned);
-  expectNotAvailable(never.value("critical-view"), "no clip was set: 1 of 6 points at the end");
+  expectNotAvailable(never.value("critical-view"), {"clip", "1", "6"});
 }
 
 TEST(CriticalErrors, areTheProcedures) {
@@ -98,14 +98,14 @@ TEST(CriticalErrors, areTheProcedures) {
   o.step();
   o.end();
   EXPECT_EQ(*o.value("critical-errors").value, 2.0);
-  EXPECT_EQ(o.value("critical-errors").note, "fails the attempt");
+  expectNames(o.value("critical-errors").note, {});
   SceneDescription scene = operationScene();
   scene.procedure = {};
   Operation without(scene);
   without.step();
   without.end();
-  expectNotApplicable(without.value("critical-errors"), "the scene has no procedure");
-  expectNotApplicable(without.value("critical-view"), "the scene has no procedure");
+  expectNotApplicable(without.value("critical-errors"), {"procedure"});
+  expectNotApplicable(without.value("critical-view"), {"procedure"});
 }
 
 }  // namespace

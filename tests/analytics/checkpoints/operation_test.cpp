@@ -5,6 +5,7 @@
 #include <string>
 
 #include "tests/analytics/checkpoints/support/operation.h"
+#include "tests/support/message.h"
 
 namespace calot::analytics {
 namespace {
@@ -51,8 +52,8 @@ TEST(FatRemaining, isWhatTheFirstClipFinds) {
   EXPECT_NEAR(*o.value("fat-remaining").value, 5.8 / 8.0, 1e-12);
   EXPECT_NEAR(*o.value("fat-remaining-inside").value, 0.4 / 2.0, 1e-12);
   EXPECT_NEAR(*o.value("fat-remaining-outside").value, 5.4 / 6.0, 1e-12);
-  EXPECT_EQ(o.value("fat-remaining").note, "42.5 % more were taken after the first clip");
-  EXPECT_EQ(o.value("fat-remaining-inside").note, "20.0 % more were taken after the first clip");
+  expectNames(o.value("fat-remaining").note, {"42.5 %"});
+  expectNames(o.value("fat-remaining-inside").note, {"20.0 %"});
 }
 
 TEST(FatRemaining, recurringPhasesBeforeTheFirstClipCount) {
@@ -79,7 +80,7 @@ TEST(FatRemaining, aClipBeforeAnyCarvingFindsAllOfIt) {
   carve(o, 2.0, 0.0);
   o.end();
   EXPECT_DOUBLE_EQ(*o.value("fat-remaining-inside").value, 1.0);
-  EXPECT_EQ(o.value("fat-remaining-inside").note, "100.0 % more were taken after the first clip");
+  expectNames(o.value("fat-remaining-inside").note, {"100.0 %"});
 }
 
 TEST(FatRemaining, withoutAClipOnlyACompletedAttemptHasIt) {
@@ -91,9 +92,9 @@ TEST(FatRemaining, withoutAClipOnlyACompletedAttemptHasIt) {
     return o.value("fat-remaining");
   };
   EXPECT_DOUBLE_EQ(*of(Outcome::completed).value, 0.75);
-  EXPECT_EQ(of(Outcome::completed).note, "no clip was set: at the end of the attempt");
+  expectNames(of(Outcome::completed).note, {"clip"});
   for (const Outcome outcome : {Outcome::abandoned, Outcome::stopped, Outcome::timeLimit, Outcome::technicalFailure}) {
-    expectNotAvailable(of(outcome), "identification was not finished: no clip was set, 75.0 % left");
+    expectNotAvailable(of(outcome), {"clip", "75.0 %"});
   }
 }
 
@@ -104,18 +105,18 @@ TEST(FatRemaining, saysWhereThereIsNone) {
   unmarked.step();
   unmarked.end();
   EXPECT_DOUBLE_EQ(*unmarked.value("fat-remaining").value, 1.0);
-  expectNotApplicable(unmarked.value("fat-remaining-inside"), "the scene marks no region to be cleared");
+  expectNotApplicable(unmarked.value("fat-remaining-inside"), {"region"});
   scene.fat.clear();
   Operation without(scene);
   without.now.fat.clear();
   without.step();
   without.end();
-  expectNotApplicable(without.value("fat-remaining"), "the scene has no fat");
+  expectNotApplicable(without.value("fat-remaining"), {"fat"});
   Operation later;
   later.next = 500;
   later.step();
   later.end();
-  expectNotAvailable(later.value("fat-remaining"), "the steps do not begin with the attempt's first");
+  expectNotAvailable(later.value("fat-remaining"), {"steps"});
 }
 
 TEST(CysticContact, sumsOverVesselsAndInstruments) {
@@ -151,8 +152,7 @@ TEST(CysticContact, isZeroWithoutContactAndNotApplicableWithoutVessels) {
   without.now.hand[0].touching = ~0U;
   without.steps(10);
   without.end();
-  expectNotApplicable(without.value("cystic-contact-time"),
-                      "the scene has no duct or artery that enters a gallbladder");
+  expectNotApplicable(without.value("cystic-contact-time"), {"duct", "artery"});
 }
 
 TEST(CysticContact, tellsOfAStretchedClock) {
@@ -160,14 +160,14 @@ TEST(CysticContact, tellsOfAStretchedClock) {
   o.tell(EventKind::clockStretched, 255, 0, 0.34);
   o.step();
   o.end();
-  EXPECT_EQ(o.value("cystic-contact-time").note, "v2 0.00 s, v4 0.00 s; tick clock stretched by 0.340 s");
+  expectNames(o.value("cystic-contact-time").note, {"v2 0.00 s, v4 0.00 s", "0.340 s"});
 }
 
 TEST(Connective, remainingIsResidueOnceFreed) {
   Operation o;
   o.now.connective[0] = {0.5, 0.4, 0.1, 0.0, 3};
   o.step();
-  expectNotAvailable(o.value("connective-remaining"), "the gallbladder was not freed: 50.0 % of its bed attached");
+  expectNotAvailable(o.value("connective-remaining"), {"gallbladder", "50.0 %"});
   EXPECT_DOUBLE_EQ(*o.value("connective-torn").value, 0.1);
   o.now.connective[0] = {0.0, 0.875, 0.125, 0.0, 0};
   o.step();
@@ -190,15 +190,15 @@ TEST(Connective, isThatOfTheGallbladder) {
   Operation without(scene);
   without.step();
   without.end();
-  expectNotApplicable(without.value("connective-remaining"), "no connective tissue holds a gallbladder in this scene");
-  expectNotApplicable(without.value("connective-torn"), "no connective tissue holds a gallbladder in this scene");
+  expectNotApplicable(without.value("connective-remaining"), {"gallbladder"});
+  expectNotApplicable(without.value("connective-torn"), {"gallbladder"});
 }
 
 TEST(BurnPerBed, isTheCharForTheWorkDone) {
   Operation o;
   o.now.organ[0].charredArea = 1e-5;
   o.step();
-  expectNotApplicable(o.value("burn-per-bed"), "less than 1 % of the bed came free");
+  expectNotApplicable(o.value("burn-per-bed"), {"1 %", "bed"});
   o.now.organ[0].charredArea = 2e-5;
   o.now.organ[1].charredArea = 1e-5;
   o.now.connective[0] = {0.4, 0.5, 0.1, 0.0, 3};
@@ -213,7 +213,7 @@ TEST(BurnPerBed, isTheCharForTheWorkDone) {
   Operation without(scene);
   without.step();
   without.end();
-  expectNotApplicable(without.value("burn-per-bed"), "no connective tissue holds a gallbladder in this scene");
+  expectNotApplicable(without.value("burn-per-bed"), {"gallbladder"});
 }
 
 TEST(OrganBurned, isAShareOfTheWholeSkin) {
@@ -232,7 +232,7 @@ TEST(OrganBurned, isAShareOfTheWholeSkin) {
   other.step();
   other.end();
   EXPECT_EQ(*other.value("organ-burned", "organ-a").value, 0.0);
-  expectNotApplicable(other.value("organ-burned", "liver"), "the scene has no liver");
+  expectNotApplicable(other.value("organ-burned", "liver"), {"liver"});
   CheckpointCollector plain(header(), scene());
   feed(plain, 1, [](std::uint64_t, TickSamples&, recorder::TickOutcome&) {});
   EXPECT_EQ(*valueOf(plain, "organ-burned", "liver").value, 0.0);
@@ -246,8 +246,7 @@ TEST(OrganPerforations, areCountedWhereThereIsAWall) {
   o.steps(3);
   o.end();
   EXPECT_EQ(*o.value("organ-perforations", "organ-b").value, 1.0);
-  expectNotApplicable(o.value("organ-perforations", "organ-a"),
-                      "the scene gives this organ no wall that could be opened");
+  expectNotApplicable(o.value("organ-perforations", "organ-a"), {"wall"});
 }
 
 TEST(Results, ofOlderVersionsAreNotApplicableWhereTheyAreSilent) {
@@ -262,7 +261,7 @@ TEST(Results, ofOlderVersionsAreNotApplicableWhereTheyAreSilent) {
     o.now.connective.resize(version == 1 ? 0 : 1);
     o.steps(3);
     o.end();
-    const std::string why = "not recorded in results of version " + std::to_string(version);
+    const std::vector<std::string> why{"version " + std::to_string(version)};
     for (const char* name : {"fat-remaining", "fat-remaining-inside", "fat-remaining-outside", "cystic-contact-time",
                              "clip-errors", "critical-view", "critical-errors"}) {
       expectNotApplicable(o.value(name), why);

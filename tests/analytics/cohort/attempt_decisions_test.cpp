@@ -9,17 +9,16 @@
 #include <vector>
 
 #include "analytics/cohort/cohort_database.h"
-#include "analytics/cohort/declared_tables.h"
+#include "analytics/cohort/tables.h"
 #include "recorder/base/errors.h"
 #include "tests/analytics/cohort/support/cohort_support.h"
-#include "tests/analytics/support/refusal.h"
+#include "tests/support/fault.h"
 
 namespace calot::analytics {
 namespace {
 
 using Access = CohortDatabase::Access;
 using support::attemptOf;
-using support::expectRefusal;
 using support::Folder;
 using support::uuidOf;
 using support::valuesOf;
@@ -28,16 +27,16 @@ TEST(AttemptDecisions, exclusionsAreKeptWithReasonAndAuthorAndAudited) {
   const Folder folder;
   const std::string path = folder.file("c.db");
   CohortDatabase database(path, Access::create);
-  database.upsertAttempt(attemptOf(1, "skilled"));
+  database.storeAttempt(attemptOf(1, "skilled"), {});
   database.excludeAttempts({uuidOf(1)}, "fire alarm", "instructor 2");
   EXPECT_TRUE(database.attempt(uuidOf(1))->excluded);
   EXPECT_EQ(database.attempt(uuidOf(1))->exclusionReason, "fire alarm (instructor 2)");
   database.includeAttempts({uuidOf(1)}, "heard nothing", "instructor 2");
   EXPECT_FALSE(database.attempt(uuidOf(1))->excluded);
-  expectRefusal(ErrorKind::refused, "no attempt", [&] { database.excludeAttempts({uuidOf(9)}, "x", "y"); });
-  expectRefusal(ErrorKind::refused, "not excluded", [&] { database.includeAttempts({uuidOf(1)}, "x", "y"); });
-  expectRefusal(ErrorKind::invalid, "a reason is expected", [&] { database.excludeAttempts({uuidOf(1)}, " ", "y"); });
-  expectRefusal(ErrorKind::invalid, "name who decides", [&] { database.includeAttempts({uuidOf(1)}, "x", ""); });
+  expectFault(ErrorKind::refused, "", {uuidOf(9)}, [&] { database.excludeAttempts({uuidOf(9)}, "x", "y"); });
+  expectFault(ErrorKind::refused, "", {uuidOf(1)}, [&] { database.includeAttempts({uuidOf(1)}, "x", "y"); });
+  expectFault(ErrorKind::invalid, "", {"exclusion"}, [&] { database.excludeAttempts({uuidOf(1)}, " ", "y"); });
+  expectFault(ErrorKind::invalid, "", {"exclusion"}, [&] { database.includeAttempts({uuidOf(1)}, "x", ""); });
   SQLite::Database raw(path, SQLite::OPEN_READWRITE);
   EXPECT_EQ(raw.execAndGet("SELECT count(*) FROM audit WHERE action LIKE 'attempt-%'").getInt(), 3);
   EXPECT_THROW(raw.exec("DELETE FROM audit"), SQLite::Exception);
@@ -63,9 +62,9 @@ TEST(AttemptDecisions, tagsAreKeptOnceAndAudited) {
   EXPECT_EQ(database.tagAttempts({uuidOf(1)}, longest, "me"), 1U) << "40 characters, 41 bytes";
   for (const std::string& wrong :
        {std::string(), std::string("two words"), std::string("a,b"), std::string("a\nb"), longest + "a"})
-    expectRefusal(ErrorKind::invalid, "one word", [&] { database.tagAttempts({uuidOf(1)}, wrong, "me"); });
-  expectRefusal(ErrorKind::invalid, "name who decides", [&] { database.tagAttempts({uuidOf(1)}, "x", " "); });
-  expectRefusal(ErrorKind::refused, "no attempt", [&] { database.tagAttempts({uuidOf(1), uuidOf(9)}, "x", "me"); });
+    expectFault(ErrorKind::invalid, "", {"tag", "1", "40"}, [&] { database.tagAttempts({uuidOf(1)}, wrong, "me"); });
+  expectFault(ErrorKind::invalid, "", {"tag"}, [&] { database.tagAttempts({uuidOf(1)}, "x", " "); });
+  expectFault(ErrorKind::refused, "", {uuidOf(9)}, [&] { database.tagAttempts({uuidOf(1), uuidOf(9)}, "x", "me"); });
   EXPECT_EQ(database.attempt(uuidOf(1))->tags.size(), 2U) << "all or none";
   SQLite::Database raw(path, SQLite::OPEN_READWRITE);
   EXPECT_EQ(raw.execAndGet("SELECT count(*) FROM audit WHERE action IN ('attempt-tag', 'attempt-untag')").getInt(), 6);
@@ -79,7 +78,7 @@ TEST(AttemptFields, areTheDeclaredColumns) {
   std::map<std::string, FieldValue> fields;
   for (const auto& [name, value] : fieldsOf(database.listAttempts().front()))
     EXPECT_TRUE(fields.emplace(name, value).second) << name;
-  const std::vector<const DeclaredTable*> tables{&attemptTable(), &recordingTable(), &verificationTable()};
+  const std::vector<const DeclaredTable*> tables{&attemptTable, &recordingTable, &verificationTable};
   for (const DeclaredTable* table : tables) {
     for (const DeclaredColumn& column : table->columns) {
       if (column.member.value != nullptr) {

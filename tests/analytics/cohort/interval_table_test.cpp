@@ -11,13 +11,12 @@
 #include "analytics/cohort/merge.h"
 #include "recorder/base/errors.h"
 #include "tests/analytics/cohort/support/cohort_support.h"
-#include "tests/analytics/support/refusal.h"
+#include "tests/support/fault.h"
 
 namespace calot::analytics {
 namespace {
 
 using support::attemptOf;
-using support::expectRefusal;
 using support::Folder;
 using support::uuidOf;
 using support::valuesOf;
@@ -62,7 +61,7 @@ TEST(Intervals, areOfPresentValues) {
   database.storeValues(uuidOf(1), valuesOf(std::nextafter(10.0, 11.0), 0.3));
   ASSERT_EQ(database.intervals(uuidOf(1)).size(), 1U) << "of the changed value there is none";
   EXPECT_EQ(database.intervals(uuidOf(1))[0].name, "path-length");
-  expectRefusal(ErrorKind::refused, "no attempt", [&] { database.storeIntervals(uuidOf(9), made); });
+  expectFault(ErrorKind::refused, "", {uuidOf(9)}, [&] { database.storeIntervals(uuidOf(9), made); });
 }
 
 /// Two sets of intervals are no conflict: those that are there stay, and fill what is empty.

@@ -6,12 +6,12 @@
 
 #include "analytics/design/design_data.h"
 #include "tests/analytics/cohort/support/cohort_support.h"
-#include "tests/analytics/support/refusal.h"
+#include "tests/support/fault.h"
+#include "tests/support/message.h"
 
 namespace calot::analytics {
 namespace {
 
-using support::expectRefusal;
 using support::humanAttempt;
 
 DesignChoices choicesOf(Design design) {
@@ -85,13 +85,12 @@ TEST_F(CohortDesign, occasionsAreNumberedByStart) {
 
 TEST_F(CohortDesign, oneEachWantsARule) {
   DesignChoices choices = choicesOf(Design::severalGroups);
-  expectRefusal(ErrorKind::refused, "participant \"P0\" has 3 attempts", [&] { (void)read(choices); },
-                {{Remedy::chooseAttemptRule}});
+  expectFault(ErrorKind::refused, "", {"\"P0\"", "3"}, [&] { (void)read(choices); }, {{Remedy::chooseAttemptRule}});
   choices.attemptRule = AttemptRule::first;
   const DesignData data = read(choices);
   EXPECT_EQ(data.groups.size(), 3U);
   for (const DesignFigure& f : data.figures) EXPECT_LE(f.values.size(), 6U) << f.name;
-  EXPECT_EQ(data.attemptRule, "the first of a participant's attempts");
+  expectNames(data.attemptRule, {"first"});
   std::map<std::string, std::size_t> group;
   for (const DesignPerson& p : data.people) group[p.name] = p.group;
   EXPECT_EQ(group["P0"], group["P1"]);
@@ -138,7 +137,7 @@ TEST_F(CohortDesign, valuesOfTwoVersionsAreNotMixedUnasked) {
   cohort_.storeValues(support::uuidOf(1), values);
   DesignChoices choices = choicesOf(Design::severalGroups);
   choices.attemptRule = AttemptRule::first;
-  expectRefusal(ErrorKind::refused, "values of 2 versions", [&] { (void)read(choices); });
+  expectFault(ErrorKind::refused, "", {"2"}, [&] { (void)read(choices); });
   options_.mixKeys = true;
   EXPECT_FALSE(read(choices).remarks.empty());
 }

@@ -16,14 +16,14 @@
 #include <set>
 #include <span>
 
-#include "analytics/cohort/assessment_database.h"
+#include "analytics/cohort/cohort_database.h"
 #include "analytics/cohort/registers.h"
 #include "analytics/cohort/withdraw.h"
 #include "analytics/interchange/bundle_names.h"
 #include "recorder/base/csv.h"
-#include "recorder/base/file_bytes.h"
+#include "recorder/base/files.h"
 #include "tests/analytics/cohort/support/cohort_support.h"
-#include "tests/analytics/support/refusal.h"
+#include "tests/support/fault.h"
 
 namespace calot::analytics {
 namespace {
@@ -32,7 +32,6 @@ namespace fs = std::filesystem;
 using Access = CohortDatabase::Access;
 using nlohmann::json;
 using support::attemptOf;
-using support::expectRefusal;
 using support::Folder;
 using support::humanAttempt;
 using support::uuidOf;
@@ -72,7 +71,7 @@ class Bundles : public testing::Test {
     database_.storeAttempt(broken, {});
     database_.storeAttempt(attemptOf(85, "skilled"), valuesOf(1, 1));
     withdraw(path_, planWithdrawal(path_, "Leaver-2", WithdrawalScope::all));
-    AssessmentDatabase assessment(path_, Access::write);
+    CohortDatabase assessment(path_, Access::write);
     const std::string form = "{}";
     const StoredDocument document{"goals", 1, recorder::sha256Hex(std::as_bytes(std::span(form))), form};
     assessment.storeRating(document, {"goals", 1, uuidOf(1), "Rater-Kay", "", {{"autonomy", 4}}, ""}, false);
@@ -118,12 +117,13 @@ TEST_F(Bundles, takeWhoConsentedAndCountTheOthers) {
   EXPECT_EQ(b.attempts, 11U);
   EXPECT_EQ(b.recruited, 16U);
   EXPECT_EQ(b.smallest, 3U);
-  std::map<std::string, std::uint64_t> left;
-  for (const FlowRow& row : b.leftOut) left[row.reason] = row.attempts;
-  EXPECT_EQ(left, (std::map<std::string, std::uint64_t>{{"made by a performer", 1},
-                                                        {"no consent to the scope", 2},
-                                                        {"excluded by hand", 1},
-                                                        {"recording diverged or damaged", 1}}));
+  const std::map<std::string, std::uint64_t> left{{"performer", 1}, {"consent", 2}, {"excluded", 1}, {"diverged", 1}};
+  EXPECT_EQ(b.leftOut.size(), left.size());
+  for (const auto& [reason, attempts] : left) {
+    std::uint64_t found = 0;
+    for (const FlowRow& row : b.leftOut) found += holdsToken(row.reason, reason) ? row.attempts : 0;
+    EXPECT_EQ(found, attempts) << reason;
+  }
   EXPECT_EQ(table("out", "participants").rows.size(), 6U);
   EXPECT_EQ(table("out", "attempts").rows.size(), 11U);
   EXPECT_EQ(table("out", "values").rows.size(), 33U);
@@ -248,12 +248,12 @@ TEST_F(Bundles, areNotedForWithdrawalsAndForSyntheticOnesMarked) {
 TEST_F(Bundles, areRefusedWhereTheyWouldTell) {
   BundleOptions teaching;
   teaching.scope = "filming";
-  expectRefusal(ErrorKind::refused, "none of 16 attempts can be handed out", [&] { write("out", teaching); });
-  expectRefusal(ErrorKind::invalid, "already exists", [&] { write(""); });
+  expectFault(ErrorKind::refused, "", {"16"}, [&] { write("out", teaching); });
+  expectFault(ErrorKind::invalid, "", {}, [&] { write(""); });
   ParticipantChange change;
   change.arm = "with SITE-7302";
   database_.setParticipant("SITE-7301", change);
-  expectRefusal(ErrorKind::refused, "participants.csv would hold a pseudonym", [&] { write("out"); });
+  expectFault(ErrorKind::refused, "", {"participants.csv"}, [&] { write("out"); });
   EXPECT_FALSE(fs::exists(folder_.file("out")));
   for (const auto& entry : fs::directory_iterator(fs::path(path_).parent_path()))
     EXPECT_EQ(entry.path().string().find(".part"), std::string::npos) << entry.path();

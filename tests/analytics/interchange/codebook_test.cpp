@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The codebook against what it explains: the registry, the database's schema, the files that are written.
-#include "analytics/interchange/cohort_tables.h"
+#include "analytics/interchange/export_tables.h"
 
 #include <gtest/gtest.h>
 #include <SQLiteCpp/SQLiteCpp.h>
@@ -12,18 +12,17 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "analytics/cohort/declared_tables.h"
 #include "analytics/cohort/tables.h"
 #include "recorder/base/csv.h"
 #include "tests/analytics/cohort/support/cohort_support.h"
-#include "tests/analytics/support/refusal.h"
+#include "tests/support/fault.h"
+#include "tests/support/message.h"
 
 namespace calot::analytics {
 namespace {
 
 using Access = CohortDatabase::Access;
 using nlohmann::json;
-using support::expectRefusal;
 using support::Folder;
 using support::humanAttempt;
 using support::valuesOf;
@@ -87,7 +86,7 @@ TEST(Codebook, everyFormSaysTheSame) {
     EXPECT_EQ(variables[i].at("type"), csv.rows[i].cells[csv.column("type")]);
     EXPECT_EQ(variables[i].contains("formula"), entries[i].version > 0);
   }
-  EXPECT_EQ(entries.back().type, "bytes in hexadecimal");
+  expectNames(entries.back().type, {"hexadecimal"});
   EXPECT_EQ(entries.back().title, "") << "what nobody has explained stays without a word";
 }
 
@@ -132,10 +131,11 @@ TEST(CohortTables, giveEveryRowBackBothWays) {
   // Noted for who withdraws.
   EXPECT_EQ(raw.execAndGet("SELECT kind || ' ' || count(*) FROM export JOIN export_attempt ON export = id").getString(),
             "cohort-export 1");
-  expectRefusal(ErrorKind::invalid, "already exists", [&] { (void)exportCohort(path, out); });
-  expectRefusal(ErrorKind::invalid, "does not exist", [&] { (void)exportCohort(path, folder.file("no/out")); });
-  expectRefusal(ErrorKind::damaged, "no such cohort",
-                [&] { (void)exportCohort(folder.file("n.db"), folder.file("o")); });
+  expectFault(ErrorKind::invalid, out, {}, [&] { (void)exportCohort(path, out); });
+  expectFault(ErrorKind::invalid, folder.file("no/out"), {folder.file("no")},
+              [&] { (void)exportCohort(path, folder.file("no/out")); });
+  expectFault(ErrorKind::damaged, folder.file("n.db"), {},
+              [&] { (void)exportCohort(folder.file("n.db"), folder.file("o")); });
   for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::path(path).parent_path()))
     EXPECT_EQ(entry.path().string().find(".part"), std::string::npos) << entry.path();
 }

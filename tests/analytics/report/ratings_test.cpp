@@ -7,7 +7,7 @@
 #include "analytics/report/plots.h"
 #include "tests/analytics/assessment/support/texts.h"
 #include "tests/analytics/cohort/support/cohort_support.h"
-#include "tests/analytics/support/refusal.h"
+#include "tests/support/fault.h"
 
 namespace calot::analytics {
 namespace {
@@ -15,7 +15,6 @@ namespace {
 using Access = CohortDatabase::Access;
 using nlohmann::json;
 using support::bytesOf;
-using support::expectRefusal;
 using support::Folder;
 using support::humanAttempt;
 using support::uuidOf;
@@ -51,35 +50,35 @@ TEST(RatingForm, theQuestionnaireIsThePapersTable) {
 
 TEST(RatingForm, everyFaultHasItsPlace) {
   const json good = support::jsonOf("assets/forms/goals.json");
-  const auto fault = [&](const std::string& words, auto change) {
+  const auto fault = [&](const std::string& place, const std::vector<std::string>& values, auto change) {
     json bad = good;
     change(bad);
-    expectRefusal(ErrorKind::damaged, "f.json: " + words,
-                  [&] { (void)parseRatingForm(bytesOf(bad.dump()), "f.json"); });
+    expectFault(ErrorKind::damaged, "f.json: " + place, values,
+                [&] { (void)parseRatingForm(bytesOf(bad.dump()), "f.json"); });
   };
-  fault("/sections/0/items/1: an item of this key",
-        [](json& f) { f["sections"][0]["items"][1]["key"] = "depth-perception"; });
-  fault("/sections/0/items/0/anchors: 2 entries; from 5 to 5", [](json& f) {
+  fault("/sections/0/items/1", {}, [](json& f) { f["sections"][0]["items"][1]["key"] = "depth-perception"; });
+  fault("/sections/0/items/0/anchors", {"2", "5"}, [](json& f) {
     f["sections"][0]["items"][0]["anchors"] = {"bad", "good"};
   });
-  fault("/scale: \"least\" is not below", [](json& f) { f["scale"] = {{"least", 1}, {"most", 1}}; });
-  fault("/about: unknown word; known are attempt, simulator", [](json& f) { f["about"] = "rater"; });
-  fault("/sections: 0 entries", [](json& f) { f["sections"] = json::array(); });
+  fault("/scale", {"\"least\""}, [](json& f) { f["scale"] = {{"least", 1}, {"most", 1}}; });
+  fault("/about", {"attempt, simulator"}, [](json& f) { f["about"] = "rater"; });
+  fault("/sections", {"0"}, [](json& f) { f["sections"] = json::array(); });
 }
 
 TEST(RatingForm, answersAreCheckedAgainstTheForm) {
   const RatingForm form = shipped("competence");
   EXPECT_EQ(answersOf(form, {{"competent", "1"}}).at("competent"), 1);
-  const auto fault = [&](const std::string& words, const std::vector<std::pair<std::string, std::string>>& given) {
-    expectRefusal(ErrorKind::invalid, words, [&] { (void)answersOf(form, given); });
+  const auto fault = [&](const std::vector<std::string>& values,
+                         const std::vector<std::pair<std::string, std::string>>& given) {
+    expectFault(ErrorKind::invalid, "", values, [&] { (void)answersOf(form, given); });
   };
-  fault("no such item; it has competent", {{"able", "1"}});
-  fault("\"2\" is not a whole number from 0 to 1", {{"competent", "2"}});
-  fault("is not a whole number", {{"competent", "0.5"}});
-  fault("is not a whole number", {{"competent", "\n"}});
-  fault("answered twice", {{"competent", "1"}, {"competent", "0"}});
-  fault("not answered", {});
-  fault("every item was left blank", {{"competent", "-"}});
+  fault({"able", "competent"}, {{"able", "1"}});
+  fault({"\"2\"", "0", "1"}, {{"competent", "2"}});
+  fault({"\"0.5\"", "0", "1"}, {{"competent", "0.5"}});
+  fault({"0", "1"}, {{"competent", "\n"}});
+  fault({"competent"}, {{"competent", "1"}, {"competent", "0"}});
+  fault({"competent"}, {});
+  fault({form.name}, {{"competent", "-"}});
 }
 
 TEST(Ratings, areStoredOnceAndReplacedWhenAsked) {
@@ -87,24 +86,23 @@ TEST(Ratings, areStoredOnceAndReplacedWhenAsked) {
   const std::string path = folder.file("c.db");
   CohortDatabase cohort(path, Access::create);
   cohort.storeAttempt(humanAttempt(1, "P1"), {});
-  AssessmentDatabase database(path, Access::write);
+  CohortDatabase database(path, Access::write);
   RatingForm form = shipped("competence");
   Rating rating{"", 1, uuidOf(1), "R1", "", {{"competent", 0}}, ""};
   database.storeRating(stored(form), rating, false);
-  expectRefusal(ErrorKind::refused, "was rated with competence",
-                [&] { database.storeRating(stored(form), rating, false); });
+  expectFault(ErrorKind::refused, "", {"competence"}, [&] { database.storeRating(stored(form), rating, false); });
   rating.answers["competent"] = 1;
   database.storeRating(stored(form), rating, true);
   ASSERT_EQ(database.ratings().size(), 1U);
   EXPECT_EQ(database.ratings()[0].answers.at("competent"), 1);
   rating.attempt = uuidOf(2);
-  expectRefusal(ErrorKind::refused, "no attempt", [&] { database.storeRating(stored(form), rating, false); });
+  expectFault(ErrorKind::refused, path, {uuidOf(2)}, [&] { database.storeRating(stored(form), rating, false); });
   rating.attempt = uuidOf(1);
   rating.rater.clear();
-  expectRefusal(ErrorKind::invalid, "pseudonym", [&] { database.storeRating(stored(form), rating, false); });
+  expectFault(ErrorKind::invalid, "", {"pseudonym"}, [&] { database.storeRating(stored(form), rating, false); });
   rating.rater = "R2";
   form.sha256[0] = form.sha256[0] == '0' ? '1' : '0';
-  expectRefusal(ErrorKind::refused, "another wording", [&] { database.storeRating(stored(form), rating, false); });
+  expectFault(ErrorKind::refused, "", {"competence"}, [&] { database.storeRating(stored(form), rating, false); });
 }
 
 TEST(Ratings, agreementIsThatOfShroutAndFleiss) {

@@ -20,7 +20,8 @@
 #include "recorder/base/errors.h"
 #include "tests/analytics/cohort/support/cohort_support.h"
 #include "tests/analytics/report/support/study_support.h"
-#include "tests/analytics/support/refusal.h"
+#include "tests/support/fault.h"
+#include "tests/support/message.h"
 
 namespace calot::analytics {
 namespace {
@@ -28,7 +29,6 @@ namespace {
 using Access = CohortDatabase::Access;
 using support::addPerformers;
 using support::attemptOf;
-using support::expectRefusal;
 using support::Folder;
 using support::humanAttempt;
 using support::performers;
@@ -64,7 +64,7 @@ TEST(Study, comparesPerformersAndWatermarksThem) {
   EXPECT_DOUBLE_EQ(*left.group[0].median, 22.0) << "stored in m, shown in mm";
   const StudyRow& right = rowOf(study, "path-length", "right");
   EXPECT_FALSE(right.test);
-  EXPECT_EQ(right.test.reason(), "both groups are empty");
+  expectNames(right.test.reason(), {"groups"});
   EXPECT_EQ(right.group[0].missing, 5U);
   const std::string text = textOf(study);
   EXPECT_EQ(text.rfind("SYNTHETIC", 0), 0U) << "the watermark comes first";
@@ -74,7 +74,7 @@ TEST(Study, comparesPerformersAndWatermarksThem) {
   EXPECT_NEAR(time.area->value.a, 0.15, 1e-12) << "shorter was expected, and longer it is";
   EXPECT_EQ(time.asHypothesised, false);
   EXPECT_NE(text.find("0.150"), std::string::npos);
-  EXPECT_NE(text.find("no instrument in this hand"), std::string::npos);
+  expectHolds(text, {"instrument"});
   EXPECT_EQ(text.find("nan"), std::string::npos);
 }
 
@@ -111,7 +111,7 @@ TEST(Study, syntheticAttemptsStayOutUnlessAskedFor) {
   addPerformers(database);
   StudyOptions options = performers;
   options.includeSynthetic = false;
-  expectRefusal(ErrorKind::refused, "9 synthetic (performer)", [&] { (void)makeStudy(database, options); });
+  expectFault(ErrorKind::refused, "", {"9", "synthetic"}, [&] { (void)makeStudy(database, options); });
 }
 
 TEST(Study, countsWhyAttemptsStayOut) {
@@ -137,18 +137,23 @@ TEST(Study, countsWhyAttemptsStayOut) {
   const Study study = makeStudy(database, performers);
   EXPECT_EQ(study.recruited, 19U);
   EXPECT_EQ(study.analysed, 9U);
+  const char* const reasons[] = {"fire alarm (instructor)",
+                                 "diverged",
+                                 "verified",
+                                 "incomplete",
+                                 "failure",
+                                 "practice",
+                                 "branch",
+                                 "golden",
+                                 "group"};
+  ASSERT_EQ(study.flow.size(), std::size(reasons));
   std::uint64_t out = 0;
-  std::string reasons;
-  for (const FlowRow& row : study.flow) {
-    out += row.attempts;
-    reasons += fmt::format("{}:{};", row.reason, row.attempts);
+  for (std::size_t i = 0; i < study.flow.size(); ++i) {
+    expectNames(study.flow[i].reason, {reasons[i]});
+    EXPECT_EQ(study.flow[i].attempts, i == 5 ? 2U : 1U) << reasons[i];
+    out += study.flow[i].attempts;
   }
   EXPECT_EQ(out + study.analysed, study.recruited);
-  EXPECT_EQ(reasons,
-            "excluded by hand: fire alarm (instructor):1;recording diverged or damaged:1;not verified yet:1;recording "
-            "incomplete:1;technical "
-            "failure:1;"
-            "practice:2;branch of another attempt:1;golden recording:1;no group:1;");
   EXPECT_DOUBLE_EQ(*rowOf(study, "elapsed-time", "").group[0].mean, 22.0);
   StudyOptions withPractice = performers;
   withPractice.includePractice = true;
@@ -171,8 +176,7 @@ TEST(Study, takesOneValueAParticipant) {
   database.storeAttempt(humanAttempt(4, "E2"), valuesOf(50, 0.05));
   database.storeAttempt(humanAttempt(5, "N1"), valuesOf(100, 0.1));
   database.storeAttempt(humanAttempt(6, "N2"), valuesOf(120, 0.2));
-  expectRefusal(ErrorKind::refused, "participant \"E1\" has 3 attempts (1 participant with several)",
-                [&] { (void)makeStudy(database, {}); });
+  expectFault(ErrorKind::refused, "", {"\"E1\"", "3", "1"}, [&] { (void)makeStudy(database, {}); });
   StudyOptions mean;
   mean.attemptRule = AttemptRule::mean;
   const Study study = makeStudy(database, mean);
@@ -186,7 +190,7 @@ TEST(Study, takesOneValueAParticipant) {
   EXPECT_EQ(time.participants[0], (std::vector<std::string>{"E1", "E2"}));
   EXPECT_EQ(time.group[0].missing, 0U);
   EXPECT_EQ(time.group[0].partial, 1U) << "and whose mean lacks it is said";
-  EXPECT_NE(textOf(study).find("the mean of 1 of 2 expert lacks some of their attempts"), std::string::npos);
+  expectHolds(textOf(study), {"1 of 2 expert"});
   EXPECT_NEAR(time.test->p, 1.0 / 3.0, 1e-15);
   StudyOptions first;
   first.attemptRule = AttemptRule::first;
@@ -194,7 +198,7 @@ TEST(Study, takesOneValueAParticipant) {
   EXPECT_EQ(rowOf(firsts, "elapsed-time", "").values[0], (std::vector<double>{30.0, 50.0}));
   EXPECT_EQ(firsts.analysed, 4U);
   ASSERT_EQ(firsts.flow.size(), 1U);
-  EXPECT_EQ(firsts.flow[0].reason, "later attempt of a participant (the first counts)");
+  expectNames(firsts.flow[0].reason, {"later"});
   EXPECT_EQ(firsts.flow[0].attempts, 2U);
 }
 
@@ -222,8 +226,7 @@ TEST(Study, aFirstAttemptWithoutAValueIsNotReplacedByALaterOne) {
   AttemptRecord sameTime = humanAttempt(9, "N1");
   sameTime.startUtc = humanAttempt(4, "N1").startUtc;
   database.storeAttempt(sameTime, valuesOf(1, 1));
-  expectRefusal(ErrorKind::refused, "two attempts of participant \"N1\" start at",
-                [&] { (void)makeStudy(database, first); });
+  expectFault(ErrorKind::refused, "", {"\"N1\""}, [&] { (void)makeStudy(database, first); });
 }
 
 TEST(Study, adjustsOverTheFamilyAndCorrelatesWithTheDuration) {
@@ -243,12 +246,12 @@ TEST(Study, adjustsOverTheFamilyAndCorrelatesWithTheDuration) {
   EXPECT_DOUBLE_EQ(path.withDuration->rho, -1.0);
   EXPECT_NEAR(path.withDuration->p, 2.0 / 40320.0, 1e-15);
   EXPECT_EQ(path.withDurationPairs, 8U);
-  EXPECT_EQ(rowOf(study, "attempt-duration", "").test.reason(), "it repeats the elapsed time");
+  expectNames(rowOf(study, "attempt-duration", "").test.reason(), {"elapsed time"});
   StudyOptions named;
   named.family = {"attempt-duration"};
   const Study withDuration = makeStudy(database, named);
   EXPECT_TRUE(rowOf(withDuration, "attempt-duration", "").holm) << "who names it has it tested";
-  EXPECT_EQ(rowOf(withDuration, "attempt-duration", "").withDuration.reason(), "it is the duration");
+  expectNames(rowOf(withDuration, "attempt-duration", "").withDuration.reason(), {"duration"});
   // Two tests (the right hand has none): Holm by hand.
   std::vector<double> p;
   for (const StudyRow& row : study.rows) {
@@ -269,9 +272,9 @@ TEST(Study, adjustsOverTheFamilyAndCorrelatesWithTheDuration) {
   const Study narrower = makeStudy(database, one);
   EXPECT_DOUBLE_EQ(*rowOf(narrower, "elapsed-time", "").holm, rowOf(narrower, "elapsed-time", "").test->p);
   EXPECT_FALSE(rowOf(narrower, "path-length", "left").holm);
-  EXPECT_NE(narrower.family.find("1 rank test of elapsed-time"), std::string::npos);
+  expectNames(narrower.family, {"1", "elapsed-time"});
   one.family = {"elapsed"};
-  expectRefusal(ErrorKind::invalid, "there is no row \"elapsed\"", [&] { (void)makeStudy(database, one); });
+  expectFault(ErrorKind::invalid, "", {"\"elapsed\""}, [&] { (void)makeStudy(database, one); });
 }
 
 /// Figures of phases would quadruple the family of whoever did not ask for them.
@@ -295,9 +298,8 @@ TEST(Study, phasesAreInWhereTheyAreAskedFor) {
     return names;
   };
   const auto says = [](const Study& study) {
-    const bool remark = std::any_of(study.remarks.begin(), study.remarks.end(), [](const std::string& r) {
-      return r.find("single phases are left out") != std::string::npos;
-    });
+    const bool remark = std::any_of(study.remarks.begin(), study.remarks.end(),
+                                    [](const std::string& r) { return holdsToken(r, "single phases"); });
     EXPECT_EQ(remark, study.phasesLeftOut);
     return remark;
   };
@@ -335,15 +337,14 @@ TEST(Study, takesTheParticipantsOfANamedCohortAlone) {
   EXPECT_EQ(study.recruited, 9U);
   EXPECT_EQ(study.analysed, 4U);
   ASSERT_EQ(study.flow.size(), 1U);
-  EXPECT_EQ(study.flow[0].reason, "not in the named cohort: pilot");
+  expectNames(study.flow[0].reason, {"cohort: pilot"});
   EXPECT_EQ(study.flow[0].attempts, 5U);
   EXPECT_EQ(rowOf(study, "elapsed-time", "").participants[0], (std::vector<std::string>{"P0", "P2"}));
-  EXPECT_NE(textOf(study).find("participants of \"pilot\" alone"), std::string::npos);
+  expectHolds(textOf(study), {"\"pilot\""});
   options.cohort = CohortInUse{"main", {}};
-  expectRefusal(ErrorKind::refused, "8 not in the named cohort: main", [&] { (void)makeStudy(database, options); });
+  expectFault(ErrorKind::refused, "", {"8", "main"}, [&] { (void)makeStudy(database, options); });
   options.cohort = CohortInUse{"Pilot", {}};
-  expectRefusal(ErrorKind::invalid, "no cohort \"Pilot\" (there are: main, pilot)",
-                [&] { (void)makeStudy(database, options); });
+  expectFault(ErrorKind::invalid, "", {"\"Pilot\"", "main, pilot"}, [&] { (void)makeStudy(database, options); });
 }
 
 TEST(Study, pageIsWatermarkedWhereItIsSynthetic) {
@@ -367,22 +368,22 @@ TEST(Study, refusesToMixComparabilityKeys) {
   AttemptRecord other = attemptOf(50, "skilled");
   other.comparabilityKey = "touch-liver/2 device=performer calibration=- simulation=1 results=1 mode=assessment";
   database.storeAttempt(other, valuesOf(22, 0.022));
-  expectRefusal(ErrorKind::refused, "2 comparability keys", [&] { (void)makeStudy(database, performers); },
-                {{Remedy::chooseKey, Remedy::mixKeys}});
+  expectFault(ErrorKind::refused, "", {"2"}, [&] { (void)makeStudy(database, performers); },
+              {{Remedy::chooseKey, Remedy::mixKeys}});
   StudyOptions one = performers;
   one.key = attemptOf(0, "skilled").comparabilityKey;
   const Study chosen = makeStudy(database, one);
   EXPECT_EQ(chosen.keys, (std::vector<std::string>{one.key}));
   ASSERT_EQ(chosen.flow.size(), 1U);
-  EXPECT_EQ(chosen.flow[0].reason, "not comparable (another key)");
+  expectNames(chosen.flow[0].reason, {"key"});
   EXPECT_EQ(chosen.flow[0].attempts, 1U);
   one.key = "another";
-  expectRefusal(ErrorKind::refused, "10 not comparable (another key)", [&] { (void)makeStudy(database, one); });
+  expectFault(ErrorKind::refused, "", {"10", "key"}, [&] { (void)makeStudy(database, one); });
   StudyOptions mixed = performers;
   mixed.mixKeys = true;
   const Study study = makeStudy(database, mixed);
   EXPECT_EQ(study.keys.size(), 2U);
-  EXPECT_NE(textOf(study).find("are mixed, as asked"), std::string::npos);
+  expectHolds(textOf(study), {"comparability", "mixed"});
 }
 
 TEST(Study, refusesToMixCheckpointVersions) {
@@ -393,8 +394,7 @@ TEST(Study, refusesToMixCheckpointVersions) {
   const std::uint32_t version = values[1].version;
   values[1].version = version + 1;
   database.storeAttempt(attemptOf(50, "skilled"), values);
-  expectRefusal(ErrorKind::refused, "path-length has values of 2 versions",
-                [&] { (void)makeStudy(database, performers); });
+  expectFault(ErrorKind::refused, "", {"path-length", "2"}, [&] { (void)makeStudy(database, performers); });
   StudyOptions mixed = performers;
   mixed.mixKeys = true;
   EXPECT_EQ(rowOf(makeStudy(database, mixed), "path-length", "left").versions,
@@ -404,27 +404,25 @@ TEST(Study, refusesToMixCheckpointVersions) {
 TEST(Study, needsTwoIndependentGroups) {
   const Folder folder;
   CohortDatabase database(folder.file("c.db"), Access::create);
-  expectRefusal(ErrorKind::refused, "two groups", [&] { (void)makeStudy(database, performers); });
+  expectFault(ErrorKind::refused, "", {}, [&] { (void)makeStudy(database, performers); });
   database.storeAttempt(attemptOf(1, "skilled"), valuesOf(1, 1));
-  expectRefusal(ErrorKind::refused, "only skilled", [&] { (void)makeStudy(database, performers); });
+  expectFault(ErrorKind::refused, "", {"skilled"}, [&] { (void)makeStudy(database, performers); });
   database.storeAttempt(attemptOf(2, "unskilled"), valuesOf(1, 1));
   database.storeAttempt(attemptOf(3, "intermediate"), valuesOf(1, 1));
-  expectRefusal(ErrorKind::refused, "3 groups (skilled", [&] { (void)makeStudy(database, performers); },
-                {{Remedy::nameGroups}});
+  expectFault(ErrorKind::refused, "", {"3"}, [&] { (void)makeStudy(database, performers); }, {{Remedy::nameGroups}});
   StudyOptions named = performers;
   named.groups = {"unskilled", "intermediate"};
   EXPECT_EQ(makeStudy(database, named).groups[0], "unskilled");
   named.groups = {"skilled", "absent"};
-  expectRefusal(ErrorKind::refused, "\"absent\"", [&] { (void)makeStudy(database, named); });
+  expectFault(ErrorKind::refused, "", {"\"absent\""}, [&] { (void)makeStudy(database, named); });
   named.groups = {"skilled", "skilled"};
-  expectRefusal(ErrorKind::invalid, "two groups with different names", [&] { (void)makeStudy(database, named); },
-                {{Remedy::nameGroups}});
+  expectFault(ErrorKind::invalid, "", {}, [&] { (void)makeStudy(database, named); }, {{Remedy::nameGroups}});
   AttemptRecord a = attemptOf(4, "skilled"), b = attemptOf(5, "unskilled");
   a.participant = b.participant = "P1";
   database.storeAttempt(a, valuesOf(1, 1));
   database.storeAttempt(b, valuesOf(1, 1));
   named.groups = {"skilled", "unskilled"};
-  expectRefusal(ErrorKind::refused, "in both groups", [&] { (void)makeStudy(database, named); });
+  expectFault(ErrorKind::refused, "", {"\"P1\""}, [&] { (void)makeStudy(database, named); });
 }
 
 TEST(Study, allTiedAnswersWithAReason) {
@@ -433,11 +431,12 @@ TEST(Study, allTiedAnswersWithAReason) {
   database.storeAttempt(attemptOf(1, "skilled"), valuesOf(5, 1));
   database.storeAttempt(attemptOf(2, "unskilled"), valuesOf(5, 1));
   const Study study = makeStudy(database, performers);
-  EXPECT_EQ(rowOf(study, "elapsed-time", "").test.reason(), "all values are equal");
+  const std::string reason = rowOf(study, "elapsed-time", "").test.reason();
+  expectNames(reason, {"equal"});
   // Rows of which the same is to be said share a sentence, which may be longer than a line.
   std::string text = textOf(study);
   std::replace(text.begin(), text.end(), '\n', ' ');
-  EXPECT_TRUE(std::regex_search(text, std::regex("elapsed-time(, [a-z -]+)*: no test, all values are equal"))) << text;
+  EXPECT_TRUE(std::regex_search(text, std::regex("elapsed-time(, [a-z -]+)*: [^:]*" + reason))) << text;
   EXPECT_TRUE(nlohmann::json(studyTree(study)).at("rows").at(0).at("mann_whitney").at("value").is_null());
 }
 
@@ -463,10 +462,9 @@ TEST(Study, jsonAndCsvHoldTheTable) {
   std::getline(summary, line);
   const auto columns = std::count(line.begin(), line.end(), ',');
   while (std::getline(summary, line)) EXPECT_EQ(std::count(line.begin(), line.end(), ','), columns) << line;
-  expectRefusal(ErrorKind::invalid, "already exists", [&] { writeStudyCsv(study, out, false); },
-                {{Remedy::replaceExisting}});
+  expectFault(ErrorKind::invalid, "", {out}, [&] { writeStudyCsv(study, out, false); }, {{Remedy::replaceExisting}});
   EXPECT_NO_THROW(writeStudyCsv(study, out, true));
-  expectRefusal(ErrorKind::failure, "can't be made", [&] { writeStudyCsv(study, folder.file("c.db"), false); });
+  expectFault(ErrorKind::failure, folder.file("c.db"), {}, [&] { writeStudyCsv(study, folder.file("c.db"), false); });
 }
 
 TEST(Study, numbersDontFollowTheLocale) {
@@ -549,7 +547,7 @@ TEST(Study, saysWhatTheSimulationDoesNotDecide) {
   ASSERT_TRUE(rowOf(partly, "elapsed-time", "").simulation);
   EXPECT_EQ(rowOf(partly, "elapsed-time", "").simulation->known, 5U);
   EXPECT_FALSE(rowOf(partly, "elapsed-time", "").simulation->area) << "of one attempt nobody knows";
-  EXPECT_NE(textOf(partly).find("5 of 6 values have an interval"), std::string::npos) << textOf(partly);
+  expectHolds(textOf(partly), {"5 of 6 values"});
   database.storeIntervals(uuidOf(5), intervals[5]);
   const Study study = makeStudy(database, performers);
   const SimulationRange& time = *rowOf(study, "elapsed-time", "").simulation;
@@ -561,12 +559,12 @@ TEST(Study, saysWhatTheSimulationDoesNotDecide) {
   EXPECT_DOUBLE_EQ(path.area->first, 0.0);
   EXPECT_DOUBLE_EQ(path.area->second, 1.0) << "11, 12, 13 against 5, 6, 7 with elements of size zero";
   EXPECT_FALSE(path.decided());
-  EXPECT_NE(textOf(study).find("not decided by this simulation"), std::string::npos) << textOf(study);
+  expectHolds(textOf(study), {"decided"});
   EXPECT_NE(studyTree(study).dump(2).find("\"decided\": false"), std::string::npos);
   const std::vector<std::string> notes = primaryNotes(study);
   const auto warned = [&](const char* figure) {
     return std::any_of(notes.begin(), notes.end(), [&](const std::string& note) {
-      return note.starts_with("Warning: which group is ahead") && note.find(figure) != std::string::npos;
+      return note.starts_with("Warning: ") && note.find(figure) != std::string::npos;
     });
   };
   EXPECT_TRUE(warned("path-length left"));

@@ -7,6 +7,7 @@
 
 #include "analytics/statistics/reliability.h"
 #include "tests/analytics/statistics/support/published_data.h"
+#include "tests/support/message.h"
 
 namespace calot::analytics {
 namespace {
@@ -50,20 +51,18 @@ TEST(IntraclassCorrelation, isFreeOfUnitAndBlindToWhatItsFormAllows) {
 
 TEST(IntraclassCorrelation, degenerate) {
   const auto reason = [](const RatingTable& t, IccForm f) { return intraclassCorrelation(t, f).reason(); };
-  EXPECT_EQ(reason({1, 3, {1, 2, 3}}, IccForm::twoSingle), "fewer than two subjects");
-  EXPECT_EQ(reason({3, 1, {1, 2, 3}}, IccForm::twoSingle), "fewer than two columns");
-  EXPECT_EQ(reason({2, 2, {1, 2, 3}}, IccForm::twoSingle), "the table is not complete");
-  EXPECT_EQ(reason({2, 2, {1, 2, 3, NAN}}, IccForm::twoSingle), "a value is not finite");
-  EXPECT_EQ(reason({2, 2, {4, 4, 4, 4}}, IccForm::twoSingle), "all values are equal");
+  expectDistinct({reason({1, 3, {1, 2, 3}}, IccForm::twoSingle), reason({3, 1, {1, 2, 3}}, IccForm::twoSingle),
+                  reason({2, 2, {1, 2, 3}}, IccForm::twoSingle), reason({2, 2, {1, 2, 3, NAN}}, IccForm::twoSingle),
+                  reason({2, 2, {4, 4, 4, 4}}, IccForm::twoSingle)});
   // Only the raters differ: nothing to tell subjects apart by.
-  EXPECT_EQ(reason({3, 2, {1, 2, 1, 2, 1, 2}}, IccForm::threeAverage), "no differences between subjects");
+  expectNames(reason({3, 2, {1, 2, 1, 2, 1, 2}}, IccForm::threeAverage), {});
   const auto perfect = intraclassCorrelation({3, 2, {1, 1, 2, 2, 5, 5}}, IccForm::twoSingle);
   ASSERT_TRUE(perfect);
   EXPECT_DOUBLE_EQ(perfect->value, 1.0);
-  EXPECT_EQ(perfect->interval.reason(), "the raters agree perfectly but for leniency");
+  expectNames(perfect->interval.reason(), {});
   const auto shifted = intraclassCorrelation({3, 2, {1.1, 2.2, 2.1, 3.2, 5.1, 6.2}}, IccForm::threeAverage);
   EXPECT_DOUBLE_EQ(shifted->value, 1.0);
-  EXPECT_EQ(shifted->interval.reason(), "the raters agree perfectly but for leniency");
+  expectNames(shifted->interval.reason(), {});
 }
 
 TEST(IntraclassCorrelation, noInputGivesANan) {
@@ -105,13 +104,12 @@ TEST(CronbachAlpha, publishedTables) {
 }
 
 TEST(CronbachAlpha, degenerate) {
-  EXPECT_EQ(cronbachAlpha({3, 2, {1, 2, 3, 4, 5, 6}}).reason(), "fewer than three items");
-  EXPECT_EQ(cronbachAlpha({1, 3, {1, 2, 3}}).reason(), "fewer than two subjects");
-  EXPECT_EQ(cronbachAlpha({2, 3, {2, 2, 2, 2, 2, 2}}).reason(), "all values are equal");
-  EXPECT_EQ(cronbachAlpha({2, 3, {1, 2, 3, 3, 2, 1}}).reason(), "the sums of all subjects are equal");
+  expectDistinct({cronbachAlpha({3, 2, {1, 2, 3, 4, 5, 6}}).reason(), cronbachAlpha({1, 3, {1, 2, 3}}).reason(),
+                  cronbachAlpha({2, 3, {2, 2, 2, 2, 2, 2}}).reason(),
+                  cronbachAlpha({2, 3, {1, 2, 3, 3, 2, 1}}).reason()});
   const auto perfect = cronbachAlpha({3, 3, {1, 1, 1, 4, 4, 4, 2, 2, 2}});
   EXPECT_DOUBLE_EQ(perfect->value, 1.0);
-  EXPECT_EQ(perfect->interval.reason(), "the items agree perfectly");
+  expectNames(perfect->interval.reason(), {});
 }
 
 }  // namespace

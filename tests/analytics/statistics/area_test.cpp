@@ -7,6 +7,7 @@
 
 #include "analytics/statistics/two_groups.h"
 #include "tests/analytics/statistics/support/published_data.h"
+#include "tests/support/message.h"
 
 namespace calot::analytics {
 namespace {
@@ -60,7 +61,7 @@ TEST(Superiority, scoreEndsSolveTheirEquation) {
     for (double& v : y) v = static_cast<double>(random() % 9);
     const auto s = estimateSuperiority(x, y, Hypothesis::firstLarger);
     if (!s) {
-      EXPECT_EQ(s.reason(), "all values are equal");
+      expectNames(s.reason(), {});
       continue;
     }
     const double n = static_cast<double>(x.size() * y.size()),
@@ -78,9 +79,9 @@ TEST(Superiority, scoreEndsSolveTheirEquation) {
 }
 
 TEST(Superiority, degenerate) {
-  EXPECT_EQ(estimateSuperiority(Values{}, low, Hypothesis::firstSmaller).reason(), "the first group is empty");
-  EXPECT_EQ(estimateSuperiority(low, Values{}, Hypothesis::firstSmaller).reason(), "the second group is empty");
-  EXPECT_EQ(estimateSuperiority(Values{3, 3}, Values{3}, Hypothesis::firstLarger).reason(), "all values are equal");
+  expectDistinct({estimateSuperiority(Values{}, low, Hypothesis::firstSmaller).reason(),
+                  estimateSuperiority(low, Values{}, Hypothesis::firstSmaller).reason(),
+                  estimateSuperiority(Values{3, 3}, Values{3}, Hypothesis::firstLarger).reason()});
 }
 
 }  // namespace

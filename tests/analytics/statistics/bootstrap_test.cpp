@@ -10,6 +10,7 @@
 
 #include "analytics/statistics/descriptive.h"
 #include "tests/analytics/statistics/support/published_data.h"
+#include "tests/support/message.h"
 
 namespace calot::analytics {
 namespace {
@@ -104,17 +105,16 @@ TEST(Bootstrap, theSeedIsAllThatDecides) {
 
 TEST(Bootstrap, degenerate) {
   const auto statistic = [](std::span<const double> v) { return mean(v); };
-  EXPECT_EQ(bootstrap(Values{}, statistic).reason(), "no values");
-  EXPECT_EQ(bootstrap(Values{1, NAN}, statistic).reason(), "a value is not finite");
-  EXPECT_EQ(bootstrap(Values{4, 4, 4}, statistic).reason(), "all resamples agree");
-  EXPECT_EQ(bootstrap(Values{4}, statistic).reason(), "all resamples agree");
-  EXPECT_EQ(bootstrap(Values{1, 2}, Values{}, meanDifference).reason(), "the second group is empty");
+  EXPECT_EQ(bootstrap(Values{4}, statistic).reason(), bootstrap(Values{4, 4, 4}, statistic).reason());
+  expectDistinct({bootstrap(Values{}, statistic).reason(), bootstrap(Values{1, NAN}, statistic).reason(),
+                  bootstrap(Values{4, 4, 4}, statistic).reason(),
+                  bootstrap(Values{1, 2}, Values{}, meanDifference).reason()});
   // The deviation of two values vanishes in half of the resamples, which here counts as no answer.
   const auto inverse = [](std::span<const double> v) {
     const auto s = standardDeviation(v);
     return s && *s > 0.0 ? Expected<double>(1.0 / *s) : NoResult{"no spread"};
   };
-  EXPECT_NE(bootstrap(Values{1, 2}, inverse).reason().find("resamples have no answer (no spread)"), std::string::npos);
+  expectNames(bootstrap(Values{1, 2}, inverse).reason(), {});
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "tests/analytics/statistics/support/published_data.h"
+#include "tests/support/message.h"
 
 namespace calot::analytics {
 namespace {
@@ -50,13 +51,10 @@ TEST(LogRank, leukaemiaWithTiedTimes) {
 
 TEST(LogRank, degenerate) {
   const Times one{{5, true}}, none{}, given{{5, false}, {6, false}}, bad{{0, true}};
-  EXPECT_EQ(logRank(none, one).reason(), "the first group is empty");
-  EXPECT_EQ(logRank(one, none).reason(), "the second group is empty");
-  EXPECT_EQ(logRank(given, given).reason(), "nobody finished");
-  EXPECT_EQ(logRank(one, bad).reason(), "a time is not positive");
+  expectDistinct({logRank(none, one).reason(), logRank(one, none).reason(), logRank(given, given).reason(),
+                  logRank(one, bad).reason()});
   // All of the first group are gone before anyone of the second finishes, and the first never does.
-  EXPECT_EQ(logRank(Times{{1, false}}, Times{{5, true}, {7, true}}).reason(),
-            "the groups are never followed together when someone finishes");
+  expectNames(logRank(Times{{1, false}}, Times{{5, true}, {7, true}}).reason(), {});
 }
 
 TEST(WorstRank, unfinishedStandsBehindEveryFinishedOne) {
@@ -76,8 +74,8 @@ TEST(WorstRank, unfinishedStandsBehindEveryFinishedOne) {
   const auto quick =
       worstRank(Times{{1, false}, {2, false}}, Times{{3600, true}, {3700, true}}, Hypothesis::firstSmaller);
   EXPECT_DOUBLE_EQ(quick->effect.value.a, 0.0);
-  EXPECT_EQ(worstRank(Times{{1, false}}, Times{{3, false}}, Hypothesis::firstSmaller).reason(), "all values are equal");
-  EXPECT_EQ(worstRank(Times{}, ovarian2, Hypothesis::firstSmaller).reason(), "the first group is empty");
+  expectDistinct({worstRank(Times{{1, false}}, Times{{3, false}}, Hypothesis::firstSmaller).reason(),
+                  worstRank(Times{}, ovarian2, Hypothesis::firstSmaller).reason()});
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "analytics/statistics/descriptive.h"
+#include "tests/support/message.h"
 
 namespace calot::analytics {
 namespace {
@@ -86,26 +87,22 @@ TEST(ContrastingGroups, timesOnTheLogScale) {
   EXPECT_NEAR(g->cut, std::exp(cut), 1e-9);
   EXPECT_GT(g->interval->lower, 0.0);
   novices[0] = 0.0;
-  EXPECT_EQ(contrastingGroups(experts, novices, Better::lower, options).reason(),
-            "a value is not positive and has no logarithm");
+  expectNames(contrastingGroups(experts, novices, Better::lower, options).reason(), {});
 }
 
 TEST(ContrastingGroups, refusals) {
-  EXPECT_EQ(crossing({50, 10}, {51, 1}).reason(), "the curves do not cross between the means");
-  EXPECT_EQ(crossing({50, 10}, {50, 5}).reason(), "the means are equal");
-  EXPECT_EQ(crossing({50, 0}, {60, 5}).reason(), "a curve has no width");
-  EXPECT_EQ(crossing({NAN, 1}, {60, 5}).reason(), "a mean is not finite");
+  expectDistinct({crossing({50, 10}, {51, 1}).reason(), crossing({50, 10}, {50, 5}).reason(),
+                  crossing({50, 0}, {60, 5}).reason(), crossing({NAN, 1}, {60, 5}).reason()});
   const Values a{1, 2, 3}, b{7, 8, 9}, wide{-30, 2, 36}, narrow{2.9, 3.0, 3.1};
-  EXPECT_EQ(contrastingGroups(narrow, wide, Better::higher).reason(), "the curves do not cross between the means");
-  EXPECT_EQ(contrastingGroups(a, b, Better::higher).reason(), "the experts' mean is not the better one");
-  EXPECT_EQ(contrastingGroups(Values{}, b, Better::higher).reason(), "there are no experts");
-  EXPECT_EQ(contrastingGroups(a, Values{}, Better::higher).reason(), "there are no novices");
-  EXPECT_EQ(contrastingGroups(b, Values{1.0}, Better::higher).reason(), "a group of one value has no spread");
-  EXPECT_EQ(contrastingGroups(b, Values{1.0, 1.0}, Better::higher).reason(), "a group has no spread");
+  expectDistinct(
+      {contrastingGroups(narrow, wide, Better::higher).reason(), contrastingGroups(a, b, Better::higher).reason(),
+       contrastingGroups(Values{}, b, Better::higher).reason(), contrastingGroups(a, Values{}, Better::higher).reason(),
+       contrastingGroups(b, Values{1.0}, Better::higher).reason(),
+       contrastingGroups(b, Values{1.0, 1.0}, Better::higher).reason()});
   // Two against two: half of the resamples have a group without spread. There is a cut and no interval of it.
   const auto g = contrastingGroups(Values{7, 8}, Values{1, 2}, Better::higher);
   ASSERT_TRUE(g);
-  EXPECT_NE(g->interval.reason().find("resamples have no answer"), std::string::npos);
+  expectNames(g->interval.reason(), {});
 }
 
 }  // namespace

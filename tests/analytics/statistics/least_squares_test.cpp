@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "tests/analytics/statistics/support/published_data.h"
+#include "tests/support/message.h"
 
 namespace calot::analytics {
 namespace {
@@ -52,16 +53,16 @@ TEST(LeastSquares, hc3OfMotorCars) {
 }
 
 TEST(LeastSquares, degenerate) {
-  EXPECT_EQ(leastSquares({}, Values{1, 2}).reason(), "no columns");
-  EXPECT_EQ(leastSquares({{1, 1, 1}}, Values{1, 2}).reason(), "the variables have different lengths");
-  EXPECT_EQ(leastSquares({{1, 1}, {1, 2}}, Values{1, 2}).reason(), "no more values than coefficients");
-  EXPECT_EQ(leastSquares({{1, 1, 1}, {2, 2, 2}}, Values{1, 2, 3}).reason(), "the columns depend on each other");
-  EXPECT_EQ(leastSquares({{1, 1, 1}, {0, 0, 0}}, Values{1, 2, 3}).reason(), "the columns depend on each other");
-  EXPECT_EQ(leastSquares({{1, 1, NAN}}, Values{1, 2, 3}).reason(), "a value is not finite");
-  EXPECT_EQ(leastSquares({{1, 1, 1}}, Values{1, 2, NAN}).reason(), "a value is not finite");
+  EXPECT_EQ(leastSquares({{1, 1, 1}, {0, 0, 0}}, Values{1, 2, 3}).reason(),
+            leastSquares({{1, 1, 1}, {2, 2, 2}}, Values{1, 2, 3}).reason());
+  EXPECT_EQ(leastSquares({{1, 1, 1}}, Values{1, 2, NAN}).reason(),
+            leastSquares({{1, 1, NAN}}, Values{1, 2, 3}).reason());
+  expectDistinct({leastSquares({}, Values{1, 2}).reason(), leastSquares({{1, 1, 1}}, Values{1, 2}).reason(),
+                  leastSquares({{1, 1}, {1, 2}}, Values{1, 2}).reason(),
+                  leastSquares({{1, 1, 1}, {2, 2, 2}}, Values{1, 2, 3}).reason(),
+                  leastSquares({{1, 1, NAN}}, Values{1, 2, 3}).reason()});
   const std::vector<Values> alone{{1, 1, 1, 1}, {0, 0, 0, 1}};
-  EXPECT_EQ(hc3Errors(*leastSquares(alone, Values{1, 2, 3, 9}), alone).reason(),
-            "one value alone determines a coefficient");
+  expectNames(hc3Errors(*leastSquares(alone, Values{1, 2, 3, 9}), alone).reason(), {});
 }
 
 TEST(CovarianceAnalysis, anorexia) {
@@ -87,15 +88,10 @@ TEST(CovarianceAnalysis, degenerate) {
   const auto reason = [&](const Values& bx, const Values& ox, const Values& by, const Values& oy) {
     return covarianceAnalysis({bx, ox}, {by, oy}).reason();
   };
-  EXPECT_EQ(reason({}, {}, base, out), "the first group is empty");
-  EXPECT_EQ(reason(base, {1}, base, out), "baseline and outcome are not of the same people");
-  EXPECT_EQ(reason({5, 5}, {1, 2}, {5, 5}, {2, 3}), "the baseline is constant, or the group determines it");
-  EXPECT_EQ(reason({5, 5}, {1, 2}, {6, 6}, {2, 3}), "the baseline is constant, or the group determines it");
-  EXPECT_EQ(reason({1}, {1}, {2}, {3}), "no more values than coefficients");
-  EXPECT_EQ(reason({1}, {1}, base, out), "one value alone determines a coefficient");
-  EXPECT_EQ(reason({1, 2, NAN}, out, base, out), "a value is not finite");
-  EXPECT_EQ(reason({0.1, 0.2, 0.7}, {3.2, 3.4, 4.4}, {0.1, 0.3, 0.5}, {1.2, 1.6, 2.0}),
-            "the outcomes have no scatter about the lines");
+  EXPECT_EQ(reason({5, 5}, {1, 2}, {6, 6}, {2, 3}), reason({5, 5}, {1, 2}, {5, 5}, {2, 3}));
+  expectDistinct({reason({}, {}, base, out), reason(base, {1}, base, out), reason({5, 5}, {1, 2}, {5, 5}, {2, 3}),
+                  reason({1}, {1}, {2}, {3}), reason({1}, {1}, base, out), reason({1, 2, NAN}, out, base, out)});
+  expectNames(reason({0.1, 0.2, 0.7}, {3.2, 3.4, 4.4}, {0.1, 0.3, 0.5}, {1.2, 1.6, 2.0}), {});
 }
 
 }  // namespace

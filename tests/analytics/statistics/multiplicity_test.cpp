@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include "tests/support/message.h"
 
 namespace calot::analytics {
 namespace {
@@ -42,9 +43,8 @@ TEST(Multiplicity, theExampleOfBenjaminiAndHochberg) {
 }
 
 TEST(Multiplicity, edges) {
-  EXPECT_EQ(holm(Values{}).reason(), "no p values");
-  EXPECT_EQ(holm(Values{.1, 1.1}).reason(), "a p value is outside of [0, 1]");
-  EXPECT_EQ(benjaminiHochberg(Values{.1, NAN}).reason(), "a p value is outside of [0, 1]");
+  EXPECT_EQ(benjaminiHochberg(Values{.1, NAN}).reason(), holm(Values{.1, 1.1}).reason());
+  expectDistinct({holm(Values{}).reason(), holm(Values{.1, 1.1}).reason()});
   expectAll(holm(Values{.2}), {.2}, 0.0);
   expectAll(benjaminiHochberg(Values{.2}), {.2}, 0.0);
   expectAll(holm(Values{.2, .2, .2}), {.6, .6, .6}, 1e-15);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include "tests/support/message.h"
 
 namespace calot::analytics {
 namespace {
@@ -147,21 +148,18 @@ TEST(Power, refusals) {
     change(plan);
     return simulatePower(plan).reason();
   };
-  EXPECT_EQ(reason([](PowerPlan& p) { p.nx = 0; }), "a group is empty");
-  EXPECT_EQ(reason([](PowerPlan& p) { p.checkpoints.clear(); }), "no checkpoint");
-  EXPECT_EQ(reason([](PowerPlan& p) { p.checkpoints = shifts({NAN}); }), "an effect is not finite");
-  EXPECT_EQ(reason([](PowerPlan& p) { p.checkpoints[0].x.deviation = 0.0; }), "a deviation is not positive");
-  EXPECT_EQ(reason([](PowerPlan& p) { p.population.emplace(); }), "a group has nobody to draw from");
-  EXPECT_EQ(reason([](PowerPlan& p) {
-              p.population.emplace();
-              p.population->people[0] = {{1.0}};
-              p.population->people[1] = {{1.0, 2.0}};
-            }),
-            "people have different numbers of checkpoints");
-  EXPECT_EQ(reason([](PowerPlan& p) { p.correlation = 1.0; }), "the correlation is outside of [0, 1)");
-  EXPECT_EQ(reason([](PowerPlan& p) { p.level = 0.0; }), "the level is not between 0 and 1");
-  EXPECT_EQ(reason([](PowerPlan& p) { p.step = -1.0; }), "the step is negative");
-  EXPECT_EQ(reason([](PowerPlan& p) { p.simulations = 0; }), "no simulations");
+  expectDistinct({reason([](PowerPlan& p) { p.nx = 0; }), reason([](PowerPlan& p) { p.checkpoints.clear(); }),
+                  reason([](PowerPlan& p) { p.checkpoints = shifts({NAN}); }),
+                  reason([](PowerPlan& p) { p.checkpoints[0].x.deviation = 0.0; }),
+                  reason([](PowerPlan& p) { p.population.emplace(); })});
+  expectNames(reason([](PowerPlan& p) {
+                p.population.emplace();
+                p.population->people[0] = {{1.0}};
+                p.population->people[1] = {{1.0, 2.0}};
+              }),
+              {});
+  expectDistinct({reason([](PowerPlan& p) { p.correlation = 1.0; }), reason([](PowerPlan& p) { p.level = 0.0; }),
+                  reason([](PowerPlan& p) { p.step = -1.0; }), reason([](PowerPlan& p) { p.simulations = 0; })});
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "analytics/statistics/rank_tests.h"
 #include "analytics/statistics/two_groups.h"
 #include "tests/analytics/statistics/support/published_data.h"
+#include "tests/support/message.h"
 
 namespace calot::analytics {
 namespace {
@@ -39,10 +40,9 @@ TEST(Spearman, tiesAndMorePairsByStudent) {
 }
 
 TEST(Spearman, degenerate) {
-  EXPECT_EQ(spearman(Values{1, 2}, Values{1, 2}).reason(), "fewer than three pairs");
-  EXPECT_EQ(spearman(Values{1, 2, 3}, Values{1, 2}).reason(), "the two variables have different lengths");
-  EXPECT_EQ(spearman(Values{1, 2, 3}, Values{1, 1, 1}).reason(), "a variable has all values equal");
-  EXPECT_EQ(spearman(Values{1, 2, INFINITY}, Values{1, 2, 3}).reason(), "a value is not finite");
+  expectDistinct({spearman(Values{1, 2}, Values{1, 2}).reason(), spearman(Values{1, 2, 3}, Values{1, 2}).reason(),
+                  spearman(Values{1, 2, 3}, Values{1, 1, 1}).reason(),
+                  spearman(Values{1, 2, INFINITY}, Values{1, 2, 3}).reason()});
   // Perfect order: two of n! orders, at nine by counting and at ten by the bound.
   Values nine(9), ten(10);
   std::iota(nine.begin(), nine.end(), 0.0);
@@ -104,10 +104,8 @@ TEST(KruskalWallis, ofTwoGroupsIsTheRankSumTest) {
 }
 
 TEST(KruskalWallis, degenerate) {
-  EXPECT_EQ(kruskalWallis(Groups{{1, 2}}).reason(), "fewer than two groups");
-  EXPECT_EQ(kruskalWallis(Groups{{1, 2}, {}}).reason(), "a group is empty");
-  EXPECT_EQ(dunn(Groups{{1, 1}, {1}}).reason(), "all values are equal");
-  EXPECT_EQ(dunn(Groups{{1, NAN}, {1}}).reason(), "a value is not finite");
+  expectDistinct({kruskalWallis(Groups{{1, 2}}).reason(), kruskalWallis(Groups{{1, 2}, {}}).reason(),
+                  dunn(Groups{{1, 1}, {1}}).reason(), dunn(Groups{{1, NAN}, {1}}).reason()});
 }
 
 TEST(StratifiedRankSum, varianceIsThatOfAllAssignmentsWithinStrata) {
@@ -160,8 +158,7 @@ TEST(StratifiedRankSum, seesThroughASiteThatIsSlowerAltogether) {
   const auto more = stratifiedRankSum(strata);
   EXPECT_DOUBLE_EQ(more->z, s->z);
   EXPECT_EQ(more->left, 2U);
-  EXPECT_EQ(stratifiedRankSum(std::vector<Stratum>{{{1, 2}, {}}}).reason(),
-            "no stratum holds both groups and values that differ");
+  expectNames(stratifiedRankSum(std::vector<Stratum>{{{1, 2}, {}}}).reason(), {});
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include "analytics/statistics/standard_setting.h"
 #include "tests/analytics/statistics/support/published_data.h"
+#include "tests/support/message.h"
 
 namespace calot::analytics {
 namespace {
@@ -24,10 +25,8 @@ TEST(BorderlineRegression, refuses) {
   const auto reason = [&](const data::Values& x, double mark, Better better) {
     return borderlineRegression(x, score, mark, better).reason();
   };
-  EXPECT_EQ(reason(rating, 3, Better::lower), "attempts with better ratings do not have better values");
-  EXPECT_EQ(reason(rating, 0.5, Better::higher), "all ratings are on one side of the borderline mark");
-  EXPECT_EQ(reason({2, 2, 2, 2, 2}, 2, Better::higher), "all ratings are equal");
-  EXPECT_EQ(reason({1, 2}, 1, Better::higher), "the two variables have different lengths");
+  expectDistinct({reason(rating, 3, Better::lower), reason(rating, 0.5, Better::higher),
+                  reason({2, 2, 2, 2, 2}, 2, Better::higher), reason({1, 2}, 1, Better::higher)});
 }
 
 TEST(Angoff, judgesOfR) {
@@ -42,9 +41,8 @@ TEST(Angoff, judgesOfR) {
 }
 
 TEST(Angoff, refuses) {
-  EXPECT_EQ(angoffCut({1, 2, {.5, .5}}).reason(), "fewer than two judges");
-  EXPECT_EQ(angoffCut({2, 1, {.5, 1.5}}).reason(), "a probability is outside of 0 to 1");
-  EXPECT_EQ(angoffCut({2, 2, {.1, .2, .2, .1}}).reason(), "all judges have the same mark");
+  expectDistinct({angoffCut({1, 2, {.5, .5}}).reason(), angoffCut({2, 1, {.5, 1.5}}).reason(),
+                  angoffCut({2, 2, {.1, .2, .2, .1}}).reason()});
 }
 
 }  // namespace

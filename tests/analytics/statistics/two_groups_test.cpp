@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "tests/analytics/statistics/support/published_data.h"
+#include "tests/support/message.h"
 
 namespace calot::analytics {
 namespace {
@@ -130,7 +131,7 @@ TEST(MannWhitney, exactEqualsEnumerationWithAndWithoutTies) {
     for (std::size_t i = 0; i < ny; ++i) y.push_back(static_cast<double>(random() % levels));
     const auto test = mannWhitney(x, y, RankTest::exact);
     if (!test) {
-      EXPECT_EQ(test.reason(), "all values are equal");
+      expectNames(test.reason(), {});
       continue;
     }
     EXPECT_NEAR(test->p, bruteForceP(x, y), 1e-13);
@@ -177,15 +178,12 @@ TEST(MannWhitney, asymptoticMeetsExactWhereTheMethodChanges) {
 
 TEST(MannWhitney, degenerateInputAnswersWithAReason) {
   const Values none, one{1.0}, same{2.0, 2.0, 2.0}, bad{1.0, std::numeric_limits<double>::quiet_NaN()};
-  EXPECT_EQ(mannWhitney(none, same).reason(), "the first group is empty");
-  EXPECT_EQ(mannWhitney(same, none).reason(), "the second group is empty");
-  EXPECT_EQ(mannWhitney(none, none).reason(), "both groups are empty");
-  EXPECT_EQ(mannWhitney(same, same).reason(), "all values are equal");
-  EXPECT_EQ(mannWhitney(bad, same).reason(), "a value is not finite");
-  EXPECT_EQ(superiority(none, same).reason(), "the first group is empty");
-  EXPECT_EQ(hodgesLehmann(same, none).reason(), "the second group is empty");
-  EXPECT_NE(hodgesLehmannInterval(one, Values{2.0, 3.0}).reason().find("too small"), std::string::npos);
-  EXPECT_EQ(hodgesLehmannInterval(same, same).reason(), "all values are equal");
+  EXPECT_EQ(superiority(none, same).reason(), mannWhitney(none, same).reason());
+  EXPECT_EQ(hodgesLehmann(same, none).reason(), mannWhitney(same, none).reason());
+  EXPECT_EQ(hodgesLehmannInterval(same, same).reason(), mannWhitney(same, same).reason());
+  expectDistinct({mannWhitney(none, same).reason(), mannWhitney(same, none).reason(), mannWhitney(none, none).reason(),
+                  mannWhitney(same, same).reason(), mannWhitney(bad, same).reason(),
+                  hodgesLehmannInterval(one, Values{2.0, 3.0}).reason()});
   // One against one is a legal, uninformative test.
   EXPECT_DOUBLE_EQ(mannWhitney(one, Values{2.0})->p, 1.0);
   EXPECT_DOUBLE_EQ(superiority(same, same)->delta, 0.0);

@@ -7,7 +7,7 @@
 #include <QTextDocument>
 #include <QTextTable>
 
-#include "gui/attempt/theme.h"
+#include "gui/attempt/widget_parts.h"
 #include "gui/dashboard/plot_view.h"
 #include "gui/dashboard/study_view.h"
 #include "tests/gui/dashboard/support/recorded.h"

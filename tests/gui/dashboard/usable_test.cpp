@@ -27,11 +27,10 @@
 #include <set>
 
 #include "apps/calot-dashboard/assess_program.h"
-#include "gui/attempt/theme.h"
+#include "gui/attempt/widget_parts.h"
 #include "gui/dashboard/attempt_page.h"
 #include "gui/dashboard/dashboard_window.h"
 #include "gui/dashboard/dialogs.h"
-#include "gui/dashboard/settings.h"
 #include "tests/gui/dashboard/support/cohort.h"
 #include "tests/gui/dashboard/support/recorded.h"
 

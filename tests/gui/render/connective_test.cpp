@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "gui/render/procedural_textures.h"
 #include "gui/render/renderer.h"
+#include "gui/render/scene_resources.h"
 #include "gui/render/translucent.h"
 #include "recorder/base/errors.h"
 

@@ -7,8 +7,8 @@
 #include <cstring>
 #include <vector>
 
+#include "gui/render/mesh.h"
 #include "gui/render/renderer.h"
-#include "gui/render/surroundings.h"
 #include "sim/math/random.h"
 #include "tests/gui/render/support/shapes.h"
 

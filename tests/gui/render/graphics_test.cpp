@@ -11,6 +11,7 @@
 #include "gui/render/renderer.h"
 #include "recorder/base/errors.h"
 #include "tests/gui/render/support/shapes.h"
+#include "tests/support/fault.h"
 
 namespace calot::gui {
 namespace {
@@ -60,12 +61,7 @@ TEST(Graphics, TheWayToACardDrawsWhatSoftwareDraws) {
 TEST(Graphics, WithoutACardAutomaticIsSoftwareAndACardThatIsWantedIsAnError) {
   if (isHere(Graphics::card)) GTEST_SKIP() << "this machine has a graphics card";
   EXPECT_EQ(Renderer(Graphics::automatic).graphics().substr(0, 8), "OSMesa, ");
-  try {
-    Renderer card(Graphics::card);
-    ADD_FAILURE() << "drawn by " << card.graphics();
-  } catch (const Error& error) {
-    EXPECT_NE(std::string(error.what()).find("no graphics card that draws"), std::string::npos) << error.what();
-  }
+  expectFault(ErrorKind::failure, "", {"card"}, [] { const Renderer card(Graphics::card); });
 }
 
 TEST(Graphics, AutomaticIsTheCardWhereThereIsOne) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The ligament behind the vessels hides none of them.
-#include "gui/render/surroundings.h"
+#include "gui/render/mesh.h"
 
 #include <gtest/gtest.h>
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "gui/render/renderer.h"
-#include "recorder/base/errors.h"
+#include "tests/support/fault.h"
 
 namespace calot::gui {
 namespace {
@@ -118,12 +118,7 @@ TEST(Smoke, RefusesWhatIsNoPuff) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const Puff& puff :
        {Puff{Vec3(nan, 0.0, 0.0), 0.1, 0.5, 1}, Puff{Vec3::Zero(), nan, 0.5, 1}, Puff{Vec3::Zero(), 0.1, 1.5, 1}}) {
-    try {
-      (void)renderer.render(view, 32, 32, {}, std::vector<Puff>{puff});
-      ADD_FAILURE() << "taken";
-    } catch (const Error& error) {
-      EXPECT_EQ(error.kind(), ErrorKind::damaged);
-    }
+    expectFault(ErrorKind::damaged, "", {}, [&] { (void)renderer.render(view, 32, 32, {}, std::vector<Puff>{puff}); });
   }
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Veins that branch, on a texture that repeats.
-#include "gui/render/procedural_textures.h"
+#include "gui/render/scene_resources.h"
 
 #include <gtest/gtest.h>
 

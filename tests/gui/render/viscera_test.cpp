@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Omentum and bowel hide nothing that is operated on.
-#include "gui/render/surroundings.h"
+#include "gui/render/mesh.h"
 
 #include <gtest/gtest.h>
 

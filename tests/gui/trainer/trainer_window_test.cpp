@@ -17,13 +17,15 @@
 #include "gui/trainer/end_page.h"
 #include "gui/trainer/operation_view.h"
 #include "gui/trainer/run_panel.h"
+#include "gui/trainer/trainer_texts.h"
 #include "gui/trainer/training_session.h"
-#include "recorder/base/errors.h"
 #include "recorder/recording/reader.h"
 #include "recorder/sources/devices/scope_device.h"
 #include "recorder/sources/scope/scope_source.h"
 #include "tests/gui/trainer/support/spoken.h"
 #include "tests/gui/trainer/support/trainer_rig.h"
+#include "tests/support/fault.h"
+#include "tests/support/message.h"
 
 namespace calot::gui {
 namespace {
@@ -63,7 +65,7 @@ class Trainer : public ::testing::Test {
     setup.settings.folder = folder_ / "";
     setup.settings.countdown = std::chrono::milliseconds(1500);
     setup.settings.exchange = std::chrono::milliseconds(500);
-    setup.scenes = {{"touch-liver", "Touch the liver.", CALOT_SOURCE_DIR "/assets/scenes/touch-liver.json"},
+    setup.scenes = {{"touch-liver", "A touch.", CALOT_SOURCE_DIR "/assets/scenes/touch-liver.json"},
                     {"gone", "Is not there.", "/nowhere/gone.json"}};
     if (device) {
       setup.input = std::move(device);
@@ -109,6 +111,11 @@ class Trainer : public ::testing::Test {
     return found;
   }
   QString text(const char* label) { return child<QLabel>(label)->text(); }
+  /// What the panel says of the pointer at this moment, were it there.
+  QString saidOf(Pointer pointer) {
+    const TrainingSession& session = *window_->session();
+    return panelText(session.status(), session.scene(), "", session.mode(), Hand::right, pointer).pointer;
+  }
   /// Lets a key be down until something is so.
   void hold(Qt::Key key, const std::function<bool()>& until) {
     QTest::keyPress(window_->view(), key);
@@ -136,7 +143,7 @@ TEST_F(Trainer, GreetsAndBeginsByKeyboard) {
   window.chooseScene();
   auto* const scenes = child<QListWidget>("scenes");
   ASSERT_EQ(scenes->count(), 2);
-  EXPECT_EQ(scenes->item(0)->text(), "touch-liver\nTouch the liver.");
+  EXPECT_EQ(scenes->item(0)->text(), "touch-liver\nA touch.");
   EXPECT_TRUE(scenes->hasFocus());
   QTest::keyClick(scenes, Qt::Key_Down);
   QTest::keyClick(scenes, Qt::Key_Return);
@@ -178,7 +185,7 @@ TEST_F(Trainer, MouseAndKeysDriveTheHands) {
   const std::filesystem::path file = window.session()->status().file;
   EXPECT_TRUE(text("result").contains(QString::fromStdString(file.string())));
   EXPECT_TRUE(text("result").startsWith("Outcome: abandoned")) << text("result").toStdString();
-  EXPECT_TRUE(text("result").contains("nothing was touched")) << text("result").toStdString();
+  expectHolds(text("result").toStdString(), {window_->session()->status().undone});
   expectExact(file);
 
   recorder::Recording recording(file);
@@ -278,7 +285,7 @@ TEST_F(Trainer, PausesListsTheMistakeAndGoesBack) {
   QTest::keyClick(&view, Qt::Key_3);  // clip applier
   ASSERT_TRUE(QTest::qWaitFor([&] { return window.session()->status().exchange[1].has_value(); }, patience));
   window.refresh();
-  EXPECT_TRUE(text("right").contains("gets the clip applier in 1 s")) << text("right").toStdString();
+  expectHolds(text("right").toStdString(), {"clip applier", "1 s"});
   ASSERT_TRUE(QTest::qWaitFor(
       [&] { return window.session()->status().figures.hand[1].instrument == InstrumentKind::clipApplier; }, patience));
   hold(Qt::Key_S, [&] { return jaw() > 0.5; });
@@ -296,7 +303,7 @@ TEST_F(Trainer, PausesListsTheMistakeAndGoesBack) {
   pointTo(view.rect().center() + QPoint(60, 60));
   QTest::keyClick(mistakes, Qt::Key_Return);
   ASSERT_TRUE(reaches(Stage::countdown));
-  EXPECT_EQ(text("stage"), QString::fromUtf8("Going on in %1 …").arg(text("over")));
+  EXPECT_TRUE(text("stage").contains(text("over"))) << text("stage").toStdString();
   EXPECT_TRUE(child<QLabel>("over")->isVisible());
   ASSERT_TRUE(QTest::qWaitFor([&] { return window.session()->status().parent == before.attempt; }, patience));
   ASSERT_TRUE(runs(window.session()->status().branchedAt + 0.2));
@@ -305,7 +312,7 @@ TEST_F(Trainer, PausesListsTheMistakeAndGoesBack) {
   EXPECT_FALSE(mistakes->isVisible());
   QTest::mouseClick(child<QPushButton>("finish"), Qt::LeftButton);
   ASSERT_TRUE(reaches(Stage::ended));
-  EXPECT_TRUE(text("result").contains("A branch"));
+  EXPECT_TRUE(text("result").contains("branch"));
   expectExact(before.file);
   expectExact(window.session()->status().file);
   EXPECT_FALSE(child<QListWidget>("moments")->isVisible()) << "nothing went wrong in the branch";
@@ -319,7 +326,7 @@ TEST_F(Trainer, PausesListsTheMistakeAndGoesBack) {
   ASSERT_EQ(lines.size(), 7U);
   EXPECT_NE(lines[4].find("stopped"), std::string::npos);
   EXPECT_NE(lines[5].find(" forces late ("), std::string::npos);
-  EXPECT_NE(lines[6].find(" pictures a second of "), std::string::npos);
+  EXPECT_NE(lines[6].find(" pictures "), std::string::npos);
 }
 
 TEST_F(Trainer, TheEndShowsFiguresMomentsAndTheReplayOfOne) {
@@ -340,7 +347,7 @@ TEST_F(Trainer, TheEndShowsFiguresMomentsAndTheReplayOfOne) {
   EXPECT_TRUE(moments->hasFocus());
   ASSERT_TRUE(QTest::qWaitFor([&] { return end.replay().isOpen() && end.settled(); }, patience));
   EXPECT_TRUE(text("endFigures").contains("Elapsed time")) << text("endFigures").toStdString();
-  EXPECT_TRUE(text("endNorm").startsWith("No norm"));
+  EXPECT_FALSE(text("endNorm").isEmpty());
   EXPECT_FALSE(child<QPushButton>("store")->isVisible()) << "there is no cohort";
   QTest::mouseClick(moments->viewport(), Qt::LeftButton, {}, moments->visualItemRect(moments->item(0)).center());
   EXPECT_TRUE(QTest::qWaitFor([&] { return end.replay().position().time >= mistake; }, patience))
@@ -398,7 +405,7 @@ TEST_F(Trainer, AskForOneControlAfterTheOtherAndSaysWhenItWasUsed) {
   QStringList alerts;
   QObject::connect(window.findChild<RunPanel*>(), &RunPanel::announced, &window,
                    [&](const QString&, const QString& words) { alerts += words; });
-  window.begin(trainertest::smallLoadedScene(), TrainerWindow::Purpose::controls);
+  window.begin(trainertest::smallLoadedScene(), Purpose::controls);
   ASSERT_TRUE(runs(0.1));
   window.refresh();
   EXPECT_TRUE(text("hint").startsWith("Control 1 of 10")) << text("hint").toStdString();
@@ -422,7 +429,7 @@ TEST_F(Trainer, ReadsAloudWhatItAsksForUntilItIsToldNotTo) {
     engine.finish();
     return !engine.begun.filter(words).isEmpty();
   };
-  window.begin(trainertest::smallLoadedScene(), TrainerWindow::Purpose::controls);
+  window.begin(trainertest::smallLoadedScene(), Purpose::controls);
   ASSERT_TRUE(QTest::qWaitFor([&] { return said("Control 1 of 10"); }, patience));
   QTest::keyClick(window.view(), Qt::Key_K, Qt::ControlModifier);
   ASSERT_TRUE(QTest::qWaitFor([&] { return said("Control 2 of 10"); }, patience));
@@ -455,7 +462,7 @@ TEST_F(Trainer, ADemonstrationIsWatchedAndIsNoAttemptOfTheTrainee) {
   participant_ = "P7";
   TrainerWindow& window = open();
   window.chooseScene();
-  window.begin(trainertest::smallLoadedScene(), TrainerWindow::Purpose::demonstration);
+  window.begin(trainertest::smallLoadedScene(), Purpose::demonstration);
   ASSERT_TRUE(runs(0.3));
   window.refresh();
   EXPECT_FALSE(window.view()->holdsPointer()) << "nothing is to be driven";
@@ -485,7 +492,7 @@ TEST_F(Trainer, AnAssessmentShowsNoHintsNoScoreAndNoPause) {
   EXPECT_TRUE(window.endPage()->isVisible());
   EXPECT_FALSE(child<QListWidget>("moments")->isVisible());
   EXPECT_FALSE(child<QLabel>("endFigures")->isVisible());
-  EXPECT_TRUE(text("endNorm").startsWith("An assessment shows neither"));
+  EXPECT_TRUE(text("endNorm").contains("assessment"));
 }
 
 TEST_F(Trainer, LosingTheKeyboardLetsGoOfEverything) {
@@ -508,7 +515,7 @@ TEST_F(Trainer, ThePictureHoldsThePointerUntilAKeyFreesIt) {
   window.refresh();
   ASSERT_TRUE(view.holdsPointer());
   EXPECT_EQ(view.cursor().shape(), Qt::BlankCursor);
-  EXPECT_TRUE(text("pointer").contains("Escape frees it"));
+  EXPECT_EQ(text("pointer"), saidOf(Pointer::held));
   // Farther than the picture is wide.
   const double wide = 1.5 * view.width();
   pointTo(view.rect().center());
@@ -523,7 +530,7 @@ TEST_F(Trainer, ThePictureHoldsThePointerUntilAKeyFreesIt) {
   QTest::keyClick(&view, Qt::Key_Escape);
   EXPECT_EQ(window.session()->status().stage, Stage::running) << "an assessment has no pause";
   EXPECT_FALSE(view.holdsPointer());
-  EXPECT_TRUE(text("pointer").contains("Click the picture"));
+  EXPECT_EQ(text("pointer"), saidOf(Pointer::free));
   for (int i = 0; i < 5; ++i) pointTo(view.rect().center() + QPoint(0, 10 * i));
   QCoreApplication::processEvents();
   QTest::mouseClick(&view, Qt::LeftButton);
@@ -549,14 +556,14 @@ TEST_F(Trainer, PracticePausesWhereTheWindowLosesTheKeyboard) {
   other.activateWindow();
   ASSERT_TRUE(QTest::qWaitForWindowActive(&other));
   ASSERT_TRUE(reaches(Stage::paused));
-  EXPECT_TRUE(text("pointer").contains("lost the keyboard")) << text("pointer").toStdString();
+  EXPECT_EQ(text("pointer"), saidOf(Pointer::windowLeft));
   EXPECT_FALSE(window.view()->holdsPointer());
   window.activateWindow();
   ASSERT_TRUE(QTest::qWaitForWindowActive(&window));
   EXPECT_EQ(window.session()->status().stage, Stage::paused) << "it goes on when the trainee says so";
   QTest::keyClick(window.view(), Qt::Key_Escape);
   ASSERT_TRUE(reaches(Stage::running));
-  EXPECT_FALSE(text("pointer").contains("lost the keyboard"));
+  EXPECT_NE(text("pointer"), saidOf(Pointer::windowLeft));
 }
 
 TEST_F(Trainer, AnAssessmentSaysThatTheHandsAreLetGo) {
@@ -570,7 +577,7 @@ TEST_F(Trainer, AnAssessmentSaysThatTheHandsAreLetGo) {
   ASSERT_TRUE(QTest::qWaitForWindowActive(&other));
   window.refresh();
   EXPECT_EQ(window.session()->status().stage, Stage::running);
-  EXPECT_TRUE(text("pointer").contains("the clock runs on")) << text("pointer").toStdString();
+  EXPECT_EQ(text("pointer"), saidOf(Pointer::windowLeft));
   const double from = window.session()->status().figures.time;
   ASSERT_TRUE(runs(from + 0.3));
   const double jawThen = jaw();
@@ -582,13 +589,7 @@ TEST_F(Trainer, ThePictureIsSavedOrTheFolderNamed) {
   TrainerWindow& window = open();
   window.savePicture(QString::fromStdString((folder_ / "a.png").string()));
   EXPECT_FALSE(QImage(QString::fromStdString((folder_ / "a.png").string())).isNull());
-  try {
-    window.savePicture("/nowhere/a.png");
-    FAIL() << "no error";
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), ErrorKind::failure);
-    EXPECT_NE(std::string(error.what()).find("/nowhere/a.png"), std::string::npos);
-  }
+  expectFault(ErrorKind::failure, "", {"/nowhere/a.png"}, [&] { window.savePicture("/nowhere/a.png"); });
 }
 
 }  // namespace

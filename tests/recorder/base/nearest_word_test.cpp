@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "recorder/base/nearest_word.h"
+#include "recorder/base/text_words.h"
 
 #include <gtest/gtest.h>
 
 #include <string>
 #include <vector>
+#include "tests/support/message.h"
 
 namespace calot::recorder {
 namespace {
@@ -40,10 +41,10 @@ TEST(NearestWord, IsNoneWhereNothingIsNear) {
 }
 
 TEST(NearestWord, IsAskedAfter) {
-  EXPECT_EQ(didYouMean("recrod", commands), " (did you mean \"record\"?)");
+  expectNames(didYouMean("recrod", commands), {"\"record\""});
   EXPECT_EQ(didYouMean("xyzzy", commands), "");
   EXPECT_EQ(didYouMean("c", {"a", "b"}), "") << "every letter is another one";
-  EXPECT_EQ(didYouMean("ab", {"a\rb"}), " (did you mean \"a?b\"?)") << "as text";
+  expectNames(didYouMean("ab", {"a\rb"}), {"\"a?b\""});  // as text
 }
 
 }  // namespace

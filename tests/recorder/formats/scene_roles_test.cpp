@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Roles of a scene's structures: as the file states them, and as they are derived where it states none.
-#include "recorder/formats/scene_rules.h"
+#include "recorder/formats/scene_assets.h"
 
 #include <gtest/gtest.h>
 
@@ -40,11 +40,11 @@ void eraseRoles(json& scene) {
   }
 }
 
-std::string faultOfRole(const char* pointer, const char* role) {
+std::optional<Error> faultOfRole(const char* pointer, const char* role) {
   json scene = wholeScene();
   scene["organs"][1]["role"] = "gallbladder";
   scene[json::json_pointer(pointer)] = role;
-  return faultOf([&] { load(scene); });
+  return caught([&] { load(scene); });
 }
 
 TEST(SceneRoles, AreReadAsTheFileStatesThem) {
@@ -113,23 +113,21 @@ TEST(SceneRoles, AreDerivedWhereNoneIsStated) {
 }
 
 TEST(SceneRoles, UnknownOnesAreRefusedWithTheirPlace) {
-  EXPECT_EQ(faultOfRole("/organs/0/role", "stomach"),
-            "scenes/small.json: /organs/0/role: unknown word; known are gallbladder, liver, other");
-  EXPECT_EQ(faultOfRole("/organs/0/role", "cystic-duct"),
-            "scenes/small.json: /organs/0/role: unknown word; known are gallbladder, liver, other");
-  EXPECT_EQ(faultOfRole("/vessels/1/role", "liver"),
-            "scenes/small.json: /vessels/1/role: unknown word; known are artery, bile-duct, cystic-artery, "
-            "cystic-duct, other");
-  EXPECT_EQ(faultOfRole("/fat/0/role", ""), "scenes/small.json: /fat/0/role: the text is empty");
-  EXPECT_EQ(faultOfRole("/fat/0/role", "fat"),
-            "scenes/small.json: /fat/0/role: unknown word; known are other, triangle-fat");
-  EXPECT_EQ(faultOfRole("/connective/0/role", "bed"),
-            "scenes/small.json: /connective/0/role: unknown word; known are cystic-plate, other");
-  EXPECT_EQ(faultOfRole("/connective/0/role", "cystic-plate"), "(no fault)");
+  expectFault(ErrorKind::damaged, "scenes/small.json: /organs/0/role", {"gallbladder, liver, other"},
+              faultOfRole("/organs/0/role", "stomach"));
+  expectFault(ErrorKind::damaged, "scenes/small.json: /organs/0/role", {"gallbladder, liver, other"},
+              faultOfRole("/organs/0/role", "cystic-duct"));
+  expectFault(ErrorKind::damaged, "scenes/small.json: /vessels/1/role",
+              {"artery, bile-duct, cystic-artery, cystic-duct, other"}, faultOfRole("/vessels/1/role", "liver"));
+  expectFault(ErrorKind::damaged, "scenes/small.json: /fat/0/role", {}, faultOfRole("/fat/0/role", ""));
+  expectFault(ErrorKind::damaged, "scenes/small.json: /fat/0/role", {"other, triangle-fat"},
+              faultOfRole("/fat/0/role", "fat"));
+  expectFault(ErrorKind::damaged, "scenes/small.json: /connective/0/role", {"cystic-plate, other"},
+              faultOfRole("/connective/0/role", "bed"));
+  EXPECT_FALSE(faultOfRole("/connective/0/role", "cystic-plate"));
   json scene = wholeScene();
   scene["connective"][0]["role"] = "cystic-plate";
-  EXPECT_EQ(faultOf([&] { load(scene); }),
-            "scenes/small.json: /connective/0/role: neither organ that it joins has the role gallbladder");
+  expectFault(ErrorKind::damaged, "scenes/small.json: /connective/0/role", {}, [&] { load(scene); });
 }
 
 /// Recordings from before scenes had roles: what is derived is what the scenes state by now.

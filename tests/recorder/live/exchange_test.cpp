@@ -7,8 +7,7 @@
 #include <optional>
 #include <thread>
 
-#include "recorder/base/newest.h"
-#include "recorder/base/ring.h"
+#include "recorder/base/queues.h"
 #include "recorder/engine/session.h"
 #include "recorder/live/haptic_thread.h"
 #include "sim/step/hand_haptics.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "recorder/live/paced_clock.h"
+#include "recorder/live/haptic_thread.h"
 
 #include <gtest/gtest.h>
 

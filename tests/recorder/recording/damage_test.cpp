@@ -14,12 +14,12 @@
 #include <optional>
 #include <thread>
 
-#include "recorder/base/errors.h"
 #include "recorder/recording/probe.h"
 #include "recorder/recording/reader.h"
 #include "recorder/recording/recover.h"
 #include "recorder/recording/writer.h"
 #include "tests/recorder/recording/support/synthetic.h"
+#include "tests/support/fault.h"
 
 namespace calot::recorder {
 namespace {
@@ -114,13 +114,7 @@ TEST(Cut, WhereNothingIsLeftNothingIsWritten) {
        {std::size_t{0}, std::size_t{1}, std::size_t{20}, std::size_t{100}, std::size_t{3000}}) {
     writeFile(folder / "cut.h5", all.substr(0, bytes));
     EXPECT_EQ(judge(folder / "cut.h5").kind, ErrorKind::damaged) << bytes;
-    try {
-      recover(folder / "cut.h5", folder / "saved.h5", false);
-      ADD_FAILURE() << "recovered from " << bytes << " bytes";
-    } catch (const Error& e) {
-      EXPECT_EQ(e.kind(), ErrorKind::damaged);
-      EXPECT_EQ(std::string(e.what()).find('\n'), std::string::npos);
-    }
+    expectFault(ErrorKind::damaged, "", {}, [&] { recover(folder / "cut.h5", folder / "saved.h5", false); });
   }
   // Neither an output nor anything on the way to one.
   std::size_t files = 0;
@@ -177,7 +171,7 @@ TEST(Flip, AByteOfAChunkIsFoundAndItsDataSetNamed) {
       const Judgement j = judge(folder / "flipped.h5");
       EXPECT_EQ(j.kind, ErrorKind::damaged) << dataset;
       EXPECT_NE(j.message.find(dataset), std::string::npos) << dataset << ": " << j.message;
-      EXPECT_NE(j.message.find("bad checksum"), std::string::npos) << j.message;
+      expectNames(j.message, {"checksum"});
     }
   }
 }
@@ -315,8 +309,8 @@ TEST(Fuzz, OverwrittenBytesNeverCrashHangOrPass) {
         const std::string what = e.what();
         EXPECT_EQ(e.kind(), ErrorKind::damaged) << what;
         EXPECT_EQ(what.find('\n'), std::string::npos) << what;
-        EXPECT_EQ(what.find("library failed"), std::string::npos) << "at " << at << ": " << what;
-        EXPECT_EQ(what.find("took longer"), std::string::npos) << "at " << at << ": " << what;
+        for (const char* limit : {"signal", "20 s", "MiB"})  // crashed, hung or swelled
+          EXPECT_FALSE(holdsToken(what, limit)) << "at " << at << ": " << what;
         return "refused";
       }
     }();
@@ -354,38 +348,28 @@ TEST(Guarded, ACrashOrAHangBecomesAnError) {
 }
 
 TEST(Guarded, TheMessageSaysWhichLimitItWas) {
-  const auto message = [](const std::function<std::string()>& task) -> std::string {
-    try {
-      return runGuarded("file", task, {std::chrono::seconds(1), std::size_t{256} << 20U});
-    } catch (const Error& e) {
-      return e.what();
-    }
+  const auto guarded = [](const std::function<std::string()>& task) {
+    return runGuarded("file", task, {std::chrono::seconds(1), std::size_t{256} << 20U});
   };
-  EXPECT_NE(message([]() -> std::string {
-              for (;;) ::pause();
-            }).find("took longer than 1 s"),
-            std::string::npos);
+  expectFault(ErrorKind::damaged, "file", {"1 s"}, [&] {
+    guarded([]() -> std::string {
+      for (;;) ::pause();
+    });
+  });
 #ifndef CALOT_SANITIZED  // a sanitizer's allocator has its memory beforehand
-  EXPECT_NE(message([] { return std::string(std::size_t{512} << 20U, 'a'); }).find("more than 256 MiB of memory"),
-            std::string::npos);
+  expectFault(ErrorKind::damaged, "file", {"256 MiB"},
+              [&] { guarded([] { return std::string(std::size_t{512} << 20U, 'a'); }); });
 #endif
-  EXPECT_EQ(message([] { return std::string(std::size_t{1} << 20U, 'a'); }).size(), std::size_t{1} << 20U);
+  EXPECT_EQ(guarded([] { return std::string(std::size_t{1} << 20U, 'a'); }).size(), std::size_t{1} << 20U);
 }
 
 TEST(Guarded, AnErrorComesOutOfTheChildAsItWas) {
-  try {
-    runGuarded("file", []() -> std::string {
-      throw Error(ErrorKind::damaged, Where{"r.h5", "/ticks"}, "cut off", {Remedy::recover, Remedy::replayAnyway});
-    });
-    FAIL();
-  } catch (const Error& e) {
-    EXPECT_EQ(e.kind(), ErrorKind::damaged);
-    EXPECT_EQ(e.where().file, "r.h5");
-    EXPECT_EQ(e.where().place, "/ticks");
-    EXPECT_EQ(e.fault(), "cut off");
-    EXPECT_STREQ(e.what(), "r.h5: /ticks: cut off");
-    EXPECT_EQ(e.remedies(), (std::vector{Remedy::recover, Remedy::replayAnyway}));
-  }
+  const Error made(ErrorKind::damaged, Where{"r.h5", "/ticks"}, "short", {Remedy::recover, Remedy::replayAnyway});
+  const auto got = caught([&] { runGuarded("file", [&]() -> std::string { throw made; }); });
+  expectFault(made.kind(), "r.h5: /ticks", {"short"}, got, made.remedies());
+  ASSERT_TRUE(got);
+  EXPECT_EQ(got->where().place, made.where().place);
+  EXPECT_STREQ(got->what(), made.what());
 }
 
 }  // namespace

@@ -14,8 +14,8 @@
 #include <thread>
 #include <vector>
 
-#include "recorder/base/errors.h"
 #include "tests/recorder/recording/support/synthetic.h"
+#include "tests/support/fault.h"
 
 namespace calot::recorder {
 namespace {
@@ -43,22 +43,17 @@ std::string outcome(GuardProcesses& processes, const std::string& file) {
 
 TEST(GuardProcesses, AnswerAsRunGuardedDoes) {
   GuardProcesses processes(doAsNamed, 1);
-  EXPECT_EQ(outcome(processes, "a.h5"), "read a.h5");
-  EXPECT_NE(outcome(processes, "crash").find("crash: the reading library failed on it (signal 9)"), std::string::npos);
-  EXPECT_NE(outcome(processes, "hang").find("hang: reading it took longer than 1 s"), std::string::npos);
+  EXPECT_EQ(outcome(processes, "one.h5"), "read one.h5");
+  expectNames(outcome(processes, "crash"), {"crash: ", "signal 9"});
+  expectNames(outcome(processes, "hang"), {"hang: ", "1 s"});
 #ifndef CALOT_SANITIZED  // a sanitizer's allocator has its memory beforehand
-  EXPECT_NE(outcome(processes, "swell").find("swell: reading it needs more than 256 MiB"), std::string::npos);
+  expectNames(outcome(processes, "swell"), {"swell: ", "256 MiB"});
 #endif
-  EXPECT_EQ(outcome(processes, "damaged"), "r.h5: /ticks: cut off");
   EXPECT_EQ(outcome(processes, "large"), std::string(1000000, 'a'));
-  EXPECT_EQ(outcome(processes, "b.h5"), "read b.h5");
-  try {
-    processes.run("damaged", short_);
-    FAIL();
-  } catch (const Error& e) {
-    EXPECT_EQ(e.kind(), ErrorKind::damaged);
-    EXPECT_EQ(e.remedies(), std::vector{Remedy::recover});
-  }
+  EXPECT_EQ(outcome(processes, "two.h5"), "read two.h5");
+  expectFault(
+      ErrorKind::damaged, "r.h5: /ticks", {"cut"}, [&] { processes.run("damaged", short_); },
+      std::vector{Remedy::recover});
 }
 
 TEST(GuardProcesses, AreChildrenOfAProcessOfTheirOwn) {
@@ -71,7 +66,7 @@ TEST(GuardProcesses, AreChildrenOfAProcessOfTheirOwn) {
 TEST(GuardProcesses, OneThatWasKilledIsNotMissed) {
   GuardProcesses processes(doAsNamed, 1);
   ASSERT_EQ(::kill(std::stoi(outcome(processes, "parent")), SIGKILL), 0);
-  EXPECT_EQ(outcome(processes, "a.h5"), "read a.h5");
+  EXPECT_EQ(outcome(processes, "one.h5"), "read one.h5");
   EXPECT_EQ(outcome(processes, "parent"), std::to_string(::getpid()));
 }
 
@@ -96,7 +91,7 @@ TEST(GuardProcesses, HoldNothingOpen) {
   std::array<int, 2> pipe{};
   ASSERT_EQ(::pipe(pipe.data()), 0);
   GuardProcesses processes(doAsNamed, 1);
-  EXPECT_EQ(outcome(processes, "a.h5"), "read a.h5");
+  EXPECT_EQ(outcome(processes, "one.h5"), "read one.h5");
   ::close(pipe[1]);
   ASSERT_EQ(::fcntl(pipe[0], F_SETFL, O_NONBLOCK), 0);
   char none = 0;
@@ -122,7 +117,7 @@ TEST(ProbeProcesses, SayOfARecordingWhatProbeSays) {
   EXPECT_EQ(said("whole.h5"), "intact");
   EXPECT_EQ(said("cut.h5"), cut);
   EXPECT_EQ(said("none.h5"), none);
-  EXPECT_NE(none.find("no such file"), std::string::npos);
+  expectNames(none, {"none.h5"});
 }
 
 // Their copies of it would have lost its descriptors.

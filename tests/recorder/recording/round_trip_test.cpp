@@ -5,12 +5,12 @@
 #include <cstring>
 #include <fstream>
 
-#include "recorder/base/errors.h"
 #include "recorder/recording/layout.h"
 #include "recorder/recording/reader.h"
 #include "recorder/recording/recover.h"
 #include "recorder/recording/writer.h"
 #include "tests/recorder/recording/support/synthetic.h"
+#include "tests/support/fault.h"
 
 namespace calot::recorder {
 namespace {
@@ -176,13 +176,7 @@ TEST(Chain, SameContentSameChain) {
 TEST(Writer, RefusesToOverwriteWithoutForce) {
   const Folder folder;
   std::ofstream(folder / "r.h5") << "mine";
-  try {
-    const RecordingWriter writer(folder / "r.h5", makeHeader());
-    FAIL();
-  } catch (const Error& e) {
-    EXPECT_EQ(e.kind(), ErrorKind::invalid);
-    EXPECT_NE(std::string(e.what()).find("r.h5"), std::string::npos);
-  }
+  expectFault(ErrorKind::invalid, "", {"r.h5"}, [&] { const RecordingWriter writer(folder / "r.h5", makeHeader()); });
   std::string text;
   std::ifstream(folder / "r.h5") >> text;
   EXPECT_EQ(text, "mine");
@@ -193,12 +187,8 @@ TEST(Writer, RefusesToOverwriteWithoutForce) {
 
 TEST(Writer, NamesAFolderThatIsNotThere) {
   const Folder folder;
-  try {
-    const RecordingWriter writer(folder.path() / "no" / "r.h5", makeHeader());
-    FAIL();
-  } catch (const Error& e) {
-    EXPECT_EQ(e.kind(), ErrorKind::invalid);
-  }
+  expectFault(ErrorKind::invalid, "", {},
+              [&] { const RecordingWriter writer(folder.path() / "no" / "r.h5", makeHeader()); });
 }
 
 TEST(Writer, LeftWithoutAnEndStaysIncomplete) {

@@ -7,13 +7,13 @@
 #include <functional>
 #include <sstream>
 
-#include "recorder/base/errors.h"
 #include "recorder/recording/probe.h"
 #include "recorder/recording/reader.h"
 #include "recorder/recording/recorded_columns.h"
 #include "recorder/recording/recover.h"
 #include "recorder/recording/writer.h"
 #include "tests/recorder/recording/support/synthetic.h"
+#include "tests/support/fault.h"
 
 namespace calot::recorder {
 namespace {

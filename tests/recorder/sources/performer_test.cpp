@@ -7,10 +7,10 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "recorder/base/errors.h"
 #include "recorder/sources/performer.h"
 #include "recorder/sources/pointing.h"
 #include "tests/recorder/sources/support/test_scene.h"
+#include "tests/support/fault.h"
 
 namespace calot::recorder {
 namespace {
@@ -175,13 +175,7 @@ TEST(PerformerSource, aHandThatReachesNothingIsRefused) {
   scene.camera.orientation = Quat::Identity() * scene.camera.orientation;
   scene.camera.position = Vec3(0.0, 0.0, -0.9);
   scene.camera.orientation = quaternionOf((Mat3() << 1, 0, 0, 0, -1, 0, 0, 0, -1).finished());  // looks away
-  try {
-    PerformerSource(profileOf("skilled"), scene, 1);
-    FAIL();
-  } catch (const Error& e) {
-    EXPECT_EQ(e.kind(), ErrorKind::invalid);
-    EXPECT_NE(std::string(e.what()).find("left hand can reach no organ's surface"), std::string::npos);
-  }
+  expectFault(ErrorKind::invalid, "", {}, [&] { PerformerSource(profileOf("skilled"), scene, 1); });
 }
 
 TEST(TouchTargets, lieOnTheSurfaceInSightAndReachable) {
@@ -212,47 +206,36 @@ json validProfile() {
   return json::parse(in);
 }
 
-std::string faultOf(const json& profile) {
+std::optional<Error> faultOf(const json& profile) {
   const fs::path file = fs::path(testing::TempDir()) / "calot_profile.json";
   std::ofstream(file) << profile.dump();
-  try {
-    loadPerformer(file);
-  } catch (const Error& e) {
-    EXPECT_EQ(e.kind(), ErrorKind::damaged);
-    return e.what();
-  }
-  return "(no fault)";
+  return caught([&] { loadPerformer(file); });
 }
 
 TEST(PerformerProfile, faultsAreNamedWithTheirPlace) {
-  EXPECT_EQ(faultOf(validProfile()), "(no fault)");
+  EXPECT_FALSE(faultOf(validProfile()));
   json p = validProfile();
   p["motor"]["strokeSpeed"] = 0;
-  EXPECT_EQ(faultOf(p), "calot_profile.json: /motor/strokeSpeed: 0 is not in [0.001, 1]");
+  expectFault(ErrorKind::damaged, "calot_profile.json: /motor/strokeSpeed", {"0", "[0.001, 1]"}, faultOf(p));
   p = validProfile();
   p["decision"]["touches"] = 0;
-  EXPECT_EQ(faultOf(p), "calot_profile.json: /decision/touches: 0 is not in [1, 50]");
+  expectFault(ErrorKind::damaged, "calot_profile.json: /decision/touches", {"0", "[1, 50]"}, faultOf(p));
   p = validProfile();
   p["elapsedTime"] = 38.86;
-  EXPECT_EQ(faultOf(p).substr(0, 46), "calot_profile.json: /elapsedTime: unknown key;");
+  expectFault(ErrorKind::damaged, "calot_profile.json: /elapsedTime", {}, faultOf(p));
   p = validProfile();
   p["motor"]["tremorUpper"] = 5;
-  EXPECT_EQ(faultOf(p), "calot_profile.json: /motor/tremorUpper: below \"tremorLower\"");
+  expectFault(ErrorKind::damaged, "calot_profile.json: /motor/tremorUpper", {"\"tremorLower\""}, faultOf(p));
   p = validProfile();
   p["perception"].erase("depthError");
-  EXPECT_EQ(faultOf(p), "calot_profile.json: /perception: the key \"depthError\" is missing");
+  expectFault(ErrorKind::damaged, "calot_profile.json: /perception", {"\"depthError\""}, faultOf(p));
 }
 
 TEST(FindPerformer, byNameOrPath) {
   const std::vector<fs::path> roots{fs::path(CALOT_SOURCE_DIR) / "assets"};
   EXPECT_EQ(findPerformer("skilled", roots).filename(), "skilled.json");
-  try {
-    findPerformer("expert", roots);
-    FAIL();
-  } catch (const Error& e) {
-    EXPECT_EQ(e.kind(), ErrorKind::invalid);
-    EXPECT_STREQ(e.what(), "there is no performer \"expert\"; there are intermediate, skilled, unskilled");
-  }
+  expectFault(ErrorKind::invalid, "", {"\"expert\"", "intermediate, skilled, unskilled"},
+              [&] { findPerformer("expert", roots); });
 }
 
 }  // namespace

@@ -17,7 +17,7 @@ class GoldenReplay : public testing::TestWithParam<const char*> {
     settings.engine.makeBroadPhase = makeBroadPhase;
     const std::filesystem::path golden = std::filesystem::path(CALOT_SOURCE_DIR) / "assets/golden" / GetParam();
     const ReplayReport report = replayRecording(golden, settings);
-    EXPECT_EQ(report.verdict, ReplayVerdict::exact) << report.message;
+    EXPECT_EQ(report.verdict, ReplayVerdict::exact) << report.error;
   }
 };
 

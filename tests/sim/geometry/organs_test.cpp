@@ -6,7 +6,7 @@
 #include <string>
 
 #include "apps/calot-organs/organ_shapes.h"
-#include "recorder/base/file_bytes.h"
+#include "recorder/base/files.h"
 #include "recorder/formats/surface_bytes.h"
 #include "sim/geometry/surface_distance.h"
 #include "sim/geometry/surface_report.h"

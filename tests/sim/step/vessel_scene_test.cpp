@@ -10,6 +10,7 @@
 #include "sim/judgement/judge.h"
 #include "sim/vessel/clips.h"
 #include "tests/sim/scene/support/scenes.h"
+#include "tests/support/message.h"
 
 namespace calot {
 namespace {
@@ -327,12 +328,9 @@ TEST(VesselModel, SaysWhatIsWrong) {
     change(scene);
     return Model::build(std::move(scene)).error;
   };
-  EXPECT_EQ(error([](SceneDescription& s) { s.vessels[1].start.to = "vein"; }),
-            "vessel 'branch': grows out of 'vein', which is not a vessel before it");
-  EXPECT_EQ(error([](SceneDescription& s) { s.vessels[1].end.to = "spleen"; }),
-            "vessel 'branch': is grown to 'spleen', which is not an organ of the scene");
-  EXPECT_EQ(error([](SceneDescription& s) { s.vessels[0].path[1] = s.vessels[0].path[0]; }),
-            "vessel 'duct': two neighbouring points of its path coincide");
+  expectNames(error([](SceneDescription& s) { s.vessels[1].start.to = "vein"; }), {"'branch': ", "'vein'"});
+  expectNames(error([](SceneDescription& s) { s.vessels[1].end.to = "spleen"; }), {"'branch': ", "'spleen'"});
+  expectNames(error([](SceneDescription& s) { s.vessels[0].path[1] = s.vessels[0].path[0]; }), {"'duct': ", "path"});
   EXPECT_FALSE(error([](SceneDescription& s) { s.vessels[0].wall = 0.0; }).empty());
 }
 

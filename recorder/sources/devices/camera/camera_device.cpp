@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // `--device camera`: films or live cameras by name.
-
 #include "recorder/sources/devices/camera/camera_device.h"
 
 #include <fcntl.h>
@@ -15,7 +14,7 @@
 #include <utility>
 
 #include "recorder/base/errors.h"
-#include "recorder/base/file_bytes.h"
+#include "recorder/base/files.h"
 #include "recorder/sources/devices/calibration.h"
 #include "recorder/sources/devices/camera/frame_source.h"
 #include "recorder/sources/devices/evdev.h"
@@ -36,15 +35,11 @@ constexpr std::array<KeySet, handCount> keySets{
 }  // namespace
 
 PedalKeys::PedalKeys(const std::string& file) : file_(::open(file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC)) {
-  if (file_ < 0) {
+  if (!file_.valid()) {
     throw Error(
         ErrorKind::failure, Where{file},
         fmt::format("the keyboard cannot be read: {} (members of the group \"input\" may)", std::strerror(errno)));
   }
-}
-
-PedalKeys::~PedalKeys() {
-  if (file_ >= 0) ::close(file_);
 }
 
 bool PedalKeys::read() {
@@ -52,10 +47,10 @@ bool PedalKeys::read() {
     // 0 up, 1 down, 2 repeats
     if (e.type == EV_KEY && e.code < down_.size()) down_[e.code] = e.value != 0;
   };
-  if (file_ >= 0 && readEvents(file_, take)) return true;
+  if (file_.valid() && readEvents(file_.get(), take)) return true;
   // Unplugged, or at its end: a pedal that nobody can let go would cut for ever.
   down_.fill(false);
-  if (file_ >= 0) ::close(std::exchange(file_, -1));
+  file_.close();
   return false;
 }
 
@@ -216,12 +211,11 @@ bool isNumber(const std::string& text) {
 
 /// SHA-256 of a file of any size, which is mapped, not read into memory.
 std::string sha256OfFile(const std::string& file) {
-  const int handle = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  const Descriptor handle(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
   struct stat about {};
   void* address = MAP_FAILED;
-  if (handle >= 0 && fstat(handle, &about) == 0 && about.st_size > 0)
-    address = mmap(nullptr, static_cast<std::size_t>(about.st_size), PROT_READ, MAP_PRIVATE, handle, 0);
-  if (handle >= 0) ::close(handle);
+  if (handle.valid() && fstat(handle.get(), &about) == 0 && about.st_size > 0)
+    address = mmap(nullptr, static_cast<std::size_t>(about.st_size), PROT_READ, MAP_PRIVATE, handle.get(), 0);
   if (address == MAP_FAILED) throw Error(ErrorKind::damaged, Where{file}, "cannot be read");
   const auto size = static_cast<std::size_t>(about.st_size);
   std::string hash = sha256Hex({static_cast<const std::byte*>(address), size});

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "recorder/base/files.h"
 #include "recorder/sources/devices/camera/frame_source.h"
 #include "recorder/sources/devices/camera/handle_tracker.h"
 #include "recorder/sources/devices/device.h"
@@ -26,9 +27,6 @@ class PedalKeys {
   /// @param file /dev/input/eventN or a link to one
   /// @throws Error (failure) where it cannot be opened
   explicit PedalKeys(const std::string& file);
-  ~PedalKeys();
-  PedalKeys(const PedalKeys&) = delete;
-  PedalKeys& operator=(const PedalKeys&) = delete;
 
   struct Hold {
     std::uint8_t buttons = 0;
@@ -39,7 +37,7 @@ class PedalKeys {
   [[nodiscard]] Hold hold(Hand hand) const;
 
  private:
-  int file_ = -1;
+  Descriptor file_;
   std::array<bool, 256> down_{};
 };
 

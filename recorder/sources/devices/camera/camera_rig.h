@@ -71,7 +71,6 @@ struct CameraRig {
   static std::vector<Field> fields();
 };
 
-/// Violated limits, one phrase each.
 std::vector<std::string> rigShortcomings(const CameraRig& rig);
 
 }  // namespace calot::recorder

@@ -14,6 +14,8 @@
 #include <utility>
 #include <vector>
 
+#include "recorder/base/files.h"
+
 // libav's and AprilTag's
 struct AVCodecContext;
 struct AVCodecParameters;
@@ -116,7 +118,6 @@ class GreyDecoder {
  public:
   /// Opens a stream of a file. @returns false where libav has no decoder for it
   bool open(const AVCodecParameters& parameters);
-  /// Opens motion JPEG, which cameras send.
   bool openMotionJpeg();
 
   [[nodiscard]] AVCodecContext* context() const { return context_.get(); }
@@ -179,7 +180,7 @@ class LiveCamera final : public FrameSource {
     std::size_t length = 0;
   };
   std::string card_;
-  int handle_ = -1;
+  Descriptor handle_;
   bool compressed_ = false;
   std::size_t stride_ = 0;
   std::vector<Mapped> buffer_;

@@ -16,7 +16,6 @@
 
 namespace calot::recorder {
 
-/// A corner of a tag, seen.
 struct CornerSight {
   std::size_t camera = 0;
   int tag = 0;
@@ -71,7 +70,6 @@ Vec3 rotationVector(const Quat& rotation);
 /// parallel.
 Mat3 planeRotation(const Vec3& across, const Vec3& up);
 
-/// Tags of one camera's frame.
 struct SeenFrame {
   std::size_t camera = 0;
   std::int64_t time = 0;  ///< exposure of the middle row (ns)

@@ -12,7 +12,6 @@
 
 namespace calot::recorder {
 
-/// One picture of the board.
 struct BoardView {
   std::int64_t time = 0;  ///< ns
   std::vector<SeenTag> tags;

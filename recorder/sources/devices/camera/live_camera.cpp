@@ -59,6 +59,10 @@ std::string cardOf(int handle) {
   return textOf(can.card, sizeof can.card) + " " + textOf(can.bus_info, sizeof can.bus_info);
 }
 
+Descriptor openVideo(const std::string& file) {
+  return Descriptor(::open(file.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC));
+}
+
 }  // namespace
 
 LiveCamera::LiveCamera(std::string file, int width, int height)
@@ -72,9 +76,9 @@ LiveCamera::LiveCamera(std::string file, int width, int height)
 LiveCamera::~LiveCamera() { stop(); }
 
 std::string LiveCamera::start() {
-  handle_ = ::open(name_.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
-  if (handle_ < 0) return fmt::format("the camera cannot be opened: {}", std::strerror(errno));
-  card_ = cardOf(handle_);
+  handle_ = openVideo(name_);
+  if (!handle_.valid()) return fmt::format("the camera cannot be opened: {}", std::strerror(errno));
+  card_ = cardOf(handle_.get());
   if (card_.empty()) return "is not a camera";
   v4l2_format format{};
   for (const std::uint32_t pixels : {V4L2_PIX_FMT_MJPEG, V4L2_PIX_FMT_YUYV}) {
@@ -84,7 +88,7 @@ std::string LiveCamera::start() {
     format.fmt.pix.height = static_cast<std::uint32_t>(height_);
     format.fmt.pix.pixelformat = pixels;
     format.fmt.pix.field = V4L2_FIELD_NONE;
-    if (call(handle_, VIDIOC_S_FMT, &format) == 0 && format.fmt.pix.pixelformat == pixels) break;
+    if (call(handle_.get(), VIDIOC_S_FMT, &format) == 0 && format.fmt.pix.pixelformat == pixels) break;
     format.fmt.pix.pixelformat = 0;
   }
   if (format.fmt.pix.pixelformat == 0) return "gives neither motion JPEG nor YUYV";
@@ -98,24 +102,24 @@ std::string LiveCamera::start() {
   pace.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
   pace.parm.capture.timeperframe = {1, 60};  // the driver takes what is nearest
   const v4l2_fract& period = pace.parm.capture.timeperframe;
-  if (call(handle_, VIDIOC_S_PARM, &pace) == 0 && period.numerator > 0 && period.denominator > 0)
+  if (call(handle_.get(), VIDIOC_S_PARM, &pace) == 0 && period.numerator > 0 && period.denominator > 0)
     rate_ = static_cast<double>(period.denominator) / period.numerator;
   v4l2_requestbuffers wanted{};
   wanted.count = buffersWanted;
   wanted.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
   wanted.memory = V4L2_MEMORY_MMAP;
-  if (call(handle_, VIDIOC_REQBUFS, &wanted) < 0 || wanted.count < 2) return "gives no buffers";
+  if (call(handle_.get(), VIDIOC_REQBUFS, &wanted) < 0 || wanted.count < 2) return "gives no buffers";
   for (std::uint32_t i = 0; i < wanted.count; ++i) {
     v4l2_buffer buffer = captureBuffer();
     buffer.index = i;
-    if (call(handle_, VIDIOC_QUERYBUF, &buffer) < 0) return "gives no buffers";
-    void* const address = mmap(nullptr, buffer.length, PROT_READ, MAP_SHARED, handle_, buffer.m.offset);
+    if (call(handle_.get(), VIDIOC_QUERYBUF, &buffer) < 0) return "gives no buffers";
+    void* const address = mmap(nullptr, buffer.length, PROT_READ, MAP_SHARED, handle_.get(), buffer.m.offset);
     if (address == MAP_FAILED) return fmt::format("its buffers cannot be mapped: {}", std::strerror(errno));
     buffer_.push_back({address, buffer.length});
-    if (call(handle_, VIDIOC_QBUF, &buffer) < 0) return "takes no buffers";
+    if (call(handle_.get(), VIDIOC_QBUF, &buffer) < 0) return "takes no buffers";
   }
   int type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
-  if (call(handle_, VIDIOC_STREAMON, &type) < 0)
+  if (call(handle_.get(), VIDIOC_STREAMON, &type) < 0)
     return fmt::format("does not start: {}", errno == EBUSY ? "another program uses it" : std::strerror(errno));
   lastNumber_ = -1;
   return {};
@@ -124,8 +128,7 @@ std::string LiveCamera::start() {
 void LiveCamera::stop() {
   for (const Mapped& mapped : buffer_) munmap(mapped.address, mapped.length);
   buffer_.clear();
-  if (handle_ >= 0) ::close(handle_);
-  handle_ = -1;
+  handle_.close();
 }
 
 bool LiveCamera::convert(std::span<const std::uint8_t> bytes, GreyImage& out) {
@@ -149,7 +152,7 @@ bool LiveCamera::convert(std::span<const std::uint8_t> bytes, GreyImage& out) {
 }
 
 FrameStatus LiveCamera::next(std::chrono::nanoseconds wait, Frame& out) {
-  if (handle_ < 0) {
+  if (!handle_.valid()) {
     const std::int64_t now = monotonicNanoseconds();
     if (now < nextAttempt_) {
       std::this_thread::sleep_for(std::min<std::chrono::nanoseconds>(wait, std::chrono::milliseconds(20)));
@@ -161,11 +164,11 @@ FrameStatus LiveCamera::next(std::chrono::nanoseconds wait, Frame& out) {
       return FrameStatus::lost;
     }
   }
-  pollfd ready{handle_, POLLIN, 0};
+  pollfd ready{handle_.get(), POLLIN, 0};
   const auto milliseconds = std::chrono::duration_cast<std::chrono::milliseconds>(wait).count();
   if (::poll(&ready, 1, static_cast<int>(milliseconds)) <= 0) return FrameStatus::none;
   v4l2_buffer buffer = captureBuffer();
-  if (call(handle_, VIDIOC_DQBUF, &buffer) < 0) {
+  if (call(handle_.get(), VIDIOC_DQBUF, &buffer) < 0) {
     if (errno == EAGAIN) return FrameStatus::none;
     reason_ = fmt::format("{}: {}", name_, std::strerror(errno));
     stop();
@@ -177,7 +180,7 @@ FrameStatus LiveCamera::next(std::chrono::nanoseconds wait, Frame& out) {
   out.time = monotonic ? std::int64_t{buffer.timestamp.tv_sec} * 1'000'000'000 + buffer.timestamp.tv_usec * 1000
                        : monotonicNanoseconds();
   const auto number = static_cast<std::int64_t>(buffer.sequence);
-  call(handle_, VIDIOC_QBUF, &buffer);
+  call(handle_.get(), VIDIOC_QBUF, &buffer);
   if (!whole) return FrameStatus::none;  // the gap of its number reports it
   out.missed = lastNumber_ >= 0 && number > lastNumber_ ? static_cast<std::uint64_t>(number - lastNumber_ - 1) : 0;
   lastNumber_ = number;
@@ -190,10 +193,7 @@ std::vector<std::array<std::string, 2>> LiveCamera::list() {
   for (const auto& entry : std::filesystem::directory_iterator("/dev", error)) {
     const std::string file = entry.path().string();
     if (!file.starts_with("/dev/video")) continue;
-    const int handle = ::open(file.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
-    if (handle < 0) continue;
-    const std::string card = cardOf(handle);
-    ::close(handle);
+    const std::string card = cardOf(openVideo(file).get());
     if (!card.empty()) out.push_back({file, card});
   }
   std::sort(out.begin(), out.end());

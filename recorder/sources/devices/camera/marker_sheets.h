@@ -20,7 +20,6 @@ namespace calot::recorder {
 inline constexpr double tagSide = 0.028;   ///< of the black square (m)
 inline constexpr double tagPitch = 0.036;  ///< from tag to tag, and the width of a face (m)
 inline constexpr int boardColumns = 7, boardRows = 5;
-inline constexpr int tagsOfHandle = 10;
 inline constexpr int capTag = 8, flapTag = 9;  ///< within a handle
 inline constexpr double flapGap = 0.020;       ///< from the hinge to the middle of the flap's tag (m)
 

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "recorder/sources/devices/force/force_output.h"
 
 #include <fmt/format.h>
@@ -62,12 +61,6 @@ void EnergyTank::reset() {
   count_ = 0;
 }
 
-namespace {
-
-constexpr double torqueShare = 1.0 / 25.0;
-constexpr std::int64_t longestFall = 200'000'000;  // ns, of the force when the device is closed
-constexpr double longestPeriod = 0.02;  // s; a device that was silent for longer does not make the force jump
-
 Vec3 limited(const Vec3& v, double longest) {
   if (!v.allFinite() || !(longest > 0.0)) return Vec3::Zero();
   const double largest = v.cwiseAbs().maxCoeff();
@@ -81,6 +74,12 @@ Vec3 limited(const Vec3& v, double longest) {
   while (out.norm() > longest) out *= 1.0 - 1e-15;
   return out;
 }
+
+namespace {
+
+constexpr double torqueShare = 1.0 / 25.0;
+constexpr std::int64_t longestFall = 200'000'000;  // ns, of the force when the device is closed
+constexpr double longestPeriod = 0.02;  // s; a device that was silent for longer does not make the force jump
 
 Vec3 towards(const Vec3& from, const Vec3& to, double most) { return from + limited(to - from, most); }
 

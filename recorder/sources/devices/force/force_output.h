@@ -94,6 +94,9 @@ struct HandleMeasurement {
   bool clutched = false;
 };
 
+/// Shortened to that length, keeping its direction; zero where it is not finite.
+Vec3 limited(const Vec3& v, double longest);
+
 struct ForceStatistics {
   double maxForce = 0.0;          ///< N, of what was sent
   double maxChange = 0.0;         ///< N, from one wrench to the next

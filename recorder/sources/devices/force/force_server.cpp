@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
 #include "recorder/sources/devices/force/force_server.h"
 
 #include <fmt/format.h>

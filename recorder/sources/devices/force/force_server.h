@@ -80,7 +80,6 @@ class IntendedPath {
   /// A path of its own: reaches 65 mm away and back every four seconds, in small circles: in touch-liver the right hand
   /// meets the liver.
   IntendedPath() = default;
-  /// Pose, gripper and buttons.
   [[nodiscard]] DeviceSample at(double seconds) const;
 
  private:
@@ -95,7 +94,6 @@ class ForceServer {
   ForceServer(const DeviceScript* motion, const ForceServerSettings& settings);
 
   [[nodiscard]] int port() const { return listener_.port(); }
-  /// Its description.
   [[nodiscard]] const forcewire::Hello& hello() const { return hello_; }
 
   /// Runs until `stop`, or with `once` until the first client has gone.

@@ -29,8 +29,7 @@ constexpr std::size_t faultKind = 5;
 
 class Writer {
  public:
-  template <class T>
-  void number(const T& value) {
+  void number(const auto& value) {
     const auto* from = reinterpret_cast<const std::byte*>(&value);
     bytes_.insert(bytes_.end(), from, from + sizeof value);
   }
@@ -61,8 +60,7 @@ class Reader {
  public:
   explicit Reader(std::span<const std::byte> bytes) : bytes_(bytes) {}
 
-  template <class T>
-  void number(T& value) {
+  void number(auto& value) {
     std::memcpy(&value, bytes_.data(), sizeof value);
     gap(sizeof value);
   }
@@ -92,20 +90,17 @@ class Reader {
 
 // Fields in their order on the wire, for both directions.
 
-template <class Wire>
-void vector(Wire& w, Vec3& v) {
+void vector(auto& w, Vec3& v) {
   for (int k = 0; k < 3; ++k) w.number(v[k]);
 }
 
-template <class Wire>
-void handOf(Wire& w, Hand& hand) {
+void handOf(auto& w, Hand& hand) {
   auto number = static_cast<std::uint8_t>(hand);
   w.number(number);
   hand = number == 0 ? Hand::left : Hand::right;
 }
 
-template <class Wire>
-void fields(Wire& w, Hello& h) {
+void fields(auto& w, Hello& h) {
   w.magicWord();
   w.number(h.version);
   w.number(h.hands);
@@ -121,16 +116,14 @@ void fields(Wire& w, Hello& h) {
   w.text(h.serial, serialBytes);
 }
 
-template <class Wire>
-void fields(Wire& w, Welcome& welcome) {
+void fields(auto& w, Welcome& welcome) {
   w.magicWord();
   w.number(welcome.version);
   w.number(welcome.hands);
   w.gap(5);
 }
 
-template <class Wire>
-void fields(Wire& w, Pose& p) {
+void fields(auto& w, Pose& p) {
   handOf(w, p.hand);
   std::uint8_t flags = p.valid ? 1 : 0;
   w.number(flags);
@@ -147,8 +140,7 @@ void fields(Wire& w, Pose& p) {
   vector(w, p.shown.torque);
 }
 
-template <class Wire>
-void fields(Wire& w, WrenchFrame& f) {
+void fields(auto& w, WrenchFrame& f) {
   handOf(w, f.hand);
   w.gap(3);
   w.number(f.number);
@@ -157,13 +149,9 @@ void fields(Wire& w, WrenchFrame& f) {
   vector(w, f.wrench.torque);
 }
 
-template <class Wire>
-void fields(Wire& w, Fault& f) {
-  w.rest(f.text);
-}
+void fields(auto& w, Fault& f) { w.rest(f.text); }
 
-template <class Wire>
-void fields(Wire&, End&) {}
+void fields(auto&, End&) {}
 
 bool rightLength(std::size_t kind, std::size_t length) {
   if (kind == faultKind) return length <= maxText;

@@ -31,7 +31,6 @@ struct Hello {
   std::string name, serial;  ///< at most 63 and 31 bytes
 };
 
-/// The host's reply.
 struct Welcome {
   std::uint16_t version = forcewire::version;
   std::uint8_t hands = 2;  ///< that it wants

@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "analytics/uncertainty/uncertainty.h"
-#include "recorder/attempt.h"
 #include "recorder/formats/scene_file.h"
+#include "recorder/loop.h"
 #include "tests/bench/performed.h"
 
 namespace calot::analytics {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tests/analytics/checkpoints/support/steps.h"
+#include "tests/support/message.h"
 
 namespace calot::analytics::support {
 
@@ -112,16 +113,16 @@ class Operation {
   std::uint64_t next = 0;
 };
 
-inline void expectNotApplicable(const CheckpointValue& v, const std::string& reason) {
+inline void expectNotApplicable(const CheckpointValue& v, const std::vector<std::string>& values) {
   EXPECT_EQ(v.availability, Availability::notApplicable) << v.name;
   EXPECT_FALSE(v.value) << v.name;
-  EXPECT_EQ(v.reason, reason) << v.name;
+  expectNames(v.reason, values);
 }
 
-inline void expectNotAvailable(const CheckpointValue& v, const std::string& reason) {
+inline void expectNotAvailable(const CheckpointValue& v, const std::vector<std::string>& values) {
   EXPECT_EQ(v.availability, Availability::notAvailable) << v.name;
   EXPECT_FALSE(v.value) << v.name;
-  EXPECT_EQ(v.reason, reason) << v.name;
+  expectNames(v.reason, values);
 }
 
 }  // namespace calot::analytics::support

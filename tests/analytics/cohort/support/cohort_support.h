@@ -7,7 +7,9 @@
 #include <fmt/format.h>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "analytics/checkpoints/checkpoint.h"
@@ -34,6 +36,13 @@ class Folder {
 };
 
 inline std::string uuidOf(unsigned n) { return fmt::format("00000000-0000-4000-8000-{:012x}", n); }
+
+inline std::optional<Participant> findParticipant(const CohortDatabase& database, const std::string& pseudonym) {
+  for (Participant& p : database.participants()) {
+    if (p.pseudonym == pseudonym) return std::move(p);
+  }
+  return std::nullopt;
+}
 
 /// A finished, verified performer's attempt in assessment mode.
 inline AttemptRecord attemptOf(unsigned n, const std::string& profile) {

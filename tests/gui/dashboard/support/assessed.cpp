@@ -5,7 +5,7 @@
 #include <QTest>
 #include <string>
 
-#include "gui/dashboard/settings.h"
+#include "gui/dashboard/dialogs.h"
 #include "tests/gui/dashboard/support/recorded.h"
 
 namespace calot::gui::test {

@@ -12,7 +12,7 @@
 #include <iostream>
 #include <QStringList>
 
-#include "gui/dashboard/settings.h"
+#include "gui/dashboard/dialogs.h"
 #include "tests/gui/dashboard/support/recorded.h"
 
 namespace calot::gui::test {

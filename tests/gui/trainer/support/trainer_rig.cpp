@@ -75,7 +75,7 @@ bool waitForTime(const TrainingSession& session, double time) {
 
 void expectExact(const std::filesystem::path& file) {
   const recorder::ReplayReport report = recorder::replayRecording(file, {});
-  EXPECT_EQ(report.verdict, recorder::ReplayVerdict::exact) << report.message;
+  EXPECT_EQ(report.verdict, recorder::ReplayVerdict::exact) << report.error;
   EXPECT_TRUE(report.complete) << file;
   EXPECT_GT(report.steps, 0U) << file;
 }

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A small scene with vessels and fat, as JSON, and what loading it says.
+// A small scene with vessels and fat, as JSON, and the refusal of a changed one.
 #pragma once
 
 #include <cstring>
-#include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
-#include "recorder/base/errors.h"
 #include "recorder/formats/scene_file.h"
+#include "tests/support/fault.h"
 
 namespace calot::recorder::test {
 
@@ -61,24 +60,16 @@ inline LoadedScene load(const nlohmann::json& scene, const std::string& fat = fa
                           {"organs/f.obj", bytesOf(fat)}});
 }
 
-/// The message of the Error that an act throws, or "(no fault)".
-inline std::string faultOf(const std::function<void()>& act) {
-  try {
-    act();
-  } catch (const Error& e) {
-    return (e.kind() == ErrorKind::damaged ? "" : "(another exit code) ") + std::string(e.what());
-  }
-  return "(no fault)";
-}
-
 struct Change {
   const char* pointer;
   const char* value;  ///< JSON; empty: the key is taken away
-  const char* message;
+  const char* place;
+  std::vector<std::string> values;
 };
 
-/// The fault of the scene with one value changed, without the file's name in front.
-inline std::string faultOf(const Change& change) {
+/// The scene with one value changed is refused.
+inline void expectRefused(const Change& change) {
+  SCOPED_TRACE(change.pointer);
   nlohmann::json scene = sceneWithVessels();
   const nlohmann::json::json_pointer place(change.pointer);
   if (*change.value == '\0') {
@@ -86,9 +77,8 @@ inline std::string faultOf(const Change& change) {
   } else {
     scene[place] = nlohmann::json::parse(change.value);
   }
-  const std::string fault = faultOf([&] { load(scene); });
-  const std::string file = "scenes/small.json: ";
-  return fault.compare(0, file.size(), file) == 0 ? fault.substr(file.size()) : fault;
+  expectFault(ErrorKind::damaged, std::string("scenes/small.json: ") + change.place, change.values,
+              [&] { load(scene); });
 }
 
 }  // namespace calot::recorder::test

@@ -8,10 +8,10 @@
 #include <filesystem>
 #include <fstream>
 
-#include "recorder/base/errors.h"
 #include "recorder/sources/devices/device_script.h"
 #include "recorder/sources/devices/device_source.h"
 #include "tests/recorder/sources/devices/support/device_support.h"
+#include "tests/support/fault.h"
 
 namespace calot::recorder {
 namespace {
@@ -64,13 +64,7 @@ TEST(CombinedDevice, IsAskedForByName) {
   for (const char* name : {"left=null", "right=null", "left=null,left=null", "left=,right=null",
                            "left=null,right=", "left=null,right=joystick", "left=null,right=openigtlink",
                            "left=mouse,right=null", "left=left=null,right=null,right=null", "left=null,,right=null"}) {
-    try {
-      openDevice(name, combinedTools);
-      ADD_FAILURE() << "opened: " << name;
-    } catch (const Error& e) {
-      EXPECT_EQ(e.kind(), ErrorKind::invalid) << name << ": " << e.what();
-      EXPECT_EQ(std::string(e.what()).find('\n'), std::string::npos);
-    }
+    expectFault(ErrorKind::invalid, "", {}, [&] { openDevice(name, combinedTools); });
   }
 }
 

@@ -37,7 +37,7 @@ TEST(Gamepad, IsListedAndNamed) {
   EXPECT_EQ(rig.device.info().name, "gamepad");
   EXPECT_EQ(rig.device.info().identity, "gamepad:Calot test pad");
   EXPECT_EQ(rig.device.info().operatorKind, OperatorKind::human);
-  EXPECT_THROW(GamepadDevice("there is no such pad"), Error);
+  EXPECT_THROW(GamepadDevice("no-such-pad"), Error);
 }
 
 TEST(Gamepad, SticksAndTriggersMoveAtTheirSpeeds) {

@@ -79,14 +79,14 @@ TEST_P(LiveGamepad, PulledOutInMidRunLosesNothing) {
   if (GetParam() == Mode::practice) {
     EXPECT_EQ(report.outcome, Outcome::stopped);
     EXPECT_EQ(report.steps, 150U);
-    EXPECT_EQ(report.pauses, 1U);
+    EXPECT_EQ(report.pauses.count, 1U);
   } else {
     EXPECT_EQ(report.outcome, Outcome::technicalFailure);
     EXPECT_GE(report.steps, 80U);
     EXPECT_LT(report.steps, 150U);
   }
   const ReplayReport replayed = replayRecording(file_, ReplaySettings{});
-  EXPECT_EQ(replayed.verdict, ReplayVerdict::exact) << replayed.message;
+  EXPECT_EQ(replayed.verdict, ReplayVerdict::exact) << replayed.error;
   EXPECT_TRUE(replayed.complete);
   EXPECT_EQ(replayed.outcome, report.outcome);
 

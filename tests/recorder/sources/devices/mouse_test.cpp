@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include "recorder/live/wrapped_sources.h"
 #include "recorder/sources/devices/device_source.h"
+#include "recorder/sources/source.h"
 #include "sim/math/random.h"
 #include "tests/recorder/sources/devices/support/device_support.h"
 

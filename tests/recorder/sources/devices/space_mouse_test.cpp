@@ -14,8 +14,8 @@
 #include <string>
 #include <thread>
 
-#include "recorder/base/errors.h"
 #include "recorder/sources/devices/open_device.h"
+#include "tests/support/fault.h"
 
 namespace calot::recorder {
 namespace {
@@ -96,12 +96,7 @@ TEST(SpaceMouse, DeflectionsAreSpeedsAndALossIsTold) {
 
 TEST(SpaceMouse, WithoutADaemonThatIsSaid) {
   setenv("SPNAV_SOCKET", "/nowhere/spnav", 1);
-  try {
-    openDevice("spacenav", {});
-    ADD_FAILURE();
-  } catch (const Error& e) {
-    EXPECT_EQ(e.kind(), ErrorKind::failure);
-  }
+  expectFault(ErrorKind::failure, "", {}, [&] { openDevice("spacenav", {}); });
   unsetenv("SPNAV_SOCKET");
 }
 

@@ -102,11 +102,11 @@ TEST_P(CameraRecording, UnpluggedInMidRunLosesNothing) {
     EXPECT_NEAR(static_cast<double>(report.steps), 30.0, 4.0);  // at the picture that did not come
   } else {
     EXPECT_EQ(report.outcome, Outcome::completed);
-    EXPECT_EQ(report.pauses, 1U);
+    EXPECT_EQ(report.pauses.count, 1U);
     EXPECT_GT(report.steps, 40U);  // it goes on afterwards
   }
   const ReplayReport replayed = replayRecording(file, ReplaySettings{});
-  EXPECT_EQ(replayed.verdict, ReplayVerdict::exact) << replayed.message;
+  EXPECT_EQ(replayed.verdict, ReplayVerdict::exact) << replayed.error;
   EXPECT_TRUE(replayed.complete);
   EXPECT_EQ(replayed.outcome, report.outcome);
   EXPECT_EQ(replayed.steps, report.steps);

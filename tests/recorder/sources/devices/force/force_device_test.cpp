@@ -12,7 +12,6 @@
 #include <memory>
 #include <thread>
 
-#include "recorder/base/errors.h"
 #include "recorder/formats/scene_file.h"
 #include "recorder/live/worker_pool.h"
 #include "recorder/loop.h"
@@ -22,6 +21,7 @@
 #include "recorder/sources/devices/device_source.h"
 #include "recorder/sources/devices/force/force_server.h"
 #include "recorder/sources/devices/open_device.h"
+#include "tests/support/fault.h"
 
 namespace calot::recorder {
 namespace {
@@ -102,22 +102,11 @@ TEST(ForceDevice, WhatIsNotThereOrAnotherProtocolIsSaid) {
     const TcpListener listener(0);
     free = listener.port();
   }
-  try {
-    ForceDevice device(at(free));
-    ADD_FAILURE();
-  } catch (const Error& e) {
-    EXPECT_EQ(e.kind(), ErrorKind::failure);
-    EXPECT_EQ(std::string(e.what()).find('\n'), std::string::npos);
-  }
+  expectFault(ErrorKind::failure, "", {}, [&] { ForceDevice device(at(free)); });
   const ServerThread right;  // has no left hand
   EXPECT_THROW(openDevice("force:127.0.0.1:" + std::to_string(right.port()), {}, nullptr, Hand::left), Error);
   for (const char* name : {"force:h:", "force:h:0", "force:h:x", "force::1", "force:a b:1"}) {
-    try {
-      openDevice(name, {});
-      ADD_FAILURE() << name;
-    } catch (const Error& e) {
-      EXPECT_EQ(e.kind(), ErrorKind::invalid) << name;
-    }
+    expectFault(ErrorKind::invalid, "", {}, [&] { openDevice(name, {}); });
   }
 }
 
@@ -167,11 +156,11 @@ TEST(ForceDevice, KilledInMidRunTheRecordingReplays) {
   if (person.joinable()) person.join();
   EXPECT_EQ(report.outcome, Outcome::stopped);
   EXPECT_EQ(report.disagreements, 0U);
-  EXPECT_EQ(report.pauses, 1U);
+  EXPECT_EQ(report.pauses.count, 1U);
   EXPECT_EQ(losses, 1U);
   std::error_code ignored;
   const ReplayReport replayed = replayRecording(file, ReplaySettings{});
-  EXPECT_EQ(replayed.verdict, ReplayVerdict::exact) << replayed.message;
+  EXPECT_EQ(replayed.verdict, ReplayVerdict::exact) << replayed.error;
   EXPECT_TRUE(replayed.complete);
   std::filesystem::remove(file, ignored);
 }

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analytics/checkpoints/replay_words.h"
+
+#include <fmt/format.h>
+
+#include "sim/scene/version.h"
+
+namespace calot::analytics {
+
+using recorder::ReplayFinding;
+
+std::string wordsFor(const recorder::StepMisses& misses) {
+  if (misses.any == 0) return {};
+  return fmt::format("{} of {} steps missed a tolerance (solver {}, contact {}, held back {})", misses.any,
+                     misses.steps, misses.solver, misses.contact, misses.heldBack);
+}
+
+std::string wordsFor(const recorder::Runaway& runaway) {
+  return fmt::format(
+      "step {}: the simulation of '{}' ran away ({:.3g} m/s); the attempt ends here, keep the recording to find out "
+      "why",
+      runaway.step, runaway.structure, runaway.speed);
+}
+
+std::string wordsFor(const recorder::Divergence& divergence) {
+  std::string text = fmt::format("diverged at step {}", divergence.step);
+  if (divergence.tick) text += fmt::format(", tick {}", *divergence.tick);
+  text += fmt::format(": {} {}", divergence.component, divergence.field);
+  if (!divergence.detail.empty()) text += fmt::format(" ({})", divergence.detail);
+  return text;
+}
+
+std::string wordsFor(const recorder::ReplayReport& report) {
+  if (report.finding == ReplayFinding::unread) return report.error;
+  if (report.finding == ReplayFinding::otherLayout)
+    return "the recorded digests have other components than this build's State: nothing to compare";
+  const std::string broken = report.chainIntact ? "" : "content chain broken: " + report.chainFault;
+  std::string text = "bit-exact";
+  if (report.finding == ReplayFinding::otherNames) {
+    text = report.error;
+  } else if (report.divergence) {
+    text = wordsFor(*report.divergence) + (*report.reproducible
+                                               ? "; reproducible: a second run differs in the same way"
+                                               : "; not deterministic here: a second run behaves differently");
+  } else if (!broken.empty()) {
+    return broken + " (the re-simulation agrees)";
+  } else if (report.part) {
+    text =
+        fmt::format("segments {} to {} consistent (steps {} to {}); the rest was not looked at",
+                    report.part->segments[0], report.part->segments[1], report.part->steps[0], report.part->steps[1]);
+  }
+  if (!broken.empty()) text += "; " + broken;
+  if (report.verdict == recorder::ReplayVerdict::undecided)
+    text += fmt::format("; recorded with simulation version {}, this build has {}", report.simulationVersion,
+                        simulationVersion);
+  return text;
+}
+
+}  // namespace calot::analytics

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Sentences for people about a run and its replay: programs, windows and cohorts share them.
+#pragma once
+
+#include <string>
+
+#include "recorder/replay.h"
+
+namespace calot::analytics {
+
+/// "17 of 2000 steps missed a tolerance (solver 3, contact 14, held back 0)"; empty where none did.
+std::string wordsFor(const recorder::StepMisses& misses);
+
+/// "step 813: the simulation of 'liver' ran away (...)".
+std::string wordsFor(const recorder::Runaway& runaway);
+
+/// "diverged at step 13: hand.right realPosition (...)".
+std::string wordsFor(const recorder::Divergence& divergence);
+
+/// "bit-exact", or what was found instead; one line that does not name the recording.
+std::string wordsFor(const recorder::ReplayReport& report);
+
+}  // namespace calot::analytics
