@@ -5,6 +5,7 @@
 
 #include <array>
 #include <atomic>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -43,13 +44,12 @@ class Progress {
   static void erase();
 
  private:
-  /// @returns whether the line is drawn now: on a terminal, and not again at once
-  bool isDue();
-  static void draw(const std::string& text);
+  /// On a terminal, and not again at once.
+  void draw(const std::string& text);
 
   std::string what_;
   bool terminal_;
-  std::int64_t last_ = 0;
+  std::chrono::steady_clock::time_point last_;
 };
 
 /// For CLI::Option::check: digits that fit 64 bits. The parser alone would wrap "-1" and saturate what is too large.
