@@ -8,7 +8,6 @@
 #include "analytics/regrade.h"
 #include "analytics/uncertainty/uncertainty.h"
 #include "apps/calot/command.h"
-#include "apps/calot/import_command.h"
 #include "apps/calot/replay_report.h"
 #include "gui/words/attempt_tables.h"
 #include "recorder/recording/probe.h"

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // calot import: motion without a scene into a cohort.
 
-#include "apps/calot/import_command.h"
-
 #include <algorithm>
 #include <map>
 #include <set>

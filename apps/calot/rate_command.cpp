@@ -16,7 +16,7 @@
 #include "analytics/report/rater_page.h"
 #include "analytics/report/ratings.h"
 #include "apps/calot/command.h"
-#include "apps/calot/import_command.h"
+#include "apps/calot/replay_report.h"
 #include "gui/film/film.h"
 #include "gui/film/film_writer.h"
 #include "recorder/base/files.h"
