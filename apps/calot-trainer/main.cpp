@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -46,6 +47,16 @@ struct Options {
   double seconds = 0.0;
   unsigned threads = 1;
 };
+
+/// The parser alone takes "nan" and "inf". @return empty, or the fault
+std::string positiveSeconds(const std::string& text) {
+  char* end = nullptr;
+  const double seconds = std::strtod(text.c_str(), &end);
+  const bool whole = end != text.c_str() && *end == '\0';
+  return whole && std::isfinite(seconds) && seconds > 0.0
+             ? std::string()
+             : fmt::format("'{}' is not a number of seconds above 0", text);
+}
 
 void add(CLI::App& app, Options& o) {
   app.set_version_flag("--version", recorder::softwareName());
