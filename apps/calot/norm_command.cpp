@@ -89,11 +89,6 @@ std::uint32_t minOf(const std::string& rule) {
   return static_cast<std::uint32_t>(least);
 }
 
-std::string figureName(const analytics::NormCheckpoint& c) {
-  if (c.metric) return c.checkpoint + " (external)";
-  return c.subject.empty() ? c.checkpoint : c.checkpoint + " " + c.subject;
-}
-
 Json normJson(const analytics::Norm& norm) {
   const auto [competent, others] = analytics::passRates(norm);
   Json j{{"name", norm.name},
@@ -139,8 +134,9 @@ void printNorm(const analytics::Norm& norm, std::ostream& out) {
         c.metric ? &c.metric->definition : analytics::findCheckpoint(c.checkpoint);
     const double factor = d != nullptr ? d->displayFactor : 1.0;
     const auto number = [&](double v) { return analytics::significant(v * factor); };
-    table.rows.push_back({figureName(c), d == nullptr || d->displayUnit == "1" ? "" : d->displayUnit,
-                          analytics::nameOf(c.direction), c.cut ? number(*c.cut) : "-",
+    table.rows.push_back({c.metric ? c.checkpoint + " (external)" : analytics::figureName(c.checkpoint, c.subject),
+                          d == nullptr || d->displayUnit == "1" ? "" : d->displayUnit, analytics::nameOf(c.direction),
+                          c.cut ? number(*c.cut) : "-",
                           c.lower ? fmt::format("[{}, {}]", number(*c.lower), number(*c.upper)) : "-",
                           c.inRule ? "counts" : "", c.reason});
   }

@@ -3,6 +3,7 @@
 
 #include <map>
 
+#include "analytics/assessment/declared_document.h"
 #include "analytics/checkpoints/checkpoint.h"
 #include "analytics/regrade.h"
 #include "apps/calot/command.h"
@@ -52,10 +53,6 @@ using analytics::Regraded;
 const char* regradedName(Regraded how) {
   constexpr const char* names[] = {"unchanged", "changed", "missing", "motion", "unreadable", "conflict"};
   return names[static_cast<std::size_t>(how)];
-}
-
-std::string titleOf(const analytics::CheckpointValue& v) {
-  return v.subject.empty() ? v.name : v.name + " " + v.subject;
 }
 
 std::string shownValue(const std::optional<analytics::CheckpointValue>& v) {
@@ -111,7 +108,7 @@ void printRegrade(const analytics::Regrade& regrade) {
   for (const analytics::RegradedAttempt& a : regrade.attempts) {
     ++counts[a.how];
     for (const analytics::ValueChange& c : a.changes) {
-      const std::string title = titleOf(c.any());
+      const std::string title = analytics::figureName(c.any().name, c.any().subject);
       if (attemptsOf[title]++ == 0) order.push_back(title);
       table.rows.push_back({a.uuid.substr(0, 8), title, shownValue(c.before), shownValue(c.now), otherwise(c)});
     }
