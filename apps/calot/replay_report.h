@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "analytics/assess.h"
 #include "analytics/checkpoints/checkpoint.h"
 #include "analytics/cohort/cohort_database.h"
 #include "analytics/external/metric_script.h"
-#include "analytics/import_motion.h"
 #include "analytics/regrade.h"
 #include "apps/calot/command.h"
 #include "recorder/replay.h"
