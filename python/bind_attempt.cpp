@@ -106,13 +106,9 @@ py::tuple runOf(DrivenAttempt& driven, const Numbers& actions) {
 void recordOf(DrivenAttempt& driven, const std::filesystem::path& path, const std::string& controller,
               const std::string& version, const std::string& participant, const std::string& station,
               const std::string& purpose, const std::string& handedness, bool force) {
-  recorder::AttemptSettings settings;
-  settings.participant = participant;
-  settings.station = station;
-  settings.purpose = purpose;
-  settings.handedness = handedness;
   alone(driven.mutex, [&] {
-    driven.attempt.record(path, settings, recorder::controllerProvenance(controller, version), {force, {}});
+    driven.attempt.record(path, {participant, station, purpose, handedness},
+                          recorder::controllerProvenance(controller, version), {force, {}});
   });
 }
 
@@ -190,19 +186,17 @@ std::pair<std::string, double> record(const std::filesystem::path& path, const s
   const Model& model = prepared->model();
   const auto source = recorder::makePerformer(
       recorder::loadPerformer(recorder::findPerformer(performer, assetFolders())), model.scene(), seed);
-  recorder::AttemptSettings settings;
-  settings.participant = participant;
-  settings.purpose = purpose;
-  settings.mode = mode == "assessment" ? recorder::Mode::assessment : recorder::Mode::practice;
-  settings.seed = seed;
+  const recorder::AttemptSettings settings{
+      .participant = participant,
+      .purpose = purpose,
+      .mode = mode == "assessment" ? recorder::Mode::assessment : recorder::Mode::practice,
+      .seed = seed};
   recorder::RecordingWriter writer(
       path, recorder::makeHeader(model, std::move(loaded.assets), source->provenance(), settings), {force, {}});
   recorder::WorkerPool pool(1);
   recorder::Session session(model, seed, pool, {.compliances = &prepared->compliances()});
   session.join(writer);
-  recorder::RunSettings run;
-  run.seconds = seconds;
-  const recorder::RunReport report = recorder::runAttempt(session, *source, run);
+  const recorder::RunReport report = recorder::runAttempt(session, *source, {.seconds = seconds});
   writer.finish();
   prepared->save();
   return {recorder::wordFor(report.outcome), static_cast<double>(report.steps) * model.stepSeconds()};

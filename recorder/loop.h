@@ -44,10 +44,10 @@ struct RunSettings {
   bool paced = false;                       ///< tick n runs no earlier than n ms after the start
   bool live = false;                        ///< paced, the haptic ticks on a thread of their own
   const std::atomic<bool>* stop = nullptr;  ///< asked between steps
-  std::function<void(std::uint64_t step)> progress;  ///< called after every step
+  std::function<void(std::uint64_t step)> progress = {};  ///< called after every step
   /// Called with every tick's forces at once, by the thread that made them (live: the haptic thread): for devices with
   /// motors. Must neither wait nor throw.
-  std::function<void(const TickOutcome&)> feedback;
+  std::function<void(const TickOutcome&)> feedback = {};
 };
 
 /// Counts of ticks are those of this run's steps, as in the recording.

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "recorder/base/dates.h"
+#include "recorder/base/files.h"
 
 namespace calot::analytics {
 namespace {
@@ -118,7 +119,7 @@ std::string shownCell(const Cell& cell) {
   if (const auto* d = std::get_if<double>(&cell)) return fmt::format("{}", *d);
   if (const auto* s = std::get_if<std::string>(&cell)) return fmt::format("\"{}\"", *s);
   if (const auto* b = std::get_if<Blob>(&cell)) {
-    const std::string hex = hexOf(*b);
+    const std::string hex = recorder::hexOf(*b);
     return hex.size() > 16 ? hex.substr(0, 16) + "..." : hex;
   }
   return "nothing";
@@ -137,8 +138,6 @@ std::int64_t numberOf(const Cell& cell) {
 std::string joined(const std::vector<std::string>& parts, const char* between) {
   return fmt::format("{}", fmt::join(parts, between));
 }
-
-std::string hexOf(const Blob& bytes) { return fmt::format("{:02x}", fmt::join(bytes, "")); }
 
 int execute(SQLite::Database& db, const std::string& sql, const std::vector<Cell>& parameters) {
   SQLite::Statement statement(db, sql);

@@ -179,7 +179,6 @@ bool isEmpty(const Cell& cell);           ///< nothing, or an empty text
 std::string shownCell(const Cell& cell);  ///< for a message: texts in quotation marks, long bytes cut
 std::string textOf(const Cell& cell);     ///< of anything but a text: empty
 std::int64_t numberOf(const Cell& cell);  ///< of anything but a whole number: 0
-std::string hexOf(const Blob& bytes);
 /// Bytes as a cell.
 template <std::size_t N>
 Blob blobOf(const std::array<std::byte, N>& bytes) {

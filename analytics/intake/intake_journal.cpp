@@ -20,6 +20,7 @@
 #include <utility>
 
 #include "recorder/base/errors.h"
+#include "recorder/base/files.h"
 #include "sim/math/fields.h"
 
 namespace calot::analytics {
@@ -42,20 +43,6 @@ std::optional<nlohmann::ordered_json> rowIn(const std::string& line) {
 
 std::string journalHead() { return checkedLine({{"format", "calot-intake"}, {"format_version", 1}}); }
 
-/// Paths are bytes, JSON is UTF-8: a path that is not UTF-8 stands in hexadecimal.
-std::string inHex(const std::string& text) {
-  std::string hex;
-  for (const char c : text) hex += fmt::format("{:02x}", static_cast<unsigned char>(c));
-  return hex;
-}
-
-std::string fromHex(const std::string& hex) {
-  std::string text;
-  for (std::size_t i = 0; i + 1 < hex.size(); i += 2)
-    text += static_cast<char>(std::strtoul(hex.substr(i, 2).c_str(), nullptr, 16));
-  return text;
-}
-
 bool isUtf8(const std::string& text) {
   try {
     static_cast<void>(nlohmann::json(text).dump());
@@ -65,9 +52,10 @@ bool isUtf8(const std::string& text) {
   }
 }
 
+/// Paths are bytes, JSON is UTF-8: a path that is not UTF-8 stands in hexadecimal.
 std::string lineOf(const std::string& file, const JournalEntry& e) {
   const bool plain = isUtf8(file);
-  return checkedLine({{plain ? "file" : "file_hex", plain ? file : inHex(file)},
+  return checkedLine({{plain ? "file" : "file_hex", plain ? file : recorder::hexOf(file)},
                       {"bytes", e.state.bytes},
                       {"modified_ns", std::to_string(e.state.modified)},
                       {"inode", std::to_string(e.state.inode)},
@@ -89,7 +77,10 @@ std::pair<std::string, JournalEntry> entryFrom(const nlohmann::ordered_json& row
   row.at("other_version").get_to(e.otherVersion);
   row.at("simulation_version").get_to(e.simulationVersion);
   if (row.contains("file")) return {row.at("file").get<std::string>(), e};
-  return {fromHex(row.at("file_hex").get<std::string>()), e};
+  const auto& hex = row.at("file_hex").get_ref<const std::string&>();
+  std::string file(hex.size() / 2, '\0');
+  recorder::readHex(hex, std::as_writable_bytes(std::span(file)));
+  return {file, e};
 }
 
 }  // namespace

@@ -15,6 +15,7 @@
 #include "analytics/cohort/withdraw.h"
 #include "analytics/interchange/folder_output.h"
 #include "recorder/base/csv.h"
+#include "recorder/base/files.h"
 #include "recorder/loop.h"
 
 namespace calot::analytics {
@@ -26,13 +27,13 @@ Json jsonOf(const Cell& cell) {
   if (const auto* s = std::get_if<std::string>(&cell)) return *s;
   if (const auto* i = std::get_if<std::int64_t>(&cell)) return *i;
   if (const auto* d = std::get_if<double>(&cell)) return *d;
-  if (const auto* b = std::get_if<Blob>(&cell)) return hexOf(*b);
+  if (const auto* b = std::get_if<Blob>(&cell)) return recorder::hexOf(*b);
   return nullptr;
 }
 
 std::string csvOf(const Cell& cell) {
   if (const auto* s = std::get_if<std::string>(&cell)) return csvCell(*s);
-  if (const auto* b = std::get_if<Blob>(&cell)) return hexOf(*b);
+  if (const auto* b = std::get_if<Blob>(&cell)) return recorder::hexOf(*b);
   return std::holds_alternative<std::monostate>(cell) ? "" : shownCell(cell);
 }
 

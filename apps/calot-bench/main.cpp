@@ -30,36 +30,14 @@ void checkFilter(std::string filter) {
   }
 }
 
-int run(int argc, char** argv) {
-  // The library's options go to the library as they are, all others are ours.
-  std::vector<char*> theirs{argv[0]};
-  std::vector<std::string> ours;
-  for (int i = argc - 1; i > 0; --i) {  // the parser takes them from the back
-    const std::string_view argument = argv[i];
-    if (argument.starts_with("--benchmark_")) {
-      theirs.push_back(argv[i]);
-      if (argument.starts_with(filterOption)) checkFilter(std::string(argument.substr(filterOption.size())));
-    } else {
-      ours.emplace_back(argument);
-    }
-  }
-  CLI::App options{"Measures run time against a peer in the same run.", "calot-bench"};
-  options.footer(
-      "Google Benchmark's options --benchmark_NAME=VALUE are passed on: --benchmark_list_tests=true,\n"
-      "--benchmark_filter=REGEX, --benchmark_out=F.json, ...\n\n"
-      "Example:\n  calot-bench --benchmark_filter='contact|haptics' --figures figures.json");
-  std::string output;
-  bool force = false;
-  options.add_option("--figures", output, "Write the headline figures of this run as one flat JSON map");
-  options.add_flag("--force", force, "Overwrite that file");
-  try {
-    options.parse(std::move(ours));
-  } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return options.exit(error);
-    throw calot::Error(calot::ErrorKind::invalid, fmt::format("{}; try --help", error.what()));
-  }
+/// @param words of the command line that are not ours: the library's options
+int run(const std::string& output, bool force, char* program, std::vector<std::string> words) {
   if (!output.empty()) calot::recorder::refuseOutput(output, force);
-
+  std::vector<char*> theirs{program};
+  for (std::string& word : words) {
+    if (word.starts_with(filterOption)) checkFilter(word.substr(filterOption.size()));
+    theirs.push_back(word.data());
+  }
   auto count = static_cast<int>(theirs.size());
   theirs.push_back(nullptr);
   benchmark::Initialize(&count, theirs.data());
@@ -77,5 +55,15 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return calot::apps::runProgram("calot-bench", [&] { return run(argc, argv); });
+  CLI::App app{"Measures run time against a peer in the same run.", "calot-bench"};
+  app.footer(
+      "Google Benchmark's options --benchmark_NAME=VALUE are passed on: --benchmark_list_tests=true,\n"
+      "--benchmark_filter=REGEX, --benchmark_out=F.json, ...\n\n"
+      "Example:\n  calot-bench --benchmark_filter='contact|haptics' --figures figures.json");
+  app.allow_extras();
+  std::string output;
+  bool force = false;
+  app.add_option("--figures", output, "Write the headline figures of this run as one flat JSON map");
+  app.add_flag("--force", force, "Overwrite that file");
+  return calot::apps::runProgram(app, argc, argv, [&] { return run(output, force, argv[0], app.remaining()); });
 }

@@ -28,6 +28,7 @@
 #include "recorder/recording/probe.h"
 #include "recorder/recording/reader.h"
 
+namespace calot::apps {
 namespace {
 
 namespace fs = std::filesystem;
@@ -47,54 +48,52 @@ fs::path openedCohort() {
       fs::path(QStandardPaths::writableLocation(QStandardPaths::GenericDataLocation).toStdString()) / "calot";
   std::error_code fault;
   fs::create_directories(folder, fault);
-  if (fault)
-    throw calot::Error(calot::ErrorKind::failure, calot::Where{folder.string()},
-                       "the folder cannot be made: " + fault.message());
+  if (fault) throw Error(ErrorKind::failure, Where{folder.string()}, "the folder cannot be made: " + fault.message());
   return folder / "opened.db";
 }
 
 struct Options {
   std::optional<std::string> file;
   std::string pictures, graphics = "auto";
-  calot::apps::LookOptions look;
+  LookOptions look;
 };
 
 int run(const Options& o, int argc, char** argv) {
-  calot::recorder::useComplianceCache(calot::recorder::userCacheFolder());
+  recorder::useComplianceCache(recorder::userCacheFolder());
   // A file that cannot be opened is reported before there is a window, and needs none.
-  std::shared_ptr<const calot::gui::CohortDocument> document;
+  std::shared_ptr<const gui::CohortDocument> document;
   const bool recording = o.file && isRecording(*o.file);
   std::string attempt;  // uuid of the recording's
   if (recording) {
-    calot::recorder::probe(*o.file);
-    attempt = calot::recorder::Recording(*o.file).header().attempt;
+    recorder::probe(*o.file);
+    attempt = recorder::Recording(*o.file).header().attempt;
   }
   bool older = false;  // of an older schema, which the window brings up to date
   if (o.file && !recording) {
     try {
-      document = std::make_shared<const calot::gui::CohortDocument>(*o.file);
-    } catch (const calot::Error& error) {
-      const std::vector<calot::Remedy>& remedies = error.remedies();
-      older = std::find(remedies.begin(), remedies.end(), calot::Remedy::upgradeCohort) != remedies.end();
+      document = std::make_shared<const gui::CohortDocument>(*o.file);
+    } catch (const Error& error) {
+      const std::vector<Remedy>& remedies = error.remedies();
+      older = std::find(remedies.begin(), remedies.end(), Remedy::upgradeCohort) != remedies.end();
       if (!older) throw;
     }
   }
   if (recording && !o.pictures.empty())
-    throw calot::Error(calot::ErrorKind::invalid, "--pictures: needs a cohort database, not a recording");
-  const QSize asked = calot::apps::windowSize(o.look);
-  if (!o.pictures.empty()) calot::apps::requireFolder(o.pictures, "pictures");
-  calot::apps::requireScreen();
-  calot::apps::useGraphics(o.graphics);
+    throw Error(ErrorKind::invalid, "--pictures: needs a cohort database, not a recording");
+  const QSize asked = windowSize(o.look);
+  if (!o.pictures.empty()) requireFolder(o.pictures, "pictures");
+  requireScreen();
+  useGraphics(o.graphics);
 
   QApplication application(argc, argv);
   QApplication::setApplicationName("Calot");
-  calot::gui::theme::apply(o.look.colours.empty() ? calot::gui::settings::colours()
-                                                  : calot::gui::theme::choiceOf(QString::fromStdString(o.look.colours)),
-                           o.look.type == 0 ? calot::gui::settings::type() : o.look.type);
-  const calot::recorder::ProgramFiles files = calot::recorder::ProgramFiles::ofThisProgram();
+  gui::theme::apply(
+      o.look.colours.empty() ? gui::settings::colours() : gui::theme::choiceOf(QString::fromStdString(o.look.colours)),
+      o.look.type == 0 ? gui::settings::type() : o.look.type);
+  const recorder::ProgramFiles files = recorder::ProgramFiles::ofThisProgram();
   const std::vector<fs::path> assets = files.assetRoots();
-  calot::recorder::useEngines(calot::recorder::userEnginePlaces(files.programs(), assets));
-  calot::gui::DashboardWindow window(calot::apps::assessProgram(), assets);
+  recorder::useEngines(recorder::userEnginePlaces(files.programs(), assets));
+  gui::DashboardWindow window(assessProgram(), assets);
   if (document) window.setDocument(document);
   if (!asked.isNull()) window.resize(asked);
   window.show();
@@ -109,17 +108,18 @@ int run(const Options& o, int argc, char** argv) {
 }
 
 }  // namespace
+}  // namespace calot::apps
 
 int main(int argc, char** argv) {
   CLI::App app{"Shows the attempts and checkpoints of a cohort database, or a recording.", "calot-dashboard"};
   app.footer("Example:\n  calot-dashboard c.db");
   app.set_version_flag("--version", "calot-dashboard " CALOT_VERSION);
-  Options o;
+  calot::apps::Options o;
   app.add_option("file", o.file,
                  "Cohort database, as `calot assess --cohort` writes it; or a recording, which is verified, "
                  "assessed and kept in the cohort calot/opened.db of the user's data folder");
   app.add_option("--pictures", o.pictures, "Write a PNG of each page into this folder, and end");
   calot::apps::addLook(app, o.look, "as in the settings");
   calot::apps::addGraphics(app, o.graphics);
-  return calot::apps::runProgram(app, argc, argv, [&] { return run(o, argc, argv); });
+  return calot::apps::runProgram(app, argc, argv, [&] { return calot::apps::run(o, argc, argv); });
 }

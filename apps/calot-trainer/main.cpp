@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -46,6 +47,16 @@ struct Options {
   double seconds = 0.0;
   unsigned threads = 1;
 };
+
+/// The parser alone takes "nan" and "inf". @return empty, or the fault
+std::string positiveSeconds(const std::string& text) {
+  char* end = nullptr;
+  const double seconds = std::strtod(text.c_str(), &end);
+  const bool whole = end != text.c_str() && *end == '\0';
+  return whole && std::isfinite(seconds) && seconds > 0.0
+             ? std::string()
+             : fmt::format("'{}' is not a number of seconds above 0", text);
+}
 
 void add(CLI::App& app, Options& o) {
   app.set_version_flag("--version", recorder::softwareName());
@@ -143,14 +154,10 @@ gui::TrainerSetup setUp(const Options& o, const std::optional<recorder::LoadedSc
   requireFolder(o.folder, "recordings");
   if (!o.pictures.empty()) requireFolder(o.pictures, "pictures");
   gui::TrainerSetup setup;
-  recorder::AttemptSettings& attempt = setup.settings.attempt;
   setup.settings.key = stationKeyOf(o.stationKey);
-  attempt.participant = o.participant;
-  attempt.station = stationOf(o.station, setup.settings.key);
-  attempt.purpose = o.purpose;
-  attempt.handedness = o.handedness;
-  attempt.mode = o.mode == "assessment" ? recorder::Mode::assessment : recorder::Mode::practice;
-  attempt.seed = o.seed;
+  const recorder::Mode mode = o.mode == "assessment" ? recorder::Mode::assessment : recorder::Mode::practice;
+  setup.settings.attempt = {o.participant, stationOf(o.station, setup.settings.key), o.purpose, o.handedness, mode,
+                            o.seed};
   setup.settings.folder = o.folder;
   setup.cohort = cohortOf(o.cohort);
   SourceOptions performer;
@@ -164,7 +171,7 @@ gui::TrainerSetup setUp(const Options& o, const std::optional<recorder::LoadedSc
     setup.scope = who.scope.keys = std::make_shared<recorder::ScopeInput>();
   if (!who.performer.empty() && !who.device.calibration.empty())
     throw Error(ErrorKind::invalid, "--calibration needs a device; a performer takes none");
-  who.mode = attempt.mode;
+  who.mode = mode;
   if (who.device.name.empty() && who.performer.empty()) {
     setup.mouse = std::make_shared<recorder::MouseInput>();
     gui::MouseAttemptInput::AddScope addScope;
@@ -173,7 +180,7 @@ gui::TrainerSetup setUp(const Options& o, const std::optional<recorder::LoadedSc
         return withScope(std::move(source), scope, of, {}, 0);
       };
     }
-    setup.input = std::make_shared<gui::MouseAttemptInput>(setup.mouse, mouseSettings(o, attempt.mode), addScope);
+    setup.input = std::make_shared<gui::MouseAttemptInput>(setup.mouse, mouseSettings(o, mode), addScope);
   } else {
     auto input = std::make_shared<OptionsInput>(who, o.seed);
     // Its faults are reported now. A performer needs a scene; a device is there or not whatever the scene.

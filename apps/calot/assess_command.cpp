@@ -8,7 +8,6 @@
 #include "analytics/regrade.h"
 #include "analytics/uncertainty/uncertainty.h"
 #include "apps/calot/command.h"
-#include "apps/calot/import_command.h"
 #include "apps/calot/replay_report.h"
 #include "gui/words/attempt_tables.h"
 #include "recorder/recording/probe.h"
@@ -91,52 +90,23 @@ void storeJudged(const std::string& file, const AssessOptions& o, analytics::Coh
   }
 }
 
-/// Output for each recording, and the closing table.
-class AssessOutput {
- public:
-  AssessOutput(const AssessOptions& options, bool everyValue) : options_(options), everyValue_(everyValue) {}
+nlohmann::json assessedJson(const recorder::ReplayReport& report, const Stored& stored) {
+  nlohmann::json row = reportJson(report);
+  row["stored"] = stored.how;
+  if (!stored.keyFault.empty()) row["key"] = stored.keyFault;
+  row["checkpoints"] = jsonOf(stored.values, stored.intervals);
+  if (!stored.external.failures.empty()) row["failed_metrics"] = failuresJson(stored.external);
+  return row;
+}
 
-  void add(const recorder::ReplayReport& report, const Stored& stored) {
-    reports_.push_back(report);
-    metrics_.push_back(reportFailures(stored.external, report.path.string()));
-    if (options_.json) {
-      nlohmann::json row = reportJson(report);
-      row["stored"] = stored.how;
-      if (!stored.keyFault.empty()) row["key"] = stored.keyFault;
-      row["checkpoints"] = jsonOf(stored.values, stored.intervals);
-      if (!stored.external.failures.empty()) row["failed_metrics"] = failuresJson(stored.external);
-      list_.push_back(row);
-      return;
-    }
-    printReport(report);
-    if (!stored.keyFault.empty()) fmt::print(stderr, "calot: warning: {}: {}\n", report.path.string(), stored.keyFault);
-    if (!everyValue_) return;
-    std::fflush(stdout);
-    gui::printValues(stored.values, stored.intervals, std::cout);
-    std::cout << '\n' << std::flush;
-  }
-
-  ExitCode end(const analytics::CohortDatabase* database) {
-    Progress::erase();
-    if (options_.json) {
-      printResult("assess", {{"recordings", list_}});
-    } else {
-      std::cout << std::flush;
-      std::fflush(stdout);
-      if (database != nullptr) gui::printAttempts(*database, std::cout);
-    }
-    return worstOf({worstOf(reports_), worstOf(metrics_)});
-  }
-
-  [[nodiscard]] std::size_t count() const { return reports_.size(); }
-
- private:
-  const AssessOptions& options_;
-  bool everyValue_;
-  std::vector<recorder::ReplayReport> reports_;
-  std::vector<ExitCode> metrics_;
-  nlohmann::json list_ = nlohmann::json::array();
-};
+void printAssessed(const recorder::ReplayReport& report, const Stored& stored, bool everyValue) {
+  printReport(report);
+  if (!stored.keyFault.empty()) fmt::print(stderr, "calot: warning: {}: {}\n", report.path.string(), stored.keyFault);
+  if (!everyValue) return;
+  std::fflush(stdout);
+  gui::printValues(stored.values, stored.intervals, std::cout);
+  std::cout << '\n' << std::flush;
+}
 
 /// Leaves out what a run of this share that was cut short has stored already.
 void removeVerified(std::vector<std::string>& files, const analytics::CohortDatabase& database) {
@@ -163,12 +133,13 @@ ExitCode assess(const AssessOptions& o) {
   if (!o.cohort.empty()) database.emplace(o.cohort, analytics::CohortDatabase::Access::create);
   if (database) checkMetrics(metrics, *database);
   if (o.share) removeVerified(files, *database);
-  AssessOutput output(o, everyValue);
+  std::vector<ExitCode> codes;
+  nlohmann::json list = nlohmann::json::array();
+  std::size_t done = 0;
   Progress progress("assessing, recordings", o.json);
-  analytics::AssessSettings settings{.threads = o.threads.value_or(1)};
+  analytics::AssessSettings settings{
+      .threads = o.threads.value_or(1), .engine = {.apart = o.apart}, .metrics = &metrics};
   if (o.cutoff > 0.0) settings.cutoff = o.cutoff;
-  settings.engine.apart = o.apart;
-  settings.metrics = &metrics;
   recorder::WorkerPool pool(o.jobs);
   analytics::judgeAll(files, pool, settings, [&](std::size_t i, analytics::JudgedRecording judged) {
     Stored stored;
@@ -179,10 +150,19 @@ ExitCode assess(const AssessOptions& o) {
       stored.external = std::move(judged.external);
     }
     for (const analytics::CheckpointValue& v : stored.external.values) stored.values.push_back(v);
-    output.add(judged.report, stored);
-    progress.show(output.count(), files.size());
+    codes.push_back(codeOf(judged.report.fault()));
+    codes.push_back(reportFailures(stored.external, judged.report.path.string()));
+    if (o.json) {
+      list.push_back(assessedJson(judged.report, stored));
+    } else {
+      printAssessed(judged.report, stored, everyValue);
+    }
+    progress.show(++done, files.size());
   });
-  return output.end(database ? &*database : nullptr);
+  printResult(o.json, "assess", {{"recordings", list}}, [&](std::ostream& out) {
+    if (database) gui::printAttempts(*database, out);
+  });
+  return worstOf(codes);
 }
 
 }  // namespace

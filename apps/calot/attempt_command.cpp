@@ -82,7 +82,7 @@ void decide(const AttemptOptions& o) {
   } else {
     database.includeAttempts({uuid}, o.reason, o.by);
   }
-  std::cout << fmt::format("{}: attempt {} {}\n", o.cohort, uuid, exclude ? "excluded" : "included again");
+  fmt::print("{}: attempt {} {}\n", o.cohort, uuid, exclude ? "excluded" : "included again");
 }
 
 void tag(const AttemptOptions& o) {

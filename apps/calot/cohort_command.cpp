@@ -8,6 +8,7 @@
 #include "analytics/interchange/export_tables.h"
 #include "apps/calot/command.h"
 #include "apps/calot/replay_report.h"
+#include "recorder/base/files.h"
 
 namespace calot::apps {
 namespace {
@@ -57,10 +58,9 @@ void handOut(const CohortExport& o) {
 Json mergeOne(const std::string& into, const std::string& from, bool json) {
   const analytics::CohortMerge m = analytics::mergeCohorts(into, from);
   if (!json && m.conflicts.empty()) {
-    std::cout << fmt::format("{}: {}: {} participants, {} attempts, {} extended, {} other rows, {} entries filled{}\n",
-                             into, m.changed() ? "merged" : "nothing new", m.participants, m.attempts, m.extended,
-                             m.rows, m.filled,
-                             m.withdrawn > 0 ? fmt::format("; {} withdrawn attempts stay out", m.withdrawn) : "");
+    fmt::print("{}: {}: {} participants, {} attempts, {} extended, {} other rows, {} entries filled{}\n", into,
+               m.changed() ? "merged" : "nothing new", m.participants, m.attempts, m.extended, m.rows, m.filled,
+               m.withdrawn > 0 ? fmt::format("; {} withdrawn attempts stay out", m.withdrawn) : "");
   }
   for (const std::string& conflict : m.conflicts) fmt::print(stderr, "calot: conflict: {}\n", conflict);
   return {{"merged", m.conflicts.empty()},
@@ -121,7 +121,7 @@ void scrub(const CohortOptions& o) {
 
 void upgrade(const CohortOptions& o) {
   const analytics::CohortDatabase database(o.cohort, analytics::CohortDatabase::Access::write);
-  std::cout << fmt::format("{}: schema {}\n", o.cohort, database.schemaVersion());
+  fmt::print("{}: schema {}\n", o.cohort, database.schemaVersion());
 }
 
 void listRegisters(const CohortOptions& o) {
@@ -131,7 +131,7 @@ void listRegisters(const CohortOptions& o) {
   for (const auto& s : r.sites) out["sites"].push_back({{"name", s.name}, {"note", s.note}});
   for (const auto& a : r.arms) out["arms"].push_back({{"name", a.name}, {"note", a.note}});
   for (const auto& s : r.stations) {
-    const std::string key = s.publicKey ? toHex(*s.publicKey) : "";
+    const std::string key = s.publicKey ? recorder::hexOf(*s.publicKey) : "";
     out["stations"].push_back({{"name", s.name}, {"site", s.site}, {"public_key", key}, {"note", s.note}});
   }
   for (const auto& c : r.cohorts)
@@ -154,33 +154,22 @@ void listRegisters(const CohortOptions& o) {
 
 struct NameOptions {
   const CLI::App* command = nullptr;
-  std::string name, cohort, site, note, key;
+  void (*name)(const NameOptions&) = nullptr;
+  std::string who, cohort, site, note, key;
   std::vector<std::string> add, remove;
 
   [[nodiscard]] std::optional<std::string> noteGiven() const { return givenOf(*command, "--note", note); }
-  void printDone() const { std::cout << fmt::format("{}: {} {}\n", cohort, command->get_name(), name); }
 };
-
-void nameSite(const NameOptions& o) {
-  analytics::setNamed(o.cohort, "site", o.name, o.noteGiven());
-  o.printDone();
-}
-
-void nameArm(const NameOptions& o) {
-  analytics::setNamed(o.cohort, "arm", o.name, o.noteGiven());
-  o.printDone();
-}
 
 void nameStation(const NameOptions& o) {
   std::optional<analytics::PublicKey> key;
-  if (!o.key.empty()) key = fromHex<32>(o.key, "--public-key");
-  analytics::setStation(o.cohort, o.name, givenOf(*o.command, "--site", o.site), key, o.noteGiven());
-  o.printDone();
+  if (!o.key.empty()) key = keyOf(o.key, "--public-key");
+  analytics::setStation(o.cohort, o.who, givenOf(*o.command, "--site", o.site), key, o.noteGiven());
 }
 
-void nameCohort(const NameOptions& o) {
-  analytics::setCohort(o.cohort, o.name, o.noteGiven(), o.add, o.remove);
-  o.printDone();
+void enterName(const NameOptions& o) {
+  o.name(o);
+  fmt::print("{}: {} {}\n", o.cohort, o.command->get_name(), o.who);
 }
 
 }  // namespace
@@ -214,15 +203,18 @@ void addCohort(CLI::App& app, Run& run) {
   addOne({"list", "Sites, arms, stations and cohorts of a database", "calot cohort list c.db"}, listRegisters, true);
 
   const auto addName = [&](const CommandText& text, void (*work)(const NameOptions&)) {
-    const auto [command, o] = addCommand(cohort, run, text, work);
+    const auto [command, o] = addCommand(cohort, run, text, enterName);
     o->command = command;
-    command->add_option("name", o->name, "Its name")->required();
+    o->name = work;
+    command->add_option("name", o->who, "Its name")->required();
     command->add_option("--cohort", o->cohort, "Cohort database; made where there is none")->required();
     command->add_option("--note", o->note, "A word on it; never about a person");
     return std::pair{command, o};
   };
-  addName({"site", "Name a site", "calot cohort site north --cohort c.db"}, nameSite);
-  addName({"arm", "Name a study arm", "calot cohort arm simulator-first --cohort c.db"}, nameArm);
+  addName({"site", "Name a site", "calot cohort site north --cohort c.db"},
+          [](const NameOptions& o) { analytics::setNamed(o.cohort, "site", o.who, o.noteGiven()); });
+  addName({"arm", "Name a study arm", "calot cohort arm simulator-first --cohort c.db"},
+          [](const NameOptions& o) { analytics::setNamed(o.cohort, "arm", o.who, o.noteGiven()); });
   const auto [station, s] = addName({"station", "Name a station, and the key that it signs with",
                                      "calot cohort station trainer-1 --cohort c.db --site north"},
                                     nameStation);
@@ -230,7 +222,7 @@ void addCohort(CLI::App& app, Run& run) {
   station->add_option("--public-key", s->key, "64 hexadecimal digits, as `calot station show` prints them");
   const auto [name, n] = addName(
       {"name", "Name a cohort of participants", "calot cohort name second-years --cohort c.db --add P1 --add P2"},
-      nameCohort);
+      [](const NameOptions& o) { analytics::setCohort(o.cohort, o.who, o.noteGiven(), o.add, o.remove); });
   name->add_option("--add", n->add, "Participant who belongs to it; may be repeated")->allow_extra_args(false);
   name->add_option("--remove", n->remove, "Participant who does not any more")->allow_extra_args(false);
 

@@ -125,22 +125,21 @@ std::size_t terminalColumns() {
 }
 
 std::string wrappedText(const std::string& text, std::size_t columns, std::size_t indent, std::size_t used) {
+  const std::string below = '\n' + std::string(indent, ' ');
   std::string out;
   std::istringstream lines(text);
   bool first = true;
   for (std::string line; std::getline(lines, line); first = false) {
-    if (!first) out += '\n' + std::string(indent, ' ');
+    if (!first) out += below;
     std::size_t at = first ? used : indent;
     bool empty = true;
     std::istringstream words(line);
     for (std::string word; words >> word; empty = false) {
       const std::size_t width = columnsOf(word);
       if (!empty && at + 1 + width > columns) {
-        out += '\n' + std::string(indent, ' ');
+        out += below;
         at = indent;
-        empty = true;
-      }
-      if (!empty) {
+      } else if (!empty) {
         out += ' ';
         ++at;
       }

@@ -79,32 +79,22 @@ void Progress::erase() {
   std::fflush(stderr);
 }
 
-bool Progress::isDue() {
-  if (!terminal_) return false;
-  const std::int64_t now =
-      std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::steady_clock::now().time_since_epoch())
-          .count();
-  if (now - last_ < 100) return false;
-  last_ = now;
-  return true;
-}
-
 void Progress::draw(const std::string& text) {
+  const auto now = std::chrono::steady_clock::now();
+  if (!terminal_ || now - last_ < std::chrono::milliseconds(100)) return;
+  last_ = now;
   lineDrawn = true;
   std::fputs(("\r\033[K" + text).c_str(), stderr);
   std::fflush(stderr);
 }
 
 void Progress::show(std::uint64_t done, std::uint64_t of) {
-  if (!isDue()) return;
   draw(of > 0 ? fmt::format("{}: {} of {} ({:.0f} %)", what_, done, of,
                             100.0 * static_cast<double>(done) / static_cast<double>(of))
               : fmt::format("{}: {}", what_, done));
 }
 
-void Progress::showShare(double share) {
-  if (isDue()) draw(fmt::format("{}: {:.0f} %", what_, 100.0 * share));
-}
+void Progress::showShare(double share) { draw(fmt::format("{}: {:.0f} %", what_, 100.0 * share)); }
 
 std::string wholeNumber(const std::string& text) {
   std::uint64_t value = 0;
@@ -140,5 +130,12 @@ void stopOnSignals() {
 }
 
 std::atomic<bool>& stopRequested() { return requested; }
+
+std::array<std::byte, 32> keyOf(const std::string& text, const char* option) {
+  std::array<std::byte, 32> bytes{};
+  if (!recorder::readHex(text, bytes))
+    throw Error(ErrorKind::invalid, fmt::format("{}: 64 hexadecimal digits are expected", option));
+  return bytes;
+}
 
 }  // namespace calot::apps

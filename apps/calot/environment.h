@@ -3,17 +3,15 @@
 // Ending a run in good order: what SIGINT and SIGTERM ask for.
 #pragma once
 
-#include <fmt/format.h>
 #include <array>
 #include <atomic>
-#include <charconv>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
 
-#include "recorder/base/errors.h"
 #include "recorder/kept/engine_folders.h"
 
 namespace calot::apps {
@@ -46,13 +44,12 @@ class Progress {
   static void erase();
 
  private:
-  /// @returns whether the line is drawn now: on a terminal, and not again at once
-  bool isDue();
-  static void draw(const std::string& text);
+  /// On a terminal, and not again at once.
+  void draw(const std::string& text);
 
   std::string what_;
   bool terminal_;
-  std::int64_t last_ = 0;
+  std::chrono::steady_clock::time_point last_;
 };
 
 /// For CLI::Option::check: digits that fit 64 bits. The parser alone would wrap "-1" and saturate what is too large.
@@ -68,27 +65,7 @@ void stopOnSignals();
 /// Was it asked? The program itself may ask, too.
 std::atomic<bool>& stopRequested();
 
-template <class Byte, std::size_t N>
-std::string toHex(const std::array<Byte, N>& bytes) {
-  std::string text;
-  for (const Byte byte : bytes) text += fmt::format("{:02x}", static_cast<unsigned>(byte));
-  return text;
-}
-
-/// @throws Error (invalid) naming the option, unless the text is N bytes in hexadecimal.
-template <std::size_t N>
-std::array<std::byte, N> fromHex(const std::string& text, const char* option) {
-  std::array<std::byte, N> bytes{};
-  bool good = text.size() == 2 * N;
-  for (std::size_t i = 0; good && i < N; ++i) {
-    unsigned value = 0;
-    const char* begin = text.data() + 2 * i;
-    const auto [end, error] = std::from_chars(begin, begin + 2, value, 16);
-    good = error == std::errc() && end == begin + 2;
-    bytes[i] = static_cast<std::byte>(value);
-  }
-  if (!good) throw Error(ErrorKind::invalid, fmt::format("{}: {} hexadecimal digits are expected", option, 2 * N));
-  return bytes;
-}
+/// @throws Error (invalid) naming the option, unless the text is 32 bytes in hexadecimal.
+std::array<std::byte, 32> keyOf(const std::string& text, const char* option);
 
 }  // namespace calot::apps

@@ -4,7 +4,7 @@
 #include "analytics/cohort/withdraw.h"
 #include "analytics/interchange/export_tables.h"
 #include "apps/calot/command.h"
-#include "apps/calot/import_command.h"
+#include "apps/calot/replay_report.h"
 #include "recorder/recording/layout.h"
 #include "recorder/recording/probe.h"
 #include "recorder/recording/recorded_columns.h"

@@ -232,11 +232,8 @@ GoldenReplay perform(const GoldenEntry& entry, const std::filesystem::path& reco
   SourceOptions who;
   who.performer = entry.performer;
   const std::unique_ptr<recorder::SampleSource> source = makeSource(who, model.scene(), entry.seed);
-  recorder::AttemptSettings settings;
-  settings.purpose = "golden";
-  settings.seed = entry.seed;
-  const recorder::AttemptHeader header =
-      recorder::makeHeader(model, std::move(scene.assets), source->provenance(), settings);
+  const recorder::AttemptHeader header = recorder::makeHeader(model, std::move(scene.assets), source->provenance(),
+                                                              {.purpose = "golden", .seed = entry.seed});
   RunDigests digests(header.layout);
   analytics::CheckpointCollector collector(header, model.scene());
   recorder::WorkerPool pool(threads);
@@ -245,10 +242,8 @@ GoldenReplay perform(const GoldenEntry& entry, const std::filesystem::path& reco
   if (!recording.empty()) session.join(writer.emplace(recording, header, recorder::WriterOptions{true}));
   session.join(digests);
   session.join(collector);
-  recorder::RunSettings run;
-  run.seconds = entry.seconds;
-  run.stop = &stopRequested();
-  const recorder::RunReport report = recorder::runAttempt(session, *source, run);
+  const recorder::RunReport report =
+      recorder::runAttempt(session, *source, {.seconds = entry.seconds, .stop = &stopRequested()});
   if (writer) writer->finish();
   if (stopRequested()) throw Error(ErrorKind::failure, "golden: stopped; nothing was replaced");
   prepared->save();

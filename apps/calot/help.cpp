@@ -25,8 +25,6 @@ std::string manual() {
 /// Descriptions of options and commands in lines that fit.
 class FittingFormatter final : public CLI::Formatter {
  public:
-  explicit FittingFormatter(std::size_t columns) : columns_(columns) {}
-
   std::string make_option_desc(const CLI::Option* option) const override { return fitting(option->get_description()); }
 
   std::string make_subcommand(const CLI::App* command) const override {
@@ -46,10 +44,8 @@ class FittingFormatter final : public CLI::Formatter {
 
  private:
   [[nodiscard]] std::string fitting(const std::string& description) const {
-    return wrappedText(description, columns_ - get_column_width());
+    return wrappedText(description, terminalColumns() - get_column_width());
   }
-
-  std::size_t columns_;
 };
 
 std::vector<const CLI::App*> subcommandsOf(const CLI::App& command) {
@@ -66,8 +62,7 @@ void addLongOptions(const CLI::App& command, std::vector<std::string>& names) {
 }
 
 bool takesWords(const CLI::App& command) {
-  const std::vector<const CLI::Option*> options = command.get_options();
-  return std::any_of(options.begin(), options.end(), [](const CLI::Option* each) { return each->get_positional(); });
+  return !command.get_options([](const CLI::Option* each) { return each->get_positional(); }).empty();
 }
 
 std::vector<std::string> namesOf(const std::vector<const CLI::App*>& commands) {
@@ -78,7 +73,7 @@ std::vector<std::string> namesOf(const std::vector<const CLI::App*>& commands) {
 
 }  // namespace
 
-std::shared_ptr<CLI::FormatterBase> helpForm() { return std::make_shared<FittingFormatter>(terminalColumns()); }
+std::shared_ptr<CLI::FormatterBase> helpForm() { return std::make_shared<FittingFormatter>(); }
 
 std::string wrongWord(const CLI::App& app, const std::vector<std::string>& words, const CLI::ParseError& fault) {
   const CLI::App* at = &app;

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // calot import: motion without a scene into a cohort.
 
-#include "apps/calot/import_command.h"
-
 #include <algorithm>
 #include <map>
 #include <set>
@@ -113,44 +111,7 @@ struct ImportedFile {
   std::optional<recorder::TrackedMotion> motion;
   std::vector<analytics::CheckpointValue> values;
   analytics::MetricOutcomes external;
-
-  void addExternal() { values.insert(values.end(), external.values.begin(), external.values.end()); }
 };
-
-/// Runs `read`, then `store`. A damaged file, or a conflict when it is stored, is the file's own result; what ends
-/// every file (a wrong command line, a database that cannot be used) is thrown.
-ImportedFile importFile(const std::function<recorder::TrackedMotion()>& read,
-                        const std::function<void(ImportedFile&)>& store) {
-  ImportedFile result;
-  try {
-    result.motion = read();
-    store(result);
-  } catch (const Error& e) {
-    if (e.kind() == ErrorKind::invalid || e.kind() == ErrorKind::failure ||
-        (result.motion && e.kind() != ErrorKind::refused))
-      throw;
-    result.code = codeOf(e.kind());
-    result.error = messageOf(e);
-  }
-  return result;
-}
-
-/// Computes the users' own metrics of `file.motion`, makes or opens the cohort if it is not open yet, stores all values
-/// and their result in `file`.
-void storeImported(const std::string& cohort, std::optional<analytics::CohortDatabase>& database,
-                   const analytics::MotionDeclaration& declaration, const std::vector<analytics::MetricScript>& metrics,
-                   ImportedFile& file) {
-  file.external = analytics::externalOf(*file.motion, declaration, metrics);
-  if (!database) database.emplace(cohort, analytics::CohortDatabase::Access::create);
-  analytics::StoredMotion stored = analytics::storeMotion(*database, *file.motion, declaration);
-  file.how = importedName(stored.imported);
-  file.values = std::move(stored.values);
-  const std::string attempt = analytics::recordOf(*file.motion, declaration).uuid;
-  if (analytics::storeExternal(*database, attempt, file.external, metrics) &&
-      stored.imported == analytics::Imported::unchanged)
-    file.how = importedName(analytics::Imported::extended);
-  file.addExternal();
-}
 
 /// A row of the output with --json.
 Json fileJson(const std::string& file, const ImportedFile& result) {
@@ -166,56 +127,84 @@ Json fileJson(const std::string& file, const ImportedFile& result) {
   return row;
 }
 
-/// Reads first, so that a file that cannot be read makes no database.
-ImportedFile importOne(const std::string& file, const ImportOptions& o, const std::optional<recorder::ColumnMap>& map,
-                       const std::vector<analytics::MetricScript>& metrics,
-                       std::optional<analytics::CohortDatabase>& database) {
-  return importFile([&] { return readMotion(file, map ? &*map : nullptr); },
-                    [&](ImportedFile& result) {
-                      if (!o.cohort.empty()) {
-                        storeImported(o.cohort, database, o.declaration, metrics, result);
-                        return;
-                      }
-                      result.external = analytics::externalOf(*result.motion, o.declaration, metrics);
-                      result.values = analytics::valuesFromSamples(
-                          *result.motion, {o.declaration.outcome, o.declaration.handedness, o.cutoff});
-                      result.addExternal();
-                    });
-}
+/// What the files of a run share.
+struct Import {
+  explicit Import(const ImportOptions& options) : o(options), metrics(readMetrics(o.metrics)) {
+    checkMetrics(metrics, o.cohort);
+  }
+
+  /// Reads a file, computes its values, stores them where there is a cohort. A damaged file, or a conflict when it is
+  /// stored, is the file's own result; what ends every file (a wrong command line, a database that cannot be used) is
+  /// thrown. @param enrol called before the first value is stored
+  ImportedFile take(const std::filesystem::path& file, const recorder::ColumnMap* map,
+                    const analytics::MotionDeclaration& declaration, const std::function<void()>& enrol = {}) {
+    ImportedFile result;
+    try {
+      result.motion = readMotion(file, map);
+      // Only now, so that files none of which can be read make no database.
+      if (!o.cohort.empty() && !database) database.emplace(o.cohort, analytics::CohortDatabase::Access::create);
+      if (enrol) enrol();
+      compute(declaration, result);
+    } catch (const Error& e) {
+      if (e.kind() == ErrorKind::invalid || e.kind() == ErrorKind::failure ||
+          (result.motion && e.kind() != ErrorKind::refused))
+        throw;
+      result.code = codeOf(e.kind());
+      result.error = messageOf(e);
+    }
+    codes.push_back(worstOf({result.code, reportFailures(result.external, file.string())}));
+    if (o.json) list.push_back(fileJson(file.string(), result));
+    return result;
+  }
+
+  const ImportOptions& o;
+  std::vector<analytics::MetricScript> metrics;
+  std::optional<analytics::CohortDatabase> database;
+  std::vector<ExitCode> codes;
+  Json list = Json::array();
+
+ private:
+  void compute(const analytics::MotionDeclaration& declaration, ImportedFile& file) {
+    file.external = analytics::externalOf(*file.motion, declaration, metrics);
+    if (database) {
+      analytics::StoredMotion stored = analytics::storeMotion(*database, *file.motion, declaration);
+      file.how = importedName(stored.imported);
+      file.values = std::move(stored.values);
+      const std::string attempt = analytics::recordOf(*file.motion, declaration).uuid;
+      if (analytics::storeExternal(*database, attempt, file.external, metrics) &&
+          stored.imported == analytics::Imported::unchanged)
+        file.how = importedName(analytics::Imported::extended);
+    } else {
+      file.values = analytics::valuesFromSamples(*file.motion, {declaration.outcome, declaration.handedness, o.cutoff});
+    }
+    file.values.insert(file.values.end(), file.external.values.begin(), file.external.values.end());
+  }
+};
 
 ExitCode importFiles(const ImportOptions& o) {
   checkStored(o.cohort, o.cutoff);
   std::optional<recorder::ColumnMap> map;
   if (!o.columns.empty()) map = recorder::readColumnMap(o.columns);
-  const std::vector<analytics::MetricScript> metrics = readMetrics(o.metrics);
-  checkMetrics(metrics, o.cohort);
-  std::optional<analytics::CohortDatabase> database;
-  std::vector<ExitCode> codes;
-  Json list = Json::array();
+  Import import(o);
   Progress progress("importing, files", o.json);
   for (const std::string& file : o.files) {
-    const ImportedFile result = importOne(file, o, map, metrics, database);
-    codes.push_back(worstOf({result.code, reportFailures(result.external, file)}));
-    progress.show(codes.size(), o.files.size());
+    const ImportedFile result = import.take(file, map ? &*map : nullptr, o.declaration);
+    progress.show(import.codes.size(), o.files.size());
     Progress::erase();
     if (!result.error.empty()) fmt::print(stderr, "calot: {}\n", result.error);
-    if (o.json) {
-      list.push_back(fileJson(file, result));
-    } else if (result.error.empty()) {
-      std::cout << fmt::format("{}: {}, {:.2f} s, {} rows\n", file, o.cohort.empty() ? "shown" : result.how,
-                               result.motion->time.back(), result.motion->time.size());
+    if (!o.json && result.error.empty()) {
+      fmt::print("{}: {}, {:.2f} s, {} rows\n", file, o.cohort.empty() ? "shown" : result.how,
+                 result.motion->time.back(), result.motion->time.size());
       if (o.files.size() == 1 || o.cohort.empty()) {
         gui::printValues(result.values, {}, std::cout);
         std::cout << '\n';
       }
     }
   }
-  if (o.json) {
-    printResult("import", {{"files", list}});
-  } else if (database) {
-    gui::printAttempts(*database, std::cout);
-  }
-  return worstOf(codes);
+  printResult(o.json, "import", {{"files", import.list}}, [&](std::ostream& out) {
+    if (import.database) gui::printAttempts(*import.database, out);
+  });
+  return worstOf(import.codes);
 }
 
 /// "expert 6, novice 6", or empty without groups.
@@ -229,24 +218,23 @@ std::string groupsOf(const analytics::MotionManifest& manifest) {
   return " (" + text + ")";
 }
 
-void printSummary(const analytics::MotionManifest& manifest, const std::map<std::string, std::size_t>& counts,
-                  std::size_t practice) {
+std::string summaryOf(const analytics::MotionManifest& manifest, const std::map<std::string, std::size_t>& counts,
+                      std::size_t practice) {
   std::string how;
   for (const auto& [word, files] : counts) how += fmt::format("{}{} {}", how.empty() ? "" : ", ", files, word);
-  std::cout << fmt::format("{}: {} files: {}; {} participants{}\n", manifest.path, manifest.rows.size(), how,
-                           manifest.participants.size(), groupsOf(manifest));
-  if (practice > 0) {
-    std::cout << fmt::format(
+  std::string text = fmt::format("{}: {} files: {}; {} participants{}\n", manifest.path, manifest.rows.size(), how,
+                                 manifest.participants.size(), groupsOf(manifest));
+  if (practice > 0)
+    text += fmt::format(
         "{} in practice mode: studies leave these out (a column \"mode\", or --mode assessment, says otherwise)\n",
         practice);
-  }
+  return text;
 }
 
 ExitCode importManifest(const ImportOptions& o) {
   std::vector<Error> faults;
   const analytics::MotionManifest manifest =
       analytics::readMotionManifest(o.manifest, o.declaration, o.columns, faults);
-  std::optional<analytics::CohortDatabase> database;
   std::optional<analytics::Enrolment> enrolment;
   if (std::filesystem::exists(o.cohort)) {
     enrolment.emplace(analytics::CohortDatabase(o.cohort, analytics::CohortDatabase::Access::write));
@@ -254,47 +242,33 @@ ExitCode importManifest(const ImportOptions& o) {
     faults.insert(faults.end(), conflicts.begin(), conflicts.end());
   }
   if (!faults.empty()) return refuseRows(faults);
-  const std::vector<analytics::MetricScript> metrics = readMetrics(o.metrics);
-  checkMetrics(metrics, o.cohort);
-
-  std::vector<ExitCode> codes;
+  Import import(o);
   std::vector<std::string> errors;
   std::map<std::string, std::size_t> counts;
   std::set<std::string> enrolled;
   std::size_t practice = 0;
-  Json list = Json::array();
   {
     Progress progress("importing, files", o.json);
     for (const analytics::MotionRow& row : manifest.rows) {
-      progress.show(codes.size(), manifest.rows.size());
+      progress.show(import.codes.size(), manifest.rows.size());
       const auto map = manifest.maps.find(row.columns);
+      const auto enrol = [&] {
+        if (!enrolment) enrolment.emplace(*import.database);
+        const std::string& who = row.declaration.participant;
+        if (!who.empty() && enrolled.insert(who).second)
+          enrolment->add(*import.database, manifest.participants.at(who));
+      };
       const ImportedFile result =
-          importFile([&] { return readMotion(row.file, map == manifest.maps.end() ? nullptr : &map->second); },
-                     [&](ImportedFile& stored) {
-                       // Only now, so that files none of which can be read make no database.
-                       if (!database) database.emplace(o.cohort, analytics::CohortDatabase::Access::create);
-                       if (!enrolment) enrolment.emplace(*database);
-                       const std::string& who = row.declaration.participant;
-                       if (!who.empty() && enrolled.insert(who).second)
-                         enrolment->add(*database, manifest.participants.at(who));
-                       storeImported(o.cohort, database, row.declaration, metrics, stored);
-                     });
-      codes.push_back(worstOf({result.code, reportFailures(result.external, row.file.string())}));
+          import.take(row.file, map == manifest.maps.end() ? nullptr : &map->second, row.declaration, enrol);
       ++counts[result.how];
       if (result.error.empty() && row.declaration.mode == recorder::Mode::practice) ++practice;
       if (!result.error.empty())
         errors.push_back(fmt::format("{}: line {}: {}", manifest.path, row.line, result.error));
-      if (o.json) list.push_back(fileJson(row.file.string(), result));
     }
   }
-  if (o.json) {
-    printResult("import", {{"files", list}});
-  } else {
-    printSummary(manifest, counts, practice);
-  }
-  std::cout.flush();
+  printResult(o.json, "import", {{"files", import.list}}, summaryOf(manifest, counts, practice));
   for (const std::string& error : errors) fmt::print(stderr, "calot: {}\n", error);
-  return worstOf(codes);
+  return worstOf(import.codes);
 }
 
 /// For CLI::Option::check.

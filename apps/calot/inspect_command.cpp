@@ -5,6 +5,7 @@
 #include <map>
 
 #include "apps/calot/command.h"
+#include "recorder/base/files.h"
 #include "recorder/recording/layout.h"
 #include "recorder/recording/probe.h"
 #include "recorder/recording/reader.h"
@@ -75,14 +76,14 @@ Json describe(recorder::Recording& recording, const recorder::ChainVerdict& chai
   out["flushes"] = recording.status().size() - 1;
   out["chain"] = chain.intact ? "intact" : "broken";
   if (!chain.intact) out["chain_broken_at_flush"] = chain.flush;
-  const std::string head = toHex(recording.status().back().chain);
+  const std::string head = recorder::hexOf(recording.status().back().chain);
   out["chain_head"] = head;
   const std::optional<recorder::RecordedSignature>& signature = recording.signature();
   out["signature"] = !signature                                         ? "none"
                      : !signature->value                                ? "unfinished: its writer was killed"
                      : signature->fits(recording.status().back().chain) ? "valid"
                                                                         : "invalid";
-  if (signature) out["public_key"] = toHex(signature->publicKey);
+  if (signature) out["public_key"] = recorder::hexOf(signature->publicKey);
   out["this_simulation_version"] = simulationVersion;
   Json bytes;
   std::uint64_t whole = 0;
@@ -193,10 +194,10 @@ void inspect(const InspectOptions& o) {
   recorder::Recording recording(o.file);
   const Json d = describe(recording, chain);
   printResult(o.json, "inspect", d, inspectText(d));
-  const std::string wanted = o.key.empty() ? "" : toHex(fromHex<32>(o.key, "--public-key"));
+  const std::string wanted = o.key.empty() ? "" : recorder::hexOf(keyOf(o.key, "--public-key"));
   if (!chain.intact) throw Error(ErrorKind::refused, fmt::format("{}: {}", o.file, chain.what));
   const auto& signature = recording.signature();
-  if (!wanted.empty() && (!signature || !signature->value || toHex(signature->publicKey) != wanted))
+  if (!wanted.empty() && (!signature || !signature->value || recorder::hexOf(signature->publicKey) != wanted))
     throw Error(ErrorKind::refused, fmt::format("{}: not signed by that key", o.file));
 }
 

@@ -175,7 +175,7 @@ void meshSurface(const MeshOptions& o) {
     report.crossing = findSelfCrossing(whole);
     writeOutputs(o, whole, report);
   }
-  printResult(o.json, "mesh", Json::parse(meshReportJson(report)), meshReportText(report));
+  printResult(o.json, "mesh", meshReportJson(report), meshReportText(report));
   for (const std::string& warning : meshWarnings(report))
     fmt::print(stderr, "calot: warning: {}: {}\n", o.input, warning);
   if (!report.faults.empty()) throw Error(ErrorKind::refused, o.input + ": " + report.faults.front());

@@ -192,7 +192,8 @@ std::string meshReportText(const MeshReport& report) {
   fmt::format_to(out, "level-set offset   {:+.3f} mm\n", 1000.0 * stuffed.levelOffset);
   fmt::format_to(out, "largest distance   {:.2f} mm from surface to mesh, {:.2f} mm from mesh to surface\n",
                  1000.0 * r.surfaceToMesh, 1000.0 * r.meshToSurface);
-  fmt::format_to(out, "dihedral angles    {:.2f} to {:.2f} degrees\n", r.dihedralMin / perDegree, r.dihedralMax / perDegree);
+  fmt::format_to(out, "dihedral angles    {:.2f} to {:.2f} degrees\n", r.dihedralMin / perDegree,
+                 r.dihedralMax / perDegree);
   if (r.lostParts + r.lostComponents + r.droppedPieces == 0) {
     fmt::format_to(out, "thin parts         none lost (none farther than {:.2f} mm)\n", 1000.0 * r.lostDistance);
   } else {

@@ -89,11 +89,6 @@ std::uint32_t minOf(const std::string& rule) {
   return static_cast<std::uint32_t>(least);
 }
 
-std::string figureName(const analytics::NormCheckpoint& c) {
-  if (c.metric) return c.checkpoint + " (external)";
-  return c.subject.empty() ? c.checkpoint : c.checkpoint + " " + c.subject;
-}
-
 Json normJson(const analytics::Norm& norm) {
   const auto [competent, others] = analytics::passRates(norm);
   Json j{{"name", norm.name},
@@ -111,7 +106,6 @@ Json normJson(const analytics::Norm& norm) {
          {"seed", fmt::format("{}", norm.seed)},
          {"use", analytics::useOf(norm)},
          {"checkpoints", Json::array()}};
-  const auto number = [](const std::optional<double>& v) { return v ? Json(*v) : Json(nullptr); };
   for (const analytics::NormCheckpoint& c : norm.checkpoints) {
     j["checkpoints"].push_back({{"checkpoint", c.checkpoint},
                                 {"subject", c.subject},
@@ -119,9 +113,9 @@ Json normJson(const analytics::Norm& norm) {
                                 {"direction", analytics::nameOf(c.direction)},
                                 {"log_scale", c.logScale},
                                 {"in_rule", c.inRule},
-                                {"cut_si", number(c.cut)},
-                                {"lower_si", number(c.lower)},
-                                {"upper_si", number(c.upper)},
+                                {"cut_si", c.cut},
+                                {"lower_si", c.lower},
+                                {"upper_si", c.upper},
                                 {"fixed", analytics::isFixed(c)},
                                 {"reason", c.reason}});
     if (c.metric) j["checkpoints"].back()["source_sha256"] = c.metric->sha256;
@@ -140,8 +134,9 @@ void printNorm(const analytics::Norm& norm, std::ostream& out) {
         c.metric ? &c.metric->definition : analytics::findCheckpoint(c.checkpoint);
     const double factor = d != nullptr ? d->displayFactor : 1.0;
     const auto number = [&](double v) { return analytics::significant(v * factor); };
-    table.rows.push_back({figureName(c), d == nullptr || d->displayUnit == "1" ? "" : d->displayUnit,
-                          analytics::nameOf(c.direction), c.cut ? number(*c.cut) : "-",
+    table.rows.push_back({c.metric ? c.checkpoint + " (external)" : analytics::figureName(c.checkpoint, c.subject),
+                          d == nullptr || d->displayUnit == "1" ? "" : d->displayUnit, analytics::nameOf(c.direction),
+                          c.cut ? number(*c.cut) : "-",
                           c.lower ? fmt::format("[{}, {}]", number(*c.lower), number(*c.upper)) : "-",
                           c.inRule ? "counts" : "", c.reason});
   }

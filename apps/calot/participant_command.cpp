@@ -58,17 +58,17 @@ void printPlan(const WithdrawOptions& o, const analytics::Withdrawal& w, const a
   const std::set<fs::path> gone(files.remove.begin(), files.remove.end());
   for (const analytics::ExportRow& e : w.exports) {
     if (!isFilm(e) || (fs::exists(e.target) && gone.count(e.target) == 0))
-      std::cout << fmt::format("was handed out: {} {} ({}); not removed\n", e.kind, e.target, e.utc);
+      fmt::print("was handed out: {} {} ({}); not removed\n", e.kind, e.target, e.utc);
   }
   for (const fs::path& file : files.naming)
     std::cout << "still names it: " << file.string() << "; not removed, look into it\n";
   if (w.scope != analytics::WithdrawalScope::all) return;
-  std::cout << fmt::format("the name behind {} is not kept by Calot: remove it where it is\n", o.pseudonym);
+  fmt::print("the name behind {} is not kept by Calot: remove it where it is\n", o.pseudonym);
   std::vector<std::string> words = w.attempts;
   words.insert(words.end(), files.unknown.begin(), files.unknown.end());
   words.push_back(w.pseudonym);
   for (const std::string& place : analytics::placesLeft(o.cohort, w, words))
-    std::cout << fmt::format("still names it: {} {}; written by a person, look into it\n", o.cohort, place);
+    fmt::print("still names it: {} {}; written by a person, look into it\n", o.cohort, place);
 }
 
 void withdraw(const WithdrawOptions& o) {
@@ -94,12 +94,11 @@ void withdraw(const WithdrawOptions& o) {
   w.attempts.insert(w.attempts.end(), files.unknown.begin(), files.unknown.end());
   if (w.known) {
     const std::string tombstone = analytics::withdraw(o.cohort, w);
-    std::cout << fmt::format("{}: {} attempts and {} files removed; tombstone {}\n", o.cohort, w.attempts.size(),
-                             files.remove.size(), tombstone);
+    fmt::print("{}: {} attempts and {} files removed; tombstone {}\n", o.cohort, w.attempts.size(), files.remove.size(),
+               tombstone);
   } else {
     analytics::scrub(o.cohort);
-    std::cout << fmt::format("{}: {} files removed; the participant was not in the database\n", o.cohort,
-                             files.remove.size());
+    fmt::print("{}: {} files removed; the participant was not in the database\n", o.cohort, files.remove.size());
   }
 }
 
@@ -153,7 +152,7 @@ void enter(const ParticipantOptions& o) {
     database.setParticipant(o.pseudonym, {givenOf(*o.command, "--group", o.group), givenOf(*o.command, "--arm", o.arm),
                                           givenOf(*o.command, "--site", o.site), experience, consent});
   }
-  std::cout << fmt::format("{}: participant {} {}\n", o.database, o.pseudonym, isNew ? "added" : "changed");
+  fmt::print("{}: participant {} {}\n", o.database, o.pseudonym, isNew ? "added" : "changed");
 }
 
 void listParticipants(const ParticipantFilter& o) {

@@ -65,14 +65,9 @@ void addCheckpoint(PlannedStudy& planned, const std::string& text, bool lognorma
   const std::size_t colon = text.rfind(':');
   const std::vector<std::string> words = split(colon == std::string::npos ? text : text.substr(colon + 1), ',');
   std::vector<double> numbers;
-  for (const std::string& word : words) {
-    std::string fault;
-    numbers.push_back(recorder::readFiniteNumber(word, fault));
-    if (fault.empty()) continue;
-    numbers.clear();
-    break;
-  }
-  if (colon == std::string::npos || colon == 0 || numbers.size() != 4)
+  std::string fault;
+  for (const std::string& word : words) numbers.push_back(recorder::readFiniteNumber(word, fault));
+  if (colon == std::string::npos || colon == 0 || !fault.empty() || numbers.size() != 4)
     failPower(fmt::format("--checkpoint {}: NAME:MEAN,SD,MEAN,SD is expected", recorder::shown(text)));
   planned.names.push_back(recorder::shown(text.substr(0, colon)));
   planned.plan.checkpoints.push_back(

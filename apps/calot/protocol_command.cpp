@@ -25,11 +25,11 @@ struct ProtocolOptions {
 void checkProtocol(const ProtocolOptions& o) {
   const analytics::Protocol p = analytics::readProtocol(findAsset(o.protocol, "protocols", "protocol"));
   const auto primary = std::count_if(p.hypotheses.begin(), p.hypotheses.end(), [](const auto& h) { return h.primary; });
-  std::cout << fmt::format("{}: protocol {} version {}, {} hypotheses, {} of them primary, SHA-256 {}\n", p.file,
-                           p.name, p.version, p.hypotheses.size(), primary, p.sha256);
+  fmt::print("{}: protocol {} version {}, {} hypotheses, {} of them primary, SHA-256 {}\n", p.file, p.name, p.version,
+             p.hypotheses.size(), primary, p.sha256);
   const double mark = p.level / static_cast<double>(primary);
   const std::size_t least = analytics::leastGroups(mark);
-  std::cout << fmt::format(
+  fmt::print(
       "Support of any primary hypothesis needs p <= {:.3g} ({:g}, Holm over {}). Groups of {} and {} are the smallest "
       "equal ones that can reach it (smallest p {:.2g}, without ties); smaller ones can support none.\n",
       mark, p.level, primary, least, least, analytics::smallestRankTestP(least, least));
@@ -41,9 +41,8 @@ void registerProtocol(const ProtocolOptions& o) {
   bool added = false;
   const analytics::RegisteredProtocol stored =
       database.registerProtocol({p.name, p.version, p.sha256, p.text}, o.by, added);
-  std::cout << fmt::format("{}: protocol {} version {} {} {} by {}, SHA-256 {}\n", o.database, stored.name,
-                           stored.version, added ? "registered on" : "was registered on", stored.registeredUtc,
-                           stored.by, stored.sha256);
+  fmt::print("{}: protocol {} version {} {} {} by {}, SHA-256 {}\n", o.database, stored.name, stored.version,
+             added ? "registered on" : "was registered on", stored.registeredUtc, stored.by, stored.sha256);
 }
 
 void lockAnalysis(const ProtocolOptions& o) {
@@ -65,8 +64,8 @@ void lockAnalysis(const ProtocolOptions& o) {
   present.by = o.by;
   bool added = false;
   const analytics::AnalysisLock stored = analytics::storeAnalysisLock(o.database, present, added);
-  std::cout << fmt::format("{}: analysis of protocol {} {} {} by {}, values SHA-256 {}\n", o.database, stored.protocol,
-                           added ? "locked on" : "was locked on", stored.lockedUtc, stored.by, stored.valuesSha256);
+  fmt::print("{}: analysis of protocol {} {} {} by {}, values SHA-256 {}\n", o.database, stored.protocol,
+             added ? "locked on" : "was locked on", stored.lockedUtc, stored.by, stored.valuesSha256);
 }
 
 /// Those that come with the program.

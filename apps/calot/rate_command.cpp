@@ -15,7 +15,7 @@
 #include "analytics/report/rater_page.h"
 #include "analytics/report/ratings.h"
 #include "apps/calot/command.h"
-#include "apps/calot/import_command.h"
+#include "apps/calot/replay_report.h"
 #include "gui/film/film.h"
 #include "gui/film/film_writer.h"
 #include "recorder/base/files.h"
@@ -105,9 +105,9 @@ void storeAnswers(const RateOptions& o) {
       analytics::answersOf(form, o.answersFile.empty() ? readAnswers(o.answers) : readAnswers(o.answersFile));
   analytics::CohortDatabase database(o.database, Access::write);
   database.storeRating({form.name, form.version, form.sha256, form.text}, rating, o.force);
-  std::cout << fmt::format("{}: {} version {} of {}, {} of {} items answered\n", o.database, form.name, form.version,
-                           form.ofAttempts ? "attempt " + o.attempt : "participant " + o.participant,
-                           rating.answers.size(), form.items().size());
+  fmt::print("{}: {} version {} of {}, {} of {} items answered\n", o.database, form.name, form.version,
+             form.ofAttempts ? "attempt " + o.attempt : "participant " + o.participant, rating.answers.size(),
+             form.items().size());
 }
 
 void showRatings(const RateOptions& o) {
@@ -160,10 +160,10 @@ void takePackAnswers(const RateOptions& o) {
   const analytics::PackAnswers answers = analytics::readPackAnswers(
       o.taken, [&](const std::string& id) { return analytics::readRatingPack(o.database, id); });
   analytics::storePackAnswers(o.database, answers.pack, answers.rater, answers.ratings, o.force);
-  std::cout << fmt::format("{}: {} ratings by {} with {} version {} stored", o.taken, answers.ratings.size(),
-                           answers.rater, answers.form.name, answers.form.version);
-  if (answers.notJudged > 0) std::cout << fmt::format(", {} films could not be judged", answers.notJudged);
-  if (answers.withdrawn > 0) std::cout << fmt::format(", {} films of withdrawn attempts left out", answers.withdrawn);
+  fmt::print("{}: {} ratings by {} with {} version {} stored", o.taken, answers.ratings.size(), answers.rater,
+             answers.form.name, answers.form.version);
+  if (answers.notJudged > 0) fmt::print(", {} films could not be judged", answers.notJudged);
+  if (answers.withdrawn > 0) fmt::print(", {} films of withdrawn attempts left out", answers.withdrawn);
   std::cout << '\n';
 }
 
@@ -218,8 +218,10 @@ std::vector<std::string> attemptsOf(const analytics::CohortDatabase& cohort, con
 std::vector<FilmOrigin> filmsInTable(const analytics::CohortDatabase& cohort, const fs::path& path,
                                      const std::vector<std::string>& chosen) {
   const analytics::ManifestTable table(readCsvTable(path.string()), {"attempt", "film"});
-  std::map<std::string, FilmOrigin> films;
-  std::vector<std::string> order;
+  std::vector<FilmOrigin> films;
+  const auto filmOf = [&](const std::string& uuid) {
+    return std::find_if(films.begin(), films.end(), [&](const FilmOrigin& film) { return film.attempt == uuid; });
+  };
   for (const CsvRow& row : table.rows()) {
     const fs::path film = table.fileNamed(table.cell(row, "film"));
     std::error_code ignored;
@@ -234,16 +236,16 @@ std::vector<FilmOrigin> filmsInTable(const analytics::CohortDatabase& cohort, co
     } catch (const Error& e) {
       throw table.fault(row, "attempt", e.fault());
     }
-    if (!films.emplace(uuid, FilmOrigin{uuid, film, isRecordingOf(film, uuid)}).second)
-      throw table.fault(row, "attempt", "has a film in a row before; remove one");
-    order.push_back(uuid);
+    if (filmOf(uuid) != films.end()) throw table.fault(row, "attempt", "has a film in a row before; remove one");
+    films.push_back({uuid, film, isRecordingOf(film, uuid)});
   }
+  if (chosen.empty()) return films;
   std::vector<FilmOrigin> found;
-  for (const std::string& uuid : chosen.empty() ? order : attemptsOf(cohort, chosen)) {
-    const auto at = films.find(uuid);
+  for (const std::string& uuid : attemptsOf(cohort, chosen)) {
+    const auto at = filmOf(uuid);
     if (at == films.end())
       throw Error(ErrorKind::damaged, Where{path.string()}, fmt::format("has no film of attempt {}", uuid));
-    found.push_back(at->second);
+    found.push_back(*at);
   }
   return found;
 }
@@ -357,7 +359,7 @@ void packForRaters(const PackOptions& o) {
   analytics::storeRatingPack(o.database, pack);
   analytics::recordExport(o.database, "rating-pack", o.output, attempts);
   output.finish();
-  std::cout << fmt::format(
+  fmt::print(
       "{}: {} films for {} rater{} with {} version {}; give each the folder of their name, and "
       "store what comes back with calot rate {} --take answers-RATER.json\n",
       o.output, films.size(), o.raters.size(), o.raters.size() == 1 ? "" : "s", form.name, form.version, o.database);

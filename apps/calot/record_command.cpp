@@ -31,7 +31,7 @@ struct FinishedRun {
   bool live = false;
 };
 
-void printRunJson(const FinishedRun& run, double seconds) {
+Json runJson(const FinishedRun& run, double seconds) {
   const recorder::RunReport& r = run.report;
   Json out{{"attempt", run.attempt},
            {"file", run.file},
@@ -55,37 +55,35 @@ void printRunJson(const FinishedRun& run, double seconds) {
     out["arenas_grown"] = r.arenasGrown;
     out["force_disagreements"] = r.disagreements;
   }
-  printResult("record", out);
+  return out;
 }
 
-void printRun(const FinishedRun& run, double seconds) {
+std::string runText(const FinishedRun& run, double seconds) {
   const recorder::RunReport& r = run.report;
   const bool failed = r.outcome == recorder::Outcome::technicalFailure && !run.why.empty();
-  fmt::print("{}: attempt {}, {:.2f} s, {}{}{}\n", run.file, run.attempt, seconds, wordFor(r.outcome),
-             failed ? ": " : "", failed ? run.why : "");
-  if (r.misses.any > 0) fmt::print("{}: {}\n", run.file, analytics::wordsFor(r.misses));
+  std::string text = fmt::format("{}: attempt {}, {:.2f} s, {}{}{}\n", run.file, run.attempt, seconds,
+                                 wordFor(r.outcome), failed ? ": " : "", failed ? run.why : "");
+  if (r.misses.any > 0) text += fmt::format("{}: {}\n", run.file, analytics::wordsFor(r.misses));
   if (run.paced) {
-    fmt::print("{}: {} of {} ticks missed their deadline, at most {:.1f} ms late, clock stretched by {:.3f} s\n",
-               run.live ? "live" : "paced", r.missedDeadlines, r.ticks, 1e3 * r.maxLateness, r.stretched);
+    text +=
+        fmt::format("{}: {} of {} ticks missed their deadline, at most {:.1f} ms late, clock stretched by {:.3f} s\n",
+                    run.live ? "live" : "paced", r.missedDeadlines, r.ticks, 1e3 * r.maxLateness, r.stretched);
   }
   if (run.live) {
-    fmt::print(
+    text += fmt::format(
         "haptic tick: {:.1f} us of CPU on average, {:.1f} us at 99.9 %, {:.1f} us at most; {}; {} arenas grown\n",
         1e6 * r.cost.mean(), 1e6 * r.cost.quantile(0.999), 1e6 * r.cost.largest(),
         r.realTime ? "real-time thread" : "ordinary thread (no permission for real time)", r.arenasGrown);
   }
-  if (r.pauses.count > 0) fmt::print("{} pauses of the source, {:.1f} s in all\n", r.pauses.count, r.pauses.seconds);
+  if (r.pauses.count > 0)
+    text += fmt::format("{} pauses of the source, {:.1f} s in all\n", r.pauses.count, r.pauses.seconds);
+  return text;
 }
 
 /// Prints it on stdout. @throws Error (failure) for what must not be missed
 void reportRun(const FinishedRun& run, bool json) {
-  Progress::erase();
   const double seconds = static_cast<double>(run.report.steps) * run.stepSeconds;
-  if (json) {
-    printRunJson(run, seconds);
-  } else {
-    printRun(run, seconds);
-  }
+  printResult(json, "record", runJson(run, seconds), runText(run, seconds));
   if (run.report.disagreements > 0) {
     throw Error(
         ErrorKind::failure,
@@ -98,14 +96,28 @@ void reportRun(const FinishedRun& run, bool json) {
   }
 }
 
-struct RecordOptions {
+/// Options of both commands.
+struct RunOptions {
   SourceOptions source;
-  std::string scene, participant, station, stationKey, purpose = "training", handedness = "unknown", output;
-  std::string mode = "practice", broadPhase = "grid";
+  std::string stationKey, output, broadPhase = "grid";
   std::uint64_t seed = 1;
   double seconds = 0.0;
   unsigned threads = 1;
-  bool paced = false, live = false, force = false, json = false;
+  bool live = false, force = false, json = false;
+};
+
+/// Adds the last of them.
+void addRunOptions(CLI::App& command, RunOptions& o, const std::string& output) {
+  addBroadPhase(command, o.broadPhase);
+  addThreads(command, o.threads, "of the simulation; 0: all");
+  command.add_option("-o,--output", o.output, output)->required();
+  command.add_flag("--force", o.force, "replace the output if it is there");
+  command.add_flag("--json", o.json, "print the result as JSON");
+}
+
+struct RecordOptions : RunOptions {
+  std::string scene, participant, station, purpose = "training", handedness = "unknown", mode = "practice";
+  bool paced = false;
 };
 
 void record(const RecordOptions& o) {
@@ -121,27 +133,17 @@ void record(const RecordOptions& o) {
   SourceOptions who = o.source;
   who.mode = o.mode == "assessment" ? recorder::Mode::assessment : recorder::Mode::practice;
   const std::unique_ptr<recorder::SampleSource> source = makeSource(who, model.scene(), o.seed);
-  recorder::AttemptSettings settings;
-  settings.participant = o.participant;
-  settings.station = stationOf(o.station, key);
-  settings.purpose = o.purpose;
-  settings.handedness = o.handedness;
-  settings.mode = who.mode;
-  settings.seed = o.seed;
   const recorder::AttemptHeader header =
-      recorder::makeHeader(model, std::move(scene.assets), source->provenance(), settings);
+      recorder::makeHeader(model, std::move(scene.assets), source->provenance(),
+                           {o.participant, stationOf(o.station, key), o.purpose, o.handedness, who.mode, o.seed});
   recorder::RecordingWriter writer(o.output, header, {o.force, std::move(key)});
   recorder::WorkerPool pool(o.threads);
   recorder::Session session(model, o.seed, pool, prepared->services(broadPhaseOf(o.broadPhase)));
   session.join(writer);
   Progress progress("recording, seconds", o.json);
-  recorder::RunSettings run;
-  run.seconds = o.seconds;
-  run.paced = o.paced;
-  run.live = o.live;
+  recorder::RunSettings run{.seconds = o.seconds, .paced = o.paced, .live = o.live, .stop = &stopRequested()};
   driveDevice(*source, run);
   recordDevice(*source, writer);
-  run.stop = &stopRequested();
   const double stepSeconds = model.stepSeconds();
   run.progress = [&](std::uint64_t step) {
     if (writer.failed()) stopRequested() = true;  // nothing more can be kept; finish() says why
@@ -156,13 +158,8 @@ void record(const RecordOptions& o) {
   reportRun({header.attempt, o.output, stepSeconds, report, source->statusText(), run.paced || o.live, o.live}, o.json);
 }
 
-struct BranchOptions {
-  SourceOptions source;
-  std::string parent, at, stationKey, output, broadPhase = "grid";
-  std::uint64_t seed = 1;
-  double seconds = 0.0;
-  unsigned threads = 1;
-  bool live = false, force = false, json = false;
+struct BranchOptions : RunOptions {
+  std::string parent, at;
 };
 
 /// Keeps the newest measured pose of each hand, and the camera.
@@ -218,12 +215,10 @@ void branch(const BranchOptions& o) {
 
   if (auto* const scope = source->scope(); scope != nullptr) scope->setOutFrom(pose.last.camera);
   recorder::BlendedSource blended(*source, pose.last);
-  recorder::RunSettings run;
-  run.seconds = o.seconds > 0.0 ? static_cast<double>(session.steps()) * model.stepSeconds() + o.seconds : 0.0;
-  run.live = o.live;
+  recorder::RunSettings run{.live = o.live, .stop = &stopRequested()};
+  if (o.seconds > 0.0) run.seconds = static_cast<double>(session.steps()) * model.stepSeconds() + o.seconds;
   driveDevice(*source, run);
   recordDevice(*source, writer, session.steps() * model.scene().ticksPerStep);
-  run.stop = &stopRequested();
   Progress progress("recording, steps", o.json);
   run.progress = [&](std::uint64_t step) {
     if (writer.failed()) stopRequested() = true;  // nothing more can be kept; finish() says why
@@ -265,11 +260,7 @@ void addRecord(CLI::App& app, Run& run) {
   addChoice(*command, "--mode", o->mode, "practice or assessment", {"practice", "assessment"});
   command->add_flag("--paced", o->paced, "run at real time: tick n no earlier than n ms after the start");
   command->add_flag("--live", o->live, "run at real time with the haptic ticks on a thread of their own, 1 kHz");
-  addBroadPhase(*command, o->broadPhase);
-  addThreads(*command, o->threads, "of the simulation; 0: all");
-  command->add_option("-o,--output", o->output, "the recording")->required();
-  command->add_flag("--force", o->force, "replace the output if it is there");
-  command->add_flag("--json", o->json, "print the result as JSON");
+  addRunOptions(*command, *o, "the recording");
 }
 
 void addBranch(CLI::App& app, Run& run) {
@@ -288,11 +279,7 @@ void addBranch(CLI::App& app, Run& run) {
       ->check(CLI::Range(0.0, 36000.0));
   command->add_flag("--live", o->live, "run at real time after the fork, the haptic ticks on a thread of their own");
   addStationKey(*command, o->stationKey);
-  addBroadPhase(*command, o->broadPhase);
-  addThreads(*command, o->threads, "of the simulation; 0: all");
-  command->add_option("-o,--output", o->output, "the branch, a recording")->required();
-  command->add_flag("--force", o->force, "replace the output if it is there");
-  command->add_flag("--json", o->json, "print the result as JSON");
+  addRunOptions(*command, *o, "the branch, a recording");
 }
 
 }  // namespace calot::apps

@@ -3,6 +3,7 @@
 
 #include <map>
 
+#include "analytics/assessment/declared_document.h"
 #include "analytics/checkpoints/checkpoint.h"
 #include "analytics/regrade.h"
 #include "apps/calot/command.h"
@@ -52,10 +53,6 @@ using analytics::Regraded;
 const char* regradedName(Regraded how) {
   constexpr const char* names[] = {"unchanged", "changed", "missing", "motion", "unreadable", "conflict"};
   return names[static_cast<std::size_t>(how)];
-}
-
-std::string titleOf(const analytics::CheckpointValue& v) {
-  return v.subject.empty() ? v.name : v.name + " " + v.subject;
 }
 
 std::string shownValue(const std::optional<analytics::CheckpointValue>& v) {
@@ -111,7 +108,7 @@ void printRegrade(const analytics::Regrade& regrade) {
   for (const analytics::RegradedAttempt& a : regrade.attempts) {
     ++counts[a.how];
     for (const analytics::ValueChange& c : a.changes) {
-      const std::string title = titleOf(c.any());
+      const std::string title = analytics::figureName(c.any().name, c.any().subject);
       if (attemptsOf[title]++ == 0) order.push_back(title);
       table.rows.push_back({a.uuid.substr(0, 8), title, shownValue(c.before), shownValue(c.now), otherwise(c)});
     }
@@ -120,12 +117,12 @@ void printRegrade(const analytics::Regrade& regrade) {
     table.print(std::cout);
     std::cout << '\n';
     for (const std::string& title : order)
-      std::cout << fmt::format("{}: changed in {} of {} attempts\n", title, attemptsOf[title], regrade.attempts.size());
+      fmt::print("{}: changed in {} of {} attempts\n", title, attemptsOf[title], regrade.attempts.size());
   }
-  std::cout << fmt::format("{} attempts: {} changed, {} unchanged", regrade.attempts.size(), counts[Regraded::changed],
-                           counts[Regraded::unchanged]);
+  fmt::print("{} attempts: {} changed, {} unchanged", regrade.attempts.size(), counts[Regraded::changed],
+             counts[Regraded::unchanged]);
   for (const Regraded how : {Regraded::missing, Regraded::motion, Regraded::unreadable, Regraded::conflict}) {
-    if (counts[how] > 0) std::cout << fmt::format(", {} {}", counts[how], regradedName(how));
+    if (counts[how] > 0) fmt::print(", {} {}", counts[how], regradedName(how));
   }
   std::cout << '\n';
   for (const Error& fault : regrade.notRead) std::cout << "not read: " << messageOf(fault) << '\n';

@@ -37,34 +37,30 @@ void printScenes(const std::vector<recorder::LoadedScene>& scenes) {
 
 /// Numerical settings of a scene's step.
 void addCounts(const Model& model, json& row) {
-  json organs = json::array();
+  json& organs = row["organs"] = json::array();
   for (const OrganModel& organ : model.organs()) {
     organs.push_back({{"name", organ.name},
                       {"tetrahedra", organ.solid.tetrahedra().size()},
                       {"nodes", organ.solid.nodes()},
                       {"triangles", organ.surface.triangles().size()}});
   }
-  row["organs"] = organs;
-  json vessels = json::array();
+  json& vessels = row["vessels"] = json::array();
   for (const VesselTree& tree : model.vesselTrees()) {
     for (std::size_t b = 0; b < tree.vessel.size(); ++b) {
       vessels.push_back(
           {{"name", model.scene().vessels[tree.vessel[b]].name}, {"beams", tree.beams.branches()[b].elements()}});
     }
   }
-  row["vessels"] = vessels;
-  json fat = json::array();
+  json& fat = row["fat"] = json::array();
   for (std::size_t i = 0; i < model.fat().size(); ++i) {
     const FatModel& body = *model.fat()[i];
     fat.push_back({{"name", model.scene().fat[i].name},
                    {"cell_size_m", body.lattice().cell()},
                    {"hexahedra", body.solid().cubes().size()}});
   }
-  row["fat"] = fat;
-  json connective = json::array();
+  json& connective = row["connective"] = json::array();
   for (const ConnectiveModel& c : model.connective())
     connective.push_back({{"name", c.name}, {"springs", c.tissue.strands().size()}});
-  row["connective"] = connective;
   row["ties"] = model.ties().size();
 }
 

@@ -2,6 +2,7 @@
 // calot station: the key that a station signs its recordings with.
 
 #include "apps/calot/command.h"
+#include "recorder/base/files.h"
 #include "recorder/recording/station_key.h"
 
 namespace calot::apps {
@@ -13,7 +14,7 @@ struct StationOptions {
 };
 
 void printKey(const recorder::StationKey& key) {
-  std::cout << fmt::format("station {}\npublic key {}\n", key.station, toHex(key.publicKey));
+  fmt::print("station {}\npublic key {}\n", key.station, recorder::hexOf(key.publicKey));
 }
 
 void initStation(const StationOptions& o) {

@@ -298,7 +298,7 @@ void printStudy(const analytics::Study& study, bool all) {
   const auto others = std::count_if(study.rows.begin(), study.rows.end(), [](const analytics::StudyRow& row) {
     return !row.leading && !analytics::hasNoValue(row);
   });
-  std::cout << fmt::format("{} more figures, and the methods: --all; as a report: --pdf, --html\n", others);
+  fmt::print("{} more figures, and the methods: --all; as a report: --pdf, --html\n", others);
 }
 
 void runTwoGroups(StudyCommandOptions& options) {

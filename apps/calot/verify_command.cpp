@@ -42,7 +42,8 @@ std::string textOf(const IntakeItem& item) {
   if (item.fault) return fmt::format("{}: {}", wordFor(item.how), faultText(item));
   if (item.how == TakenIn::known) return "known, verified before";
   const recorder::ReplayReport& report = item.judged.report;
-  const std::string verdict = report.fault() ? advised(analytics::wordsFor(report), report.remedies) : std::string("verified");
+  const std::string verdict =
+      report.fault() ? advised(analytics::wordsFor(report), report.remedies) : std::string("verified");
   return fmt::format("{}{}, {}", verdict, report.complete ? "" : ", incomplete", wordFor(item.how));
 }
 

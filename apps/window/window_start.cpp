@@ -5,7 +5,6 @@
 #include <unistd.h>
 #include <algorithm>
 #include <cerrno>
-#include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
@@ -76,15 +75,6 @@ void useGraphics(const std::string& word) {
   const gui::Graphics graphics = gui::graphicsFrom(word);
   if (graphics != gui::Graphics::automatic) static_cast<void>(gui::createContext(graphics));
   gui::ScenePictureWidget::drawBy(graphics);
-}
-
-std::string positiveSeconds(const std::string& text) {
-  char* end = nullptr;
-  const double seconds = std::strtod(text.c_str(), &end);
-  const bool whole = end != text.c_str() && *end == '\0';
-  return whole && std::isfinite(seconds) && seconds > 0.0
-             ? std::string()
-             : fmt::format("'{}' is not a number of seconds above 0", text);
 }
 
 }  // namespace calot::apps

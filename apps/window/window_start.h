@@ -34,8 +34,4 @@ void addGraphics(CLI::App& app, std::string& word);
 /// The windows' pictures are drawn so. @throws Error (failure) where this machine has no such graphics
 void useGraphics(const std::string& word);
 
-/// For CLI::Option::check: a number of seconds above 0. The parser alone takes "nan" and "inf".
-/// @return empty, or the fault
-std::string positiveSeconds(const std::string& text);
-
 }  // namespace calot::apps

@@ -46,12 +46,25 @@ std::vector<std::byte> readFileBytes(const std::filesystem::path& path, const st
   return bytes;
 }
 
+std::string hexOf(std::span<const std::byte> bytes) {
+  std::string hex(2 * bytes.size() + 1, '\0');
+  sodium_bin2hex(hex.data(), hex.size(), reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size());
+  hex.pop_back();  // its zero
+  return hex;
+}
+
+bool readHex(std::string_view text, std::span<std::byte> out) {
+  std::size_t written = 0;
+  return text.size() == 2 * out.size() &&
+         sodium_hex2bin(reinterpret_cast<unsigned char*>(out.data()), out.size(), text.data(), text.size(), nullptr,
+                        &written, nullptr) == 0 &&
+         written == out.size();
+}
+
 std::string sha256Hex(std::span<const std::byte> bytes) {
   std::array<unsigned char, crypto_hash_sha256_BYTES> hash{};
   crypto_hash_sha256(hash.data(), reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size());
-  std::array<char, 2 * crypto_hash_sha256_BYTES + 1> hex{};
-  sodium_bin2hex(hex.data(), hex.size(), hash.data(), hash.size());
-  return {hex.data()};
+  return hexOf(hash);
 }
 
 std::string base64(std::span<const std::byte> bytes) {

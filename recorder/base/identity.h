@@ -46,8 +46,8 @@ struct Asset {
 
 /// Facts about an attempt supplied by the caller, beyond source and scene.
 struct AttemptSettings {
-  std::string participant;  ///< pseudonym, or empty
-  std::string station;
+  std::string participant = {};  ///< pseudonym, or empty
+  std::string station = {};
   std::string purpose = "training";    ///< "training", "study", "golden", "demo"
   std::string handedness = "unknown";  ///< "right", "left", "unknown"
   Mode mode = Mode::practice;

@@ -19,22 +19,6 @@ void ready() {
   if (sodium_init() < 0) throw Error(ErrorKind::failure, "libsodium cannot be initialised");
 }
 
-template <std::size_t N>
-std::string hex(const std::array<std::uint8_t, N>& bytes) {
-  std::string text;
-  for (const std::uint8_t byte : bytes) text += fmt::format("{:02x}", byte);
-  return text;
-}
-
-template <std::size_t N>
-bool unhex(const nlohmann::json& value, std::array<std::uint8_t, N>& out) {
-  if (!value.is_string()) return false;
-  const std::string& text = value.get_ref<const std::string&>();
-  std::size_t written = 0;
-  return text.size() == 2 * N &&
-         sodium_hex2bin(out.data(), N, text.data(), text.size(), nullptr, &written, nullptr) == 0 && written == N;
-}
-
 void checkStation(const std::string& station) {
   const auto control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; };
   if (station.empty() || station.size() > 64 || std::any_of(station.begin(), station.end(), control))
@@ -69,8 +53,8 @@ void writeStationKey(const std::filesystem::path& file, const StationKey& key) {
     text = nlohmann::ordered_json{{"format", "calot-station-key"},
                                   {"version", 1},
                                   {"station", key.station},
-                                  {"public_key", hex(key.publicKey)},
-                                  {"seed", hex(seed)}}
+                                  {"public_key", hexOf(key.publicKey)},
+                                  {"seed", hexOf(seed)}}
                .dump(2) +
            "\n";
   } catch (const nlohmann::json::exception&) {
@@ -90,8 +74,12 @@ StationKey readStationKey(const std::filesystem::path& file) {
   PublicKey said{};
   Seed seed{};
   const auto word = [&](const char* name) { return json.contains(name) ? json[name] : nlohmann::json(); };
+  const auto readBytes = [&](const char* name, auto& out) {
+    return word(name).is_string() &&
+           readHex(word(name).get_ref<const std::string&>(), std::as_writable_bytes(std::span(out)));
+  };
   const bool good = json.is_object() && word("format") == "calot-station-key" && word("version") == 1 &&
-                    word("station").is_string() && unhex(word("public_key"), said) && unhex(word("seed"), seed);
+                    word("station").is_string() && readBytes("public_key", said) && readBytes("seed", seed);
   if (!good) throw Error(ErrorKind::damaged, Where{file.string()}, "no station key, or of a newer Calot");
   key.station = json["station"].get<std::string>();
   checkStation(key.station);
