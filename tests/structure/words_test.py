@@ -64,6 +64,7 @@ SQL = re.compile(r"\s*(?:SELECT|INSERT|UPDATE|DELETE|PRAGMA|CREATE|DROP|ALTER)\b
 ASSERTION = re.compile(r"\b(?:EXPECT|ASSERT)_\w+\(|\bexpect\w+\(|\bfault\(|\brefused\(|[.>](?:find|rfind|contains|startsWith|starts_with)\($")
 # Files whose subject is the text itself.
 TEXTS = {
+    "tests/analytics/checkpoints/replay_words_test.cpp",  # sentences of replays and runs
     "tests/analytics/assessment/attempt_summary_test.cpp",  # sentences of a summary
     "tests/analytics/report/page_test.cpp",  # layout of text
     "tests/analytics/report/study_report_test.cpp",  # sections of the report
