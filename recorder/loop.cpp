@@ -11,7 +11,6 @@
 
 #include "recorder/base/dates.h"
 #include "recorder/base/errors.h"
-#include "recorder/base/files.h"
 #include "recorder/engine/session.h"
 #include "recorder/live/haptic_thread.h"
 #include "recorder/recording/reader.h"
@@ -323,22 +322,6 @@ std::optional<Divergence> takeParent(Recording& parent, Session& session, std::u
                                      const StepProgress& progress) {
   LocalEngine engine(session);
   return follow(parent, engine, forkStep + 1, {}, progress);
-}
-
-BranchFile::BranchFile(std::filesystem::path target, bool force) : target_(std::move(target)), force_(force) {
-  refuseOutput(target_, force_);
-  temporary_ = target_;
-  temporary_ += ".branch";
-}
-
-BranchFile::~BranchFile() {
-  std::error_code ignored;
-  if (!published_) std::filesystem::remove(temporary_, ignored);
-}
-
-void BranchFile::publish() {
-  recorder::publish(temporary_, target_, force_);
-  published_ = true;
 }
 
 }  // namespace calot::recorder

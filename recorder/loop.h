@@ -161,24 +161,4 @@ AttemptHeader branchHeader(const Recording& parent, const Model& model, std::uin
 [[nodiscard]] std::optional<Divergence> takeParent(Recording& parent, Session& session, std::uint64_t forkStep,
                                                    const StepProgress& progress = {});
 
-/// The name that a branch has until the parent's part is taken: TARGET.branch, in the target's folder. Removed with
-/// this object unless publish() came before.
-class BranchFile {
- public:
-  /// @throws Error (invalid) where the target is there and force is not set.
-  BranchFile(std::filesystem::path target, bool force);
-  ~BranchFile();
-  BranchFile(const BranchFile&) = delete;
-  BranchFile& operator=(const BranchFile&) = delete;
-
-  [[nodiscard]] const std::filesystem::path& path() const { return temporary_; }
-  /// Gives the file its name, while it is being written. @throws Error
-  void publish();
-
- private:
-  std::filesystem::path target_, temporary_;
-  bool force_;
-  bool published_ = false;
-};
-
 }  // namespace calot::recorder

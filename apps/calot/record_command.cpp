@@ -182,7 +182,7 @@ void branch(const BranchOptions& o) {
   stopOnSignals();
   const double at = parseTime(o.at);
   std::optional<recorder::StationKey> key = stationKeyOf(o.stationKey);
-  recorder::BranchFile file(o.output, o.force);
+  recorder::NewFile file(o.output, o.force, ".branch");
   const recorder::ChainVerdict chain = recorder::probe(o.parent);
   recorder::Recording parent(o.parent);
   recorder::refuseParent(parent, chain);

@@ -10,6 +10,7 @@
 #include "gui/trainer/trainer_texts.h"
 #include "gui/words/problem_words.h"
 #include "recorder/base/errors.h"
+#include "recorder/base/files.h"
 #include "recorder/live/worker_pool.h"
 #include "recorder/loop.h"
 #include "recorder/sources/devices/device_source.h"
@@ -217,8 +218,8 @@ void TrainingSession::attempt(std::optional<double> back) {
       parent ? recorder::branchHeader(*parent, model, fork, source->provenance())
              : recorder::makeHeader(model, settings_.scene.assets, source->provenance(), settings_.attempt);
   const std::filesystem::path file = freshFile(settings_.folder, scene().name, header.startUtc);
-  std::optional<recorder::BranchFile> place;
-  if (parent) place.emplace(file, false);
+  std::optional<recorder::NewFile> place;  // until the parent's part is taken
+  if (parent) place.emplace(file, false, ".branch");
   recorder::RecordingWriter writer(place ? place->path() : file, header, {parent.has_value(), settings_.key});
   recorder::WorkerPool pool(settings_.threads);
   recorder::Session session(model, header.seed, pool, prepared_->services(settings_.makeBroadPhase));

@@ -123,18 +123,13 @@ void writeSecret(const std::filesystem::path& path, std::string_view bytes, bool
       if (n <= 0) throw failed(path, "cannot be written");
       at += static_cast<std::size_t>(n);
     }
-    if (::fsync(file.get()) != 0) throw failed(path, "cannot be written");
+    // A link fails if the name is taken: of two programs that create one file, the second spares the first's.
+    if (::fsync(file.get()) != 0 ||
+        (replace ? ::rename(temporary.c_str(), path.c_str()) : ::link(temporary.c_str(), path.c_str())) != 0)
+      throw failed(path, "cannot be written");
   } catch (...) {
     ::unlink(temporary.c_str());
     throw;
-  }
-  // A link fails if the name is taken: of two programs that create one file, the second does not overwrite the first's.
-  const bool done =
-      replace ? ::rename(temporary.c_str(), path.c_str()) == 0 : ::link(temporary.c_str(), path.c_str()) == 0;
-  if (!done) {
-    const Error why = failed(path, "cannot be written");
-    ::unlink(temporary.c_str());
-    throw why;
   }
   if (!replace) ::unlink(temporary.c_str());
 }
@@ -161,40 +156,40 @@ void refuseOutput(const fs::path& path, bool force) {
   }
 }
 
-fs::path temporaryName(const fs::path& path) {
-  fs::path name = path;
-  name += ".part";
-  return name;
+NewFile::NewFile(fs::path target, bool force, const char* ending)
+    : target_(std::move(target)), temporary_(target_.string() + ending), force_(force) {
+  refuseOutput(target_, force_);
 }
 
-void publish(const fs::path& temporary, const fs::path& path, bool force) {
-  int result = ::renameat2(AT_FDCWD, temporary.c_str(), AT_FDCWD, path.c_str(), force ? 0U : RENAME_NOREPLACE);
-  if (result != 0 && !force && errno == EINVAL) {  // a file system that cannot promise it
-    refuseOutput(path, force);
-    result = ::rename(temporary.c_str(), path.c_str());
+NewFile::~NewFile() {
+  std::error_code ignored;
+  if (!temporary_.empty()) fs::remove(temporary_, ignored);
+}
+
+void NewFile::publish() {
+  int result = ::renameat2(AT_FDCWD, temporary_.c_str(), AT_FDCWD, target_.c_str(), force_ ? 0U : RENAME_NOREPLACE);
+  if (result != 0 && !force_ && errno == EINVAL) {  // a file system that cannot promise it
+    refuseOutput(target_, force_);
+    result = ::rename(temporary_.c_str(), target_.c_str());
   }
-  if (result == 0) return;
-  if (errno == EEXIST) throw alreadyThere(path);
-  throw Error(ErrorKind::failure, Where{path.string()},
-              fmt::format("cannot be renamed from {}: {}", temporary.filename().string(), std::strerror(errno)));
+  if (result != 0 && errno == EEXIST) throw alreadyThere(target_);
+  if (result != 0)
+    throw Error(ErrorKind::failure, Where{target_.string()},
+                fmt::format("cannot be renamed from {}: {}", temporary_.filename().string(), std::strerror(errno)));
+  temporary_.clear();
 }
 
 void writeText(const fs::path& path, std::string_view text, bool force) {
-  refuseOutput(path, force);
-  const fs::path temporary = temporaryName(path);
-  std::FILE* file = std::fopen(temporary.c_str(), "wb");
-  if (file == nullptr) {
-    throw Error(ErrorKind::failure, Where{temporary.string()},
-                fmt::format("cannot be created: {}", std::strerror(errno)));
-  }
+  NewFile made(path, force);
+  std::FILE* file = std::fopen(made.path().c_str(), "wb");
+  if (file == nullptr) throw failed(made.path(), "cannot be created");
   int fault = 0;
   if (std::fwrite(text.data(), 1, text.size(), file) != text.size()) fault = errno;
   if (fault == 0 && (std::fflush(file) != 0 || ::fsync(::fileno(file)) != 0)) fault = errno;
   if (std::fclose(file) != 0 && fault == 0) fault = errno;
-  if (fault == 0 && std::rename(temporary.c_str(), path.c_str()) != 0) fault = errno;
-  if (fault == 0) return;
-  std::remove(temporary.c_str());
-  throw Error(ErrorKind::failure, Where{path.string()}, fmt::format("cannot be written: {}", std::strerror(fault)));
+  if (fault != 0)
+    throw Error(ErrorKind::failure, Where{path.string()}, fmt::format("cannot be written: {}", std::strerror(fault)));
+  made.publish();
 }
 
 std::map<std::string, fs::path> jsonFilesIn(const std::vector<fs::path>& roots, const char* folder) {

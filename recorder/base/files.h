@@ -66,13 +66,27 @@ void writeSecret(const std::filesystem::path& path, std::string_view bytes, bool
 /// before long work whose result goes there.
 void refuseOutput(const std::filesystem::path& path, bool force);
 
-/// PATH.part, in the same folder: the name that a new file has until it is whole.
-std::filesystem::path temporaryName(const std::filesystem::path& path);
+/// The name that a new file has until it is whole, in the same folder. Removed with this object unless publish() came
+/// before.
+class NewFile {
+ public:
+  /// @param ending of that name, behind the file's own @throws Error as refuseOutput
+  NewFile(std::filesystem::path target, bool force, const char* ending = ".part");
+  ~NewFile();
+  NewFile(const NewFile&) = delete;
+  NewFile& operator=(const NewFile&) = delete;
 
-/// Renames in one move; without force it never replaces a file. @throws Error (invalid) where `path` exists; (failure)
-void publish(const std::filesystem::path& temporary, const std::filesystem::path& path, bool force);
+  [[nodiscard]] const std::filesystem::path& path() const { return temporary_; }
+  /// Renames in one move, if need be while the file is being written; without force it never replaces a file.
+  /// @throws Error (invalid) where the target exists; (failure)
+  void publish();
 
-/// Writes a whole file under the temporary name `path` + ".part" and renames it, so that `path` is never half-written.
+ private:
+  std::filesystem::path target_, temporary_;
+  bool force_;
+};
+
+/// Writes a whole file as a NewFile, so that `path` is never half-written.
 /// @throws Error (invalid) as refuseOutput; (failure) where writing fails, with the temporary file removed.
 void writeText(const std::filesystem::path& path, std::string_view text, bool force);
 

@@ -8,7 +8,6 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
-#include <system_error>
 
 #include "recorder/base/files.h"
 #include "recorder/recording/block.h"
@@ -250,16 +249,10 @@ StatusRow createRecordingFile(const std::filesystem::path& path, const AttemptHe
                               const PublicKey* signer) {
   checkHeader(header);
   const hdf5::Session session;
-  try {
-    Builder builder(path, layout.deflateLevel);
-    const StatusRow first = build(builder, header, layout, signer);
-    builder.close();
-    return first;
-  } catch (...) {
-    std::error_code ignored;
-    std::filesystem::remove(path, ignored);
-    throw;
-  }
+  Builder builder(path, layout.deflateLevel);
+  const StatusRow first = build(builder, header, layout, signer);
+  builder.close();
+  return first;
 }
 
 FileAppender::FileAppender(const std::filesystem::path& path, const Layout& layout, const StatusRow& first, bool swmr)

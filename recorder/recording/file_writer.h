@@ -16,7 +16,7 @@ namespace calot::recorder {
 
 /// Creates (or truncates) a file with root attributes, scene, every data set, and the first row of /status.
 /// @param signer where the recording will be signed: whose key makes the signature.
-/// @return that first row. @throws Error failure; the file is removed then. Takes the HDF5 session itself.
+/// @return that first row. @throws Error failure. Takes the HDF5 session itself.
 StatusRow createRecordingFile(const std::filesystem::path& path, const AttemptHeader& header, const Layout& layout,
                               const PublicKey* signer = nullptr);
 

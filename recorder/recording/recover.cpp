@@ -166,21 +166,12 @@ Recovered recover(const std::filesystem::path& in, const std::filesystem::path& 
   if (std::filesystem::equivalent(in, out, ignored)) {
     throw Error(ErrorKind::invalid, Where{out.string()}, "is the input; name another output");
   }
-  refuseOutput(out, force);
-  const std::filesystem::path temporary = temporaryName(out);
-  std::filesystem::path scratch = out;
-  scratch += ".cut.part";
-  try {
-    Recovered result = guardedRecord(
-        in.string(), [&] { return rewrite(in, temporary, scratch); }, readingLimits(in));
-    std::filesystem::remove(scratch, ignored);
-    publish(temporary, out, force);
-    return result;
-  } catch (...) {
-    std::filesystem::remove(temporary, ignored);
-    std::filesystem::remove(scratch, ignored);
-    throw;
-  }
+  NewFile made(out, force);
+  const NewFile scratch(out, force, ".cut.part");  // never published
+  Recovered result = guardedRecord(
+      in.string(), [&] { return rewrite(in, made.path(), scratch.path()); }, readingLimits(in));
+  made.publish();
+  return result;
 }
 
 }  // namespace calot::recorder

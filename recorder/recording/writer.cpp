@@ -11,7 +11,6 @@
 #include <deque>
 #include <exception>
 #include <mutex>
-#include <system_error>
 #include <thread>
 
 #include "recorder/base/files.h"
@@ -159,21 +158,14 @@ RecordingWriter::RecordingWriter(const std::filesystem::path& target, const Atte
                                  WriterOptions options) {
   checkHeader(header);
   assert(header.formatVersion == formatVersion);
-  refuseOutput(target, options.force);
+  NewFile made(target, options.force);
   impl_ = std::make_unique<Impl>(target, header);
   Impl& impl = *impl_;
-  const std::filesystem::path temporary = temporaryName(target);
   impl.key = std::move(options.key);
   const StatusRow first =
-      createRecordingFile(temporary, header, impl.layout, impl.key ? &impl.key->publicKey : nullptr);
-  try {
-    impl.file = std::make_unique<FileAppender>(temporary, impl.layout, first, true);
-    publish(temporary, target, options.force);
-  } catch (...) {
-    std::error_code ignored;
-    std::filesystem::remove(temporary, ignored);
-    throw;
-  }
+      createRecordingFile(made.path(), header, impl.layout, impl.key ? &impl.key->publicKey : nullptr);
+  impl.file = std::make_unique<FileAppender>(made.path(), impl.layout, first, true);
+  made.publish();
   for (std::size_t i = 0; i < firstBlocks; ++i) {
     impl.pool.emplace_back(impl.layout);
     if (i > 0) impl.empty.push(&impl.pool.back());

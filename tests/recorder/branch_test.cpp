@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "recorder/base/errors.h"
+#include "recorder/base/files.h"
 #include "recorder/recording/writer.h"
 #include "recorder/replay.h"
 #include "recorder/sources/source.h"
@@ -44,7 +45,7 @@ std::filesystem::path branchOf(const std::filesystem::path& parentFile, const st
   const test::SmallScene scene = test::smallScene();
   const std::unique_ptr<SampleSource> source = test::performer(scene, "unskilled", 2);
   const AttemptHeader header = branchHeader(parent, model, fork, source->provenance());
-  BranchFile place(file, false);
+  NewFile place(file, false, ".branch");
   RecordingWriter writer(place.path(), header);
   SerialExecutor executor;
   Session session(model, header.seed, executor);

@@ -65,6 +65,7 @@ ASSERTION = re.compile(r"\b(?:EXPECT|ASSERT)_\w+\(|\bexpect\w+\(|\bfault\(|\bref
 # Files whose subject is the text itself.
 TEXTS = {
     "tests/gui/words/attempt_summary_test.cpp",  # sentences of a summary
+    "tests/analytics/checkpoints/replay_words_test.cpp",  # sentences of replays and runs
     "tests/analytics/report/page_test.cpp",  # layout of text
     "tests/analytics/report/study_report_test.cpp",  # sections of the report
     "tests/apps/common/errors_test.cpp",  # advice of the programs
