@@ -14,6 +14,7 @@
 #include <QTest>
 
 #include "analytics/cohort/cohort_database.h"
+#include "gui/attempt/widget_parts.h"
 #include "gui/trainer/end_page.h"
 #include "gui/trainer/operation_view.h"
 #include "gui/trainer/run_panel.h"
@@ -580,10 +581,10 @@ TEST_F(Trainer, AnAssessmentSaysThatTheHandsAreLetGo) {
 
 TEST_F(Trainer, ThePictureIsSavedOrTheFolderNamed) {
   TrainerWindow& window = open();
-  window.savePicture(QString::fromStdString((folder_ / "a.png").string()));
+  parts::savePicture(window, QString::fromStdString((folder_ / "a.png").string()));
   EXPECT_FALSE(QImage(QString::fromStdString((folder_ / "a.png").string())).isNull());
   try {
-    window.savePicture("/nowhere/a.png");
+    parts::savePicture(window, "/nowhere/a.png");
     FAIL() << "no error";
   } catch (const Error& error) {
     EXPECT_EQ(error.kind(), ErrorKind::failure);
