@@ -107,19 +107,19 @@ TEST_F(Instructor, FoldsCheckpointsByFamilyAndSortsThem) {
   auto& model = dynamic_cast<FamilyTreeModel&>(*tree.model());
   ASSERT_GT(model.rowCount(), 2);
   EXPECT_GT(model.leftOut(), 0) << "the scene has no fat, no vessels and no procedure";
-  int shown = 0;
+  int cell = 0;
   for (int f = 0; f < model.rowCount(); ++f) {
     const QModelIndex family = model.index(f, 0);
     EXPECT_TRUE(tree.isExpanded(family));
-    shown += model.rowCount(family);
+    cell += model.rowCount(family);
     for (int row = 0; row < model.rowCount(family); ++row) {
-      analytics::CheckpointValue shown;
-      shown.availability = analytics::Availability::notApplicable;
-      shown.reason = model.index(row, CheckpointTableModel::valueColumn, family).data().toString().toStdString();
-      EXPECT_FALSE(analytics::sceneLacks(shown)) << shown.reason;
+      analytics::CheckpointValue cell;
+      cell.availability = analytics::Availability::notApplicable;
+      cell.reason = model.index(row, CheckpointTableModel::valueColumn, family).data().toString().toStdString();
+      EXPECT_FALSE(analytics::sceneLacks(cell)) << cell.reason;
     }
   }
-  EXPECT_EQ(shown + model.leftOut(), page.figures().figures().rowCount());
+  EXPECT_EQ(cell + model.leftOut(), page.figures().figures().rowCount());
   tree.setFocus();
   tree.setCurrentIndex(model.index(0, 0));
   QTest::keyClick(&tree, Qt::Key_Left);
