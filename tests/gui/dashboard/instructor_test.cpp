@@ -107,11 +107,11 @@ TEST_F(Instructor, FoldsCheckpointsByFamilyAndSortsThem) {
   auto& model = dynamic_cast<FamilyTreeModel&>(*tree.model());
   ASSERT_GT(model.rowCount(), 2);
   EXPECT_GT(model.leftOut(), 0) << "the scene has no fat, no vessels and no procedure";
-  int cell = 0;
+  int shown = 0;
   for (int f = 0; f < model.rowCount(); ++f) {
     const QModelIndex family = model.index(f, 0);
     EXPECT_TRUE(tree.isExpanded(family));
-    cell += model.rowCount(family);
+    shown += model.rowCount(family);
     for (int row = 0; row < model.rowCount(family); ++row) {
       analytics::CheckpointValue cell;
       cell.availability = analytics::Availability::notApplicable;
@@ -119,7 +119,7 @@ TEST_F(Instructor, FoldsCheckpointsByFamilyAndSortsThem) {
       EXPECT_FALSE(analytics::sceneLacks(cell)) << cell.reason;
     }
   }
-  EXPECT_EQ(cell + model.leftOut(), page.figures().figures().rowCount());
+  EXPECT_EQ(shown + model.leftOut(), page.figures().figures().rowCount());
   tree.setFocus();
   tree.setCurrentIndex(model.index(0, 0));
   QTest::keyClick(&tree, Qt::Key_Left);
