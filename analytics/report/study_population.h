@@ -67,7 +67,7 @@ void askForOneKey(const std::vector<std::string>& keys, const StudyOptions& opti
 void askForOneVersion(const std::string& checkpoint, std::size_t versions, const StudyOptions& options,
                       const std::string& name, std::vector<std::string>& remarks);
 
-/// What is compared within a key: "Task touch-liver 1, device falcon, ...".
+/// Sentence on what a key compares: "Task touch-liver 1, device falcon, ...".
 std::string keySentence(const std::string& key);
 
 /// The checkpoint of a phase's duration, which is always reported.
