@@ -69,6 +69,7 @@ TEXTS = {
     "tests/analytics/report/page_test.cpp",  # layout of text
     "tests/analytics/report/study_report_test.cpp",  # sections of the report
     "tests/apps/common/errors_test.cpp",  # advice of the programs
+    "tests/sim/geometry/organs_test.cpp",  # titles of the files
     "tests/recorder/sources/devices/camera/tracker_accuracy_test.cpp",  # names of conditions
     "tests/cluster/snakemake_test.py",  # Snakemake's own words
     "tests/gui/trainer/attempt_report_test.cpp", "tests/gui/trainer/controls_tutorial_test.cpp",

@@ -114,10 +114,10 @@ TEST_F(Instructor, FoldsCheckpointsByFamilyAndSortsThem) {
     EXPECT_TRUE(tree.isExpanded(family));
     shown += model.rowCount(family);
     for (int row = 0; row < model.rowCount(family); ++row) {
-      analytics::CheckpointValue shown;
-      shown.availability = analytics::Availability::notApplicable;
-      shown.reason = model.index(row, CheckpointTableModel::valueColumn, family).data().toString().toStdString();
-      EXPECT_FALSE(gui::sceneLacks(shown)) << shown.reason;
+      analytics::CheckpointValue cell;
+      cell.availability = analytics::Availability::notApplicable;
+      cell.reason = model.index(row, CheckpointTableModel::valueColumn, family).data().toString().toStdString();
+      EXPECT_FALSE(gui::sceneLacks(cell)) << cell.reason;
     }
   }
   EXPECT_EQ(shown + model.leftOut(), page.figures().figures().rowCount());
