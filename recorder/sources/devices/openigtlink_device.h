@@ -102,6 +102,7 @@ class OpenIgtLinkDevice final : public ReopeningDevice {
 };
 
 extern const DeviceKind openIgtLinkKind;
+OpenedDevice openOpenIgtLink(const DeviceRequest& request);
 
 struct OpenIgtLinkServerSettings {
   int port = openigtlink::defaultPort;  ///< 0: any that is free
@@ -131,5 +132,9 @@ class OpenIgtLinkServer {
   OpenIgtLinkServerSettings settings_;
   TcpListener listener_;
 };
+
+/// The same on one call. @param tell takes a line with the port, too
+void serveOpenIgtLink(const DeviceScript& motion, const OpenIgtLinkServerSettings& settings,
+                      const std::atomic<bool>& stop, const std::function<void(const std::string&)>& tell);
 
 }  // namespace calot::recorder

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "recorder/sources/devices/camera/frame_source.h"
-
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <linux/videodev2.h>
@@ -16,7 +14,9 @@
 #include <thread>
 
 #include "recorder/base/errors.h"
+#include "recorder/base/files.h"
 #include "recorder/sources/devices/device.h"
+#include "recorder/sources/devices/drivers/grey_decoder.h"
 
 extern "C" {
 #include <libavcodec/avcodec.h>
@@ -63,7 +63,29 @@ Descriptor openVideo(const std::string& file) {
   return Descriptor(::open(file.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC));
 }
 
-}  // namespace
+class LiveCamera final : public FrameSource {
+ public:
+  LiveCamera(std::string file, int width, int height);
+  ~LiveCamera() override;
+
+  FrameStatus next(std::chrono::nanoseconds wait, Frame& out) override;
+
+ private:
+  [[nodiscard]] std::string start();
+  void stop();
+  bool convert(std::span<const std::uint8_t> bytes, GreyImage& out);
+
+  struct Mapped {
+    void* address = nullptr;
+    std::size_t length = 0;
+  };
+  Descriptor handle_;
+  bool compressed_ = false;
+  std::size_t stride_ = 0;
+  std::vector<Mapped> buffer_;
+  GreyDecoder decoder_;
+  std::int64_t lastNumber_ = -1, nextAttempt_ = 0;
+};
 
 LiveCamera::LiveCamera(std::string file, int width, int height)
     : FrameSource(std::move(file), width > 0 ? width : usualWidth, height > 0 ? height : usualHeight, usualRate) {
@@ -187,7 +209,13 @@ FrameStatus LiveCamera::next(std::chrono::nanoseconds wait, Frame& out) {
   return FrameStatus::frame;
 }
 
-std::vector<std::array<std::string, 2>> LiveCamera::list() {
+}  // namespace
+
+std::unique_ptr<FrameSource> openLiveCamera(const std::string& file, int width, int height) {
+  return std::make_unique<LiveCamera>(file, width, height);
+}
+
+std::vector<std::array<std::string, 2>> listLiveCameras() {
   std::vector<std::array<std::string, 2>> out;
   std::error_code error;
   for (const auto& entry : std::filesystem::directory_iterator("/dev", error)) {

@@ -104,21 +104,13 @@ void OpenIgtLinkDevice::read(std::chrono::nanoseconds wait, DeviceInput& out) {
   if (!stream_.receiveAll(decode)) lose("disconnected: what the server sends is no OpenIGTLink", out);
 }
 
-constinit const DeviceKind openIgtLinkKind{
-    .name = "openigtlink",
-    .usage = "openigtlink[:HOST[:PORT]]",
-    .help = "tracked tools of an OpenIGTLink server",
-    .row = {"openigtlink:HOST:PORT", "a server's tracked tools; default localhost:18944", "2", "6, jaw by SENSOR",
-            "the server's"},
-    .open =
-        [](const DeviceRequest& request) {
-          checkTools(request.tools);
-          OpenIgtLinkSettings settings;
-          settings.tool = request.tools;
-          request.readAddress(settings.host, settings.port);
-          return OpenedDevice{std::make_unique<OpenIgtLinkDevice>(settings), nullptr};
-        },
-};
+OpenedDevice openOpenIgtLink(const DeviceRequest& request) {
+  checkTools(request.tools);
+  OpenIgtLinkSettings settings;
+  settings.tool = request.tools;
+  request.readAddress(settings.host, settings.port);
+  return {std::make_unique<OpenIgtLinkDevice>(settings), nullptr};
+}
 
 namespace {
 using Clock = std::chrono::steady_clock;
@@ -163,6 +155,13 @@ void OpenIgtLinkServer::serve(TcpStream client, const std::atomic<bool>& stop) {
 
 void OpenIgtLinkServer::run(const std::atomic<bool>& stop, const std::function<void(const std::string&)>& tell) {
   listener_.serve(stop, settings_.once, tell, [&](TcpStream client) { serve(std::move(client), stop); });
+}
+
+void serveOpenIgtLink(const DeviceScript& motion, const OpenIgtLinkServerSettings& settings,
+                      const std::atomic<bool>& stop, const std::function<void(const std::string&)>& tell) {
+  OpenIgtLinkServer server(motion, settings);
+  tell(fmt::format("listening on 127.0.0.1:{}", server.port()));
+  server.run(stop, tell);
 }
 
 }  // namespace calot::recorder

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "recorder/sources/devices/camera/frame_source.h"
 
 #include <fmt/format.h>
 #include <cmath>
 #include <cstring>
 
 #include "recorder/base/errors.h"
+#include "recorder/sources/devices/drivers/grey_decoder.h"
 
 extern "C" {
 #include <libavcodec/avcodec.h>
@@ -25,7 +25,26 @@ std::string reasonOfAv(int error) {
   return text.data();
 }
 
-}  // namespace
+class VideoFile final : public FrameSource {
+ public:
+  explicit VideoFile(const std::filesystem::path& file);
+
+  FrameStatus next(std::chrono::nanoseconds wait, Frame& out) override;
+
+ private:
+  [[noreturn]] void fail(const std::string& why) const;
+  /// @returns false at the end
+  bool decode();
+
+  HeldAv<AVFormatContext> format_;
+  GreyDecoder decoder_;
+  HeldAv<AVFrame> frame_;
+  HeldAv<AVPacket> packet_;
+  AVStream* stream_ = nullptr;      ///< of the format
+  std::int64_t first_ = INT64_MIN;  ///< time of the first frame, in the stream's units: none yet
+  std::int64_t last_ = -1;          ///< ns
+  bool drained_ = false, ended_ = false;
+};
 
 void VideoFile::fail(const std::string& why) const { throw Error(ErrorKind::damaged, Where{name_}, why); }
 
@@ -102,6 +121,10 @@ FrameStatus VideoFile::next(std::chrono::nanoseconds, Frame& out) {
   ended_ = true;
   return FrameStatus::ended;
 }
+
+}  // namespace
+
+std::unique_ptr<FrameSource> openFilmSource(const std::filesystem::path& file) { return std::make_unique<VideoFile>(file); }
 
 }  // namespace calot::recorder
 
