@@ -15,7 +15,9 @@ void serveOpenIgtLink(const DeviceScript& motion, const OpenIgtLinkServerSetting
                       const std::atomic<bool>& stop, const std::function<void(const std::string&)>& tell) {
   drivers().serveOpenIgtLink(motion, settings, stop, tell);
 }
-std::unique_ptr<FrameSource> openFilmSource(const std::filesystem::path& file) { return drivers().openFilmSource(file); }
+std::unique_ptr<FrameSource> openFilmSource(const std::filesystem::path& file) {
+  return drivers().openFilmSource(file);
+}
 std::unique_ptr<FrameSource> openLiveCamera(const std::string& file, int width, int height) {
   return drivers().openLiveCamera(file, width, height);
 }

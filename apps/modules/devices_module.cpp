@@ -4,7 +4,7 @@
 extern "C" const calot::apps::DeviceModule* calotModule() {
   using namespace calot::recorder;
   static constexpr calot::apps::DeviceModule table{
-      {CALOT_MODULE_BUILD}, openGamepad, listGamepads,   openSpaceMouse,  openHaply,       openOpenIgtLink,
-      serveOpenIgtLink,     openFilmSource,   openLiveCamera, listLiveCameras, makeTagDetector, tagCells};
+      {CALOT_MODULE_BUILD}, openGamepad,    listGamepads,   openSpaceMouse,  openHaply,       openOpenIgtLink,
+      serveOpenIgtLink,     openFilmSource, openLiveCamera, listLiveCameras, makeTagDetector, tagCells};
   return &table;
 }

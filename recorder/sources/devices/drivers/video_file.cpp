@@ -124,7 +124,9 @@ FrameStatus VideoFile::next(std::chrono::nanoseconds, Frame& out) {
 
 }  // namespace
 
-std::unique_ptr<FrameSource> openFilmSource(const std::filesystem::path& file) { return std::make_unique<VideoFile>(file); }
+std::unique_ptr<FrameSource> openFilmSource(const std::filesystem::path& file) {
+  return std::make_unique<VideoFile>(file);
+}
 
 }  // namespace calot::recorder
 
