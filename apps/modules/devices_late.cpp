@@ -22,7 +22,7 @@ std::unique_ptr<FrameSource> openLiveCamera(const std::string& file, int width, 
   return drivers().openLiveCamera(file, width, height);
 }
 std::vector<std::array<std::string, 2>> listLiveCameras() { return drivers().listLiveCameras(); }
-std::unique_ptr<TagDetector> makeTagDetector() { return drivers().makeTagDetector(); }
+TagDetector makeTagDetector() { return drivers().makeTagDetector(); }
 std::array<bool, 100> tagCells(int id) { return drivers().tagCells(id); }
 
 }  // namespace calot::recorder

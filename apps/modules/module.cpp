@@ -25,14 +25,12 @@ bool isWhole(const std::filesystem::path& file) {
 
 }  // namespace
 
-const Module& loadModule(const char* name, const char* purpose) {
+const Module& loadModule(const std::string& name) {
   const std::filesystem::path folder = recorder::ProgramFiles::ofThisProgram().programs() / ".." / "lib" / "calot";
-  const std::filesystem::path file = (folder / (std::string(name) + ".so")).lexically_normal();
+  const std::filesystem::path file = (folder / (name + ".so")).lexically_normal();
   const auto fail = [&](const std::string& why) {
     throw Error(ErrorKind::failure, Where{file.string()},
-                fmt::format("{}, which {} need; install the package calot-modules, or in a clone: scripts/setup.sh "
-                            "build, then scripts/demo.sh --windows",
-                            why, purpose));
+                why + "; install the package calot-modules, or in a clone run scripts/demo.sh --windows");
   };
   std::error_code ignored;
   if (!std::filesystem::exists(file, ignored)) fail("there is no such module");
@@ -43,7 +41,7 @@ const Module& loadModule(const char* name, const char* purpose) {
   if (symbol == nullptr) fail("is not a module");
   const Module& module = *reinterpret_cast<const Module* (*)()>(symbol)();
   if (std::string_view(module.build) != CALOT_MODULE_BUILD)
-    fail(fmt::format("is a module of build {}, this is build " CALOT_MODULE_BUILD ": not the one", module.build));
+    fail(fmt::format("is of build {}, this program is of build {}", module.build, CALOT_MODULE_BUILD));
   return module;
 }
 

@@ -3,6 +3,8 @@
 // the libraries of modules. NAME_module.cpp is a module's side of its table, NAME_late.cpp the command line's.
 #pragma once
 
+#include <string>
+
 #include "gui/film/film_writer.h"
 #include "gui/report/pdf_report.h"
 #include "recorder/sources/devices/camera/frame_source.h"
@@ -19,33 +21,30 @@ struct Module {
   const char* build;  ///< CALOT_MODULE_BUILD
 };
 
-/// @param purpose of the module, for people @return the table of <programs>/../lib/calot/NAME.so
+/// @return the table of <programs>/../lib/calot/NAME.so
 /// @throws Error (failure) that names the file, where it is missing, damaged or of another build
-const Module& loadModule(const char* name, const char* purpose);
+const Module& loadModule(const std::string& name);
 
 template <class Table>
 const Table& module() {
-  static const Table& table = static_cast<const Table&>(loadModule(Table::name, Table::purpose));
+  static const Table& table = static_cast<const Table&>(loadModule(Table::name));
   return table;
 }
 
 struct FilmModule : Module {
   static constexpr const char* name = "films";
-  static constexpr const char* purpose = "films";
   decltype(&gui::openFilm) open;
   decltype(&gui::copyCleanFilm) copyClean;
 };
 
 struct PdfModule : Module {
   static constexpr const char* name = "pdf";
-  static constexpr const char* purpose = "reports and sheets as PDF";
   decltype(&gui::pdfReport) report;
   decltype(&gui::sheetsPdf) sheets;
 };
 
 struct DeviceModule : Module {
   static constexpr const char* name = "devices";
-  static constexpr const char* purpose = "gamepads, cameras, trackers, SpaceMice and Inverse3";
   decltype(&recorder::openGamepad) openGamepad;
   decltype(&recorder::listGamepads) listGamepads;
   decltype(&recorder::openSpaceMouse) openSpaceMouse;

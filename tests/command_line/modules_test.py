@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Modules: missing, of another build, cut off, not one at all; and that an error of theirs is one of the program's."""
 
+import json
 import os
 import pathlib
 import re
@@ -37,9 +38,25 @@ class Modules(ProgramTest):
 
     def test_a_missing_module_is_named_with_its_place_and_package(self):
         program, films = self.tree()
-        self.assertOneLine(self.film(program, 1), str(films), "no such module", "calot-modules", "scripts/setup.sh build")
+        self.assertOneLine(self.film(program, 1), str(films), "no such module", "calot-modules", "scripts/demo.sh --windows")
         # What needs none is there.
         self.assertEqual(calot("render", short(), "--at", 0.2, "--size", "64x64", "-o", self.path("a.png"), program=program).code, 0)
+
+    def test_devices_and_paper_say_what_they_lack(self):
+        program, _ = self.tree()
+        sheets = self.refused(1, "devices", "print", "-o", self.path("out/s.pdf"), program=program)
+        self.assertOneLine(sheets, self.path("lib/calot/pdf.so"), "no such module")
+        listed = {d["name"]: d for d in json.loads(calot("devices", "--json", program=program).out)["devices"]}
+        for name in ("gamepad", "camera"):
+            self.assertFalse(listed[name]["present"])
+            self.assertIn("lib/calot/devices.so: there is no such module", listed[name]["detail"])
+        for name in ("gamepad", "spacenav", "openigtlink"):
+            answer = self.refused(1, "record", "--scene", "touch-liver", "--device", name, "-o", self.path("out/a.h5"), program=program)
+            self.assertOneLine(answer, self.path("lib/calot/devices.so"), "no such module")
+        self.assertEqual(list(self.path("out").iterdir()), [])
+        # Devices that need no library are there.
+        answer = calot("record", "--scene", "touch-liver", "--device", "null", "--seconds", 0.05, "-o", self.path("out/a.h5"), program=program)
+        self.assertEqual(answer.code, 0, answer)
 
     def test_a_module_of_another_build_is_refused(self):
         program, films = self.tree()
@@ -47,7 +64,7 @@ class Modules(ProgramTest):
         content = (MODULES / "films.so").read_bytes()
         at = content.index(build + b" ")
         films.write_bytes(content[:at] + b"9" + content[at + 1:])
-        self.assertOneLine(self.film(program, 1), str(films), "is a module of build 9", "this is build " + build.decode())
+        self.assertOneLine(self.film(program, 1), str(films), "is of build 9", "this program is of build " + build.decode())
 
     def test_a_module_that_is_cut_off_is_refused(self):
         program, films = self.tree()

@@ -169,7 +169,7 @@ void CameraDevice::measure(std::int64_t time, DeviceInput& out) {
     if (!c.waiting || c.pending.time > time + period_ / 2) continue;
     c.waiting = false;
     missed = frames.empty() ? c.pending.missed : std::min(missed, c.pending.missed);
-    frames.push_back({i, c.pending.time, c.detector->detect(c.pending.image)});
+    frames.push_back({i, c.pending.time, c.detect(c.pending.image)});
   }
   if (keys_ && !keys_->read()) {
     tell(DeviceEvent::Kind::malformed, "the keyboard of the pedals is gone: they are up", out);

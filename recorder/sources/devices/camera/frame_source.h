@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <Eigen/Core>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 #include <utility>
@@ -28,19 +29,10 @@ struct SeenTag {
 };
 
 /// Finds tags of the family 36h11 (AprilTag 3: Krogius, Haggenmiller, Olson 2019, "Flexible layouts for fiducial tags",
-/// IROS). One thread, and the same result every time.
-class TagDetector {
- public:
-  TagDetector() = default;
-  virtual ~TagDetector() = default;
-  TagDetector(const TagDetector&) = delete;
-  TagDetector& operator=(const TagDetector&) = delete;
-
-  /// Tags with at most one corrected bit and clear contrast, in the order of their numbers. A number that is seen twice
-  /// is left out: one of the two is false, and which cannot be said.
-  virtual std::vector<SeenTag> detect(const GreyImage& image) = 0;
-};
-std::unique_ptr<TagDetector> makeTagDetector();
+/// IROS) with at most one corrected bit and clear contrast, in the order of their numbers. A number that is seen twice
+/// is left out: one of the two is false, and which cannot be said. One thread, and the same result every time.
+using TagDetector = std::function<std::vector<SeenTag>(const GreyImage& image)>;
+TagDetector makeTagDetector();
 
 struct Frame {
   GreyImage image;

@@ -6,21 +6,20 @@
 
 #include "recorder/sources/devices/camera/frame_source.h"
 
-struct AVCodecContext;
-struct AVCodecParameters;
-struct AVFormatContext;
-struct AVFrame;
-struct AVPacket;
-struct SwsContext;
+extern "C" {
+#include <libavcodec/avcodec.h>
+#include <libavformat/avformat.h>
+#include <libswscale/swscale.h>
+}
 
 namespace calot::recorder {
 
 struct FreeAv {
-  void operator()(AVCodecContext* p) const;
-  void operator()(AVFormatContext* p) const;
-  void operator()(AVFrame* p) const;
-  void operator()(AVPacket* p) const;
-  void operator()(SwsContext* p) const;
+  void operator()(AVCodecContext* p) const { avcodec_free_context(&p); }
+  void operator()(AVFormatContext* p) const { avformat_close_input(&p); }
+  void operator()(AVFrame* p) const { av_frame_free(&p); }
+  void operator()(AVPacket* p) const { av_packet_free(&p); }
+  void operator()(SwsContext* p) const { sws_freeContext(p); }
 };
 template <class T>
 using HeldAv = std::unique_ptr<T, FreeAv>;
@@ -28,9 +27,9 @@ using HeldAv = std::unique_ptr<T, FreeAv>;
 /// A decoder on one thread, and the conversion of what it gives. Luminance is passed on as the picture holds it.
 class GreyDecoder {
  public:
-  /// Opens a stream of a file. @returns false where libav has no decoder for it
-  bool open(const AVCodecParameters& parameters);
-  bool openMotionJpeg();
+  /// @param parameters of a stream of a file, or null
+  /// @returns false where libav has no such decoder
+  bool open(AVCodecID id, const AVCodecParameters* parameters);
 
   [[nodiscard]] AVCodecContext* context() const { return context_.get(); }
   /// @returns false where the format is unknown to libswscale, or the picture's size differs from width and height

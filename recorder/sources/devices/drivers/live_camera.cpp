@@ -11,16 +11,13 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <span>
 #include <thread>
 
 #include "recorder/base/errors.h"
 #include "recorder/base/files.h"
 #include "recorder/sources/devices/device.h"
 #include "recorder/sources/devices/drivers/grey_decoder.h"
-
-extern "C" {
-#include <libavcodec/avcodec.h>
-}
 
 namespace calot::recorder {
 namespace {
@@ -65,15 +62,129 @@ Descriptor openVideo(const std::string& file) {
 
 class LiveCamera final : public FrameSource {
  public:
-  LiveCamera(std::string file, int width, int height);
-  ~LiveCamera() override;
+  LiveCamera(std::string file, int width, int height)
+      : FrameSource(std::move(file), width > 0 ? width : usualWidth, height > 0 ? height : usualHeight, usualRate) {
+    const std::string fault = start();
+    if (fault.empty()) return;
+    stop();
+    throw Error(ErrorKind::failure, Where{name_}, fault);
+  }
+  ~LiveCamera() override { stop(); }
 
-  FrameStatus next(std::chrono::nanoseconds wait, Frame& out) override;
+  FrameStatus next(std::chrono::nanoseconds wait, Frame& out) override {
+    if (!handle_.valid()) {
+      const std::int64_t now = monotonicNanoseconds();
+      if (now < nextAttempt_) {
+        std::this_thread::sleep_for(std::min<std::chrono::nanoseconds>(wait, std::chrono::milliseconds(20)));
+        return FrameStatus::lost;
+      }
+      nextAttempt_ = now + reopenPeriod;
+      if (!start().empty()) {
+        stop();
+        return FrameStatus::lost;
+      }
+    }
+    pollfd ready{handle_.get(), POLLIN, 0};
+    const auto milliseconds = std::chrono::duration_cast<std::chrono::milliseconds>(wait).count();
+    if (::poll(&ready, 1, static_cast<int>(milliseconds)) <= 0) return FrameStatus::none;
+    v4l2_buffer buffer = captureBuffer();
+    if (call(handle_.get(), VIDIOC_DQBUF, &buffer) < 0) {
+      if (errno == EAGAIN) return FrameStatus::none;
+      reason_ = fmt::format("{}: {}", name_, std::strerror(errno));
+      stop();
+      return FrameStatus::lost;
+    }
+    const auto* const bytes = static_cast<const std::uint8_t*>(buffer_[buffer.index].address);
+    const bool whole = (buffer.flags & V4L2_BUF_FLAG_ERROR) == 0 && convert({bytes, buffer.bytesused}, out.image);
+    const bool monotonic = (buffer.flags & V4L2_BUF_FLAG_TIMESTAMP_MASK) == V4L2_BUF_FLAG_TIMESTAMP_MONOTONIC;
+    out.time = monotonic ? std::int64_t{buffer.timestamp.tv_sec} * 1'000'000'000 + buffer.timestamp.tv_usec * 1000
+                         : monotonicNanoseconds();
+    const auto number = static_cast<std::int64_t>(buffer.sequence);
+    call(handle_.get(), VIDIOC_QBUF, &buffer);
+    if (!whole) return FrameStatus::none;  // the gap of its number reports it
+    out.missed = lastNumber_ >= 0 && number > lastNumber_ ? static_cast<std::uint64_t>(number - lastNumber_ - 1) : 0;
+    lastNumber_ = number;
+    return FrameStatus::frame;
+  }
 
  private:
-  [[nodiscard]] std::string start();
-  void stop();
-  bool convert(std::span<const std::uint8_t> bytes, GreyImage& out);
+  /// @returns what is wrong, or an empty text
+  std::string start() {
+    handle_ = openVideo(name_);
+    if (!handle_.valid()) return fmt::format("the camera cannot be opened: {}", std::strerror(errno));
+    card_ = cardOf(handle_.get());
+    if (card_.empty()) return "is not a camera";
+    v4l2_format format{};
+    for (const std::uint32_t pixels : {V4L2_PIX_FMT_MJPEG, V4L2_PIX_FMT_YUYV}) {
+      format = {};
+      format.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
+      format.fmt.pix.width = static_cast<std::uint32_t>(width_);
+      format.fmt.pix.height = static_cast<std::uint32_t>(height_);
+      format.fmt.pix.pixelformat = pixels;
+      format.fmt.pix.field = V4L2_FIELD_NONE;
+      if (call(handle_.get(), VIDIOC_S_FMT, &format) == 0 && format.fmt.pix.pixelformat == pixels) break;
+      format.fmt.pix.pixelformat = 0;
+    }
+    if (format.fmt.pix.pixelformat == 0) return "gives neither motion JPEG nor YUYV";
+    if (format.fmt.pix.width != static_cast<std::uint32_t>(width_) ||
+        format.fmt.pix.height != static_cast<std::uint32_t>(height_))
+      return fmt::format("gives no pictures of {} x {} pixels", width_, height_);
+    compressed_ = format.fmt.pix.pixelformat == V4L2_PIX_FMT_MJPEG;
+    stride_ = std::max<std::size_t>(format.fmt.pix.bytesperline, 2 * static_cast<std::size_t>(width_));
+    if (compressed_ && !decoder_.open(AV_CODEC_ID_MJPEG, nullptr)) return "this libav decodes no motion JPEG";
+    v4l2_streamparm pace{};
+    pace.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
+    pace.parm.capture.timeperframe = {1, 60};  // the driver takes what is nearest
+    const v4l2_fract& period = pace.parm.capture.timeperframe;
+    if (call(handle_.get(), VIDIOC_S_PARM, &pace) == 0 && period.numerator > 0 && period.denominator > 0)
+      rate_ = static_cast<double>(period.denominator) / period.numerator;
+    v4l2_requestbuffers wanted{};
+    wanted.count = buffersWanted;
+    wanted.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
+    wanted.memory = V4L2_MEMORY_MMAP;
+    if (call(handle_.get(), VIDIOC_REQBUFS, &wanted) < 0 || wanted.count < 2) return "gives no buffers";
+    for (std::uint32_t i = 0; i < wanted.count; ++i) {
+      v4l2_buffer buffer = captureBuffer();
+      buffer.index = i;
+      if (call(handle_.get(), VIDIOC_QUERYBUF, &buffer) < 0) return "gives no buffers";
+      void* const address = mmap(nullptr, buffer.length, PROT_READ, MAP_SHARED, handle_.get(), buffer.m.offset);
+      if (address == MAP_FAILED) return fmt::format("its buffers cannot be mapped: {}", std::strerror(errno));
+      buffer_.push_back({address, buffer.length});
+      if (call(handle_.get(), VIDIOC_QBUF, &buffer) < 0) return "takes no buffers";
+    }
+    int type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
+    if (call(handle_.get(), VIDIOC_STREAMON, &type) < 0)
+      return fmt::format("does not start: {}", errno == EBUSY ? "another program uses it" : std::strerror(errno));
+    lastNumber_ = -1;
+    return {};
+  }
+
+  void stop() {
+    for (const Mapped& mapped : buffer_) munmap(mapped.address, mapped.length);
+    buffer_.clear();
+    handle_.close();
+  }
+
+  bool convert(std::span<const std::uint8_t> bytes, GreyImage& out) {
+    const auto width = static_cast<std::size_t>(width_), height = static_cast<std::size_t>(height_);
+    if (!compressed_) {
+      if (bytes.size() < stride_ * (height - 1) + 2 * width) return false;
+      out.width = width_;
+      out.height = height_;
+      out.pixels.resize(width * height);
+      for (std::size_t y = 0; y < height; ++y) {
+        for (std::size_t x = 0; x < width; ++x) out.pixels[y * width + x] = bytes[y * stride_ + 2 * x];
+      }
+      return true;
+    }
+    const HeldAv<AVPacket> packet(av_packet_alloc());
+    const HeldAv<AVFrame> frame(av_frame_alloc());
+    if (!packet || !frame || av_new_packet(packet.get(), static_cast<int>(bytes.size())) < 0) return false;
+    std::copy(bytes.begin(), bytes.end(), packet->data);
+    return avcodec_send_packet(decoder_.context(), packet.get()) >= 0 &&
+           avcodec_receive_frame(decoder_.context(), frame.get()) >= 0 &&
+           decoder_.convert(*frame, width_, height_, out);
+  }
 
   struct Mapped {
     void* address = nullptr;
@@ -86,128 +197,6 @@ class LiveCamera final : public FrameSource {
   GreyDecoder decoder_;
   std::int64_t lastNumber_ = -1, nextAttempt_ = 0;
 };
-
-LiveCamera::LiveCamera(std::string file, int width, int height)
-    : FrameSource(std::move(file), width > 0 ? width : usualWidth, height > 0 ? height : usualHeight, usualRate) {
-  const std::string fault = start();
-  if (fault.empty()) return;
-  stop();
-  throw Error(ErrorKind::failure, Where{name_}, fault);
-}
-
-LiveCamera::~LiveCamera() { stop(); }
-
-std::string LiveCamera::start() {
-  handle_ = openVideo(name_);
-  if (!handle_.valid()) return fmt::format("the camera cannot be opened: {}", std::strerror(errno));
-  card_ = cardOf(handle_.get());
-  if (card_.empty()) return "is not a camera";
-  v4l2_format format{};
-  for (const std::uint32_t pixels : {V4L2_PIX_FMT_MJPEG, V4L2_PIX_FMT_YUYV}) {
-    format = {};
-    format.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
-    format.fmt.pix.width = static_cast<std::uint32_t>(width_);
-    format.fmt.pix.height = static_cast<std::uint32_t>(height_);
-    format.fmt.pix.pixelformat = pixels;
-    format.fmt.pix.field = V4L2_FIELD_NONE;
-    if (call(handle_.get(), VIDIOC_S_FMT, &format) == 0 && format.fmt.pix.pixelformat == pixels) break;
-    format.fmt.pix.pixelformat = 0;
-  }
-  if (format.fmt.pix.pixelformat == 0) return "gives neither motion JPEG nor YUYV";
-  if (format.fmt.pix.width != static_cast<std::uint32_t>(width_) ||
-      format.fmt.pix.height != static_cast<std::uint32_t>(height_))
-    return fmt::format("gives no pictures of {} x {} pixels", width_, height_);
-  compressed_ = format.fmt.pix.pixelformat == V4L2_PIX_FMT_MJPEG;
-  stride_ = std::max<std::size_t>(format.fmt.pix.bytesperline, 2 * static_cast<std::size_t>(width_));
-  if (compressed_ && !decoder_.openMotionJpeg()) return "this libav decodes no motion JPEG";
-  v4l2_streamparm pace{};
-  pace.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
-  pace.parm.capture.timeperframe = {1, 60};  // the driver takes what is nearest
-  const v4l2_fract& period = pace.parm.capture.timeperframe;
-  if (call(handle_.get(), VIDIOC_S_PARM, &pace) == 0 && period.numerator > 0 && period.denominator > 0)
-    rate_ = static_cast<double>(period.denominator) / period.numerator;
-  v4l2_requestbuffers wanted{};
-  wanted.count = buffersWanted;
-  wanted.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
-  wanted.memory = V4L2_MEMORY_MMAP;
-  if (call(handle_.get(), VIDIOC_REQBUFS, &wanted) < 0 || wanted.count < 2) return "gives no buffers";
-  for (std::uint32_t i = 0; i < wanted.count; ++i) {
-    v4l2_buffer buffer = captureBuffer();
-    buffer.index = i;
-    if (call(handle_.get(), VIDIOC_QUERYBUF, &buffer) < 0) return "gives no buffers";
-    void* const address = mmap(nullptr, buffer.length, PROT_READ, MAP_SHARED, handle_.get(), buffer.m.offset);
-    if (address == MAP_FAILED) return fmt::format("its buffers cannot be mapped: {}", std::strerror(errno));
-    buffer_.push_back({address, buffer.length});
-    if (call(handle_.get(), VIDIOC_QBUF, &buffer) < 0) return "takes no buffers";
-  }
-  int type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
-  if (call(handle_.get(), VIDIOC_STREAMON, &type) < 0)
-    return fmt::format("does not start: {}", errno == EBUSY ? "another program uses it" : std::strerror(errno));
-  lastNumber_ = -1;
-  return {};
-}
-
-void LiveCamera::stop() {
-  for (const Mapped& mapped : buffer_) munmap(mapped.address, mapped.length);
-  buffer_.clear();
-  handle_.close();
-}
-
-bool LiveCamera::convert(std::span<const std::uint8_t> bytes, GreyImage& out) {
-  const auto width = static_cast<std::size_t>(width_), height = static_cast<std::size_t>(height_);
-  if (!compressed_) {
-    if (bytes.size() < stride_ * (height - 1) + 2 * width) return false;
-    out.width = width_;
-    out.height = height_;
-    out.pixels.resize(width * height);
-    for (std::size_t y = 0; y < height; ++y) {
-      for (std::size_t x = 0; x < width; ++x) out.pixels[y * width + x] = bytes[y * stride_ + 2 * x];
-    }
-    return true;
-  }
-  const HeldAv<AVPacket> packet(av_packet_alloc());
-  const HeldAv<AVFrame> frame(av_frame_alloc());
-  if (!packet || !frame || av_new_packet(packet.get(), static_cast<int>(bytes.size())) < 0) return false;
-  std::copy(bytes.begin(), bytes.end(), packet->data);
-  return avcodec_send_packet(decoder_.context(), packet.get()) >= 0 &&
-         avcodec_receive_frame(decoder_.context(), frame.get()) >= 0 && decoder_.convert(*frame, width_, height_, out);
-}
-
-FrameStatus LiveCamera::next(std::chrono::nanoseconds wait, Frame& out) {
-  if (!handle_.valid()) {
-    const std::int64_t now = monotonicNanoseconds();
-    if (now < nextAttempt_) {
-      std::this_thread::sleep_for(std::min<std::chrono::nanoseconds>(wait, std::chrono::milliseconds(20)));
-      return FrameStatus::lost;
-    }
-    nextAttempt_ = now + reopenPeriod;
-    if (!start().empty()) {
-      stop();
-      return FrameStatus::lost;
-    }
-  }
-  pollfd ready{handle_.get(), POLLIN, 0};
-  const auto milliseconds = std::chrono::duration_cast<std::chrono::milliseconds>(wait).count();
-  if (::poll(&ready, 1, static_cast<int>(milliseconds)) <= 0) return FrameStatus::none;
-  v4l2_buffer buffer = captureBuffer();
-  if (call(handle_.get(), VIDIOC_DQBUF, &buffer) < 0) {
-    if (errno == EAGAIN) return FrameStatus::none;
-    reason_ = fmt::format("{}: {}", name_, std::strerror(errno));
-    stop();
-    return FrameStatus::lost;
-  }
-  const auto* const bytes = static_cast<const std::uint8_t*>(buffer_[buffer.index].address);
-  const bool whole = (buffer.flags & V4L2_BUF_FLAG_ERROR) == 0 && convert({bytes, buffer.bytesused}, out.image);
-  const bool monotonic = (buffer.flags & V4L2_BUF_FLAG_TIMESTAMP_MASK) == V4L2_BUF_FLAG_TIMESTAMP_MONOTONIC;
-  out.time = monotonic ? std::int64_t{buffer.timestamp.tv_sec} * 1'000'000'000 + buffer.timestamp.tv_usec * 1000
-                       : monotonicNanoseconds();
-  const auto number = static_cast<std::int64_t>(buffer.sequence);
-  call(handle_.get(), VIDIOC_QBUF, &buffer);
-  if (!whole) return FrameStatus::none;  // the gap of its number reports it
-  out.missed = lastNumber_ >= 0 && number > lastNumber_ ? static_cast<std::uint64_t>(number - lastNumber_ - 1) : 0;
-  lastNumber_ = number;
-  return FrameStatus::frame;
-}
 
 }  // namespace
 

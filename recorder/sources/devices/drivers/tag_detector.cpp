@@ -18,27 +18,20 @@ namespace {
 constexpr int mostCorrected = 1;
 constexpr double leastMargin = 20.0;  // grey levels
 
-struct FreeTags {
-  void operator()(apriltag_family* p) const { tag36h11_destroy(p); }
-  void operator()(apriltag_detector* p) const { apriltag_detector_destroy(p); }
-};
-template <class T>
-using HeldTags = std::unique_ptr<T, FreeTags>;
+}  // namespace
 
-class Detector final : public TagDetector {
- public:
-  Detector() {
-    apriltag_detector_add_family_bits(detector_.get(), family_.get(), mostCorrected);
-    detector_->nthreads = 1;
-    detector_->quad_decimate = 2.0F;  // edges are refined in the full picture
-    detector_->refine_edges = true;
-  }
-
-  std::vector<SeenTag> detect(const GreyImage& image) override {
+TagDetector makeTagDetector() {
+  const std::shared_ptr<apriltag_family> family(tag36h11_create(), tag36h11_destroy);
+  const std::shared_ptr<apriltag_detector> detector(apriltag_detector_create(), apriltag_detector_destroy);
+  apriltag_detector_add_family_bits(detector.get(), family.get(), mostCorrected);
+  detector->nthreads = 1;
+  detector->quad_decimate = 2.0F;  // edges are refined in the full picture
+  detector->refine_edges = true;
+  return [family, detector](const GreyImage& image) {
     assert(image.pixels.size() == static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
     // The library reads alone.
     image_u8_t view{image.width, image.height, image.width, const_cast<std::uint8_t*>(image.pixels.data())};
-    zarray_t* const found = apriltag_detector_detect(detector_.get(), &view);
+    zarray_t* const found = apriltag_detector_detect(detector.get(), &view);
     std::vector<SeenTag> out;
     for (int i = 0; i < zarray_size(found); ++i) {
       apriltag_detection_t* tag = nullptr;
@@ -56,19 +49,11 @@ class Detector final : public TagDetector {
       if (!twice) once.push_back(out[i]);
     }
     return once;
-  }
-
- private:
-  HeldTags<apriltag_family> family_{tag36h11_create()};
-  HeldTags<apriltag_detector> detector_{apriltag_detector_create()};
-};
-
-}  // namespace
-
-std::unique_ptr<TagDetector> makeTagDetector() { return std::make_unique<Detector>(); }
+  };
+}
 
 std::array<bool, 100> tagCells(int id) {
-  const HeldTags<apriltag_family> family(tag36h11_create());
+  const std::shared_ptr<apriltag_family> family(tag36h11_create(), tag36h11_destroy);
   assert(id >= 0 && static_cast<std::uint32_t>(id) < family->ncodes);
   const auto width = static_cast<std::uint32_t>(family->total_width);
   const std::uint32_t margin = (width - static_cast<std::uint32_t>(family->width_at_border)) / 2;
