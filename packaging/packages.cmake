@@ -58,17 +58,23 @@ force, errors, norms, studies of groups. It is research software, not a
 medical device.\n.\n")
 calot_package(commands NAME calot SUMMARY "record, replay and assess training of laparoscopic surgery"
   TEXT "${calot_about}This package has the command line, the scenes and the simulation."
-  DEPENDS fonts-dejavu-core RECOMMENDS "calot-engines (= ${calot_version})" SUGGESTS "calot-gui, calot-doc, python3-numpy")
+  DEPENDS "fonts-dejavu-core, libosmesa6" RECOMMENDS "calot-engines (= ${calot_version}), calot-modules (= ${calot_version})" SUGGESTS "calot-gui, calot-doc, python3-numpy")
 calot_package(engines NAME calot-engines ARCHITECTURE all SUMMARY "kept engines and golden recordings of Calot"
   TEXT "${calot_about}This package has engines that decide recordings of earlier simulation
 versions, as WebAssembly modules, and golden recordings that prove what an
 engine computes."
   DEPENDS nodejs)
+if(calot_modules)
+  calot_package(modules NAME calot-modules SUMMARY "films, PDF and devices of Calot"
+    TEXT "${calot_about}This package has what the command line loads for films, for reports as PDF and
+for input devices: gamepads, cameras, trackers, SpaceMice, Inverse3."
+    DEPENDS "calot (= ${calot_version}), fonts-dejavu-core, qt6-qpa-plugins")
+endif()
 if(CALOT_WINDOWS)
   calot_package(windows NAME calot-gui SUMMARY "dashboard and trainer of Calot"
     TEXT "${calot_about}This package has the dashboard, which shows cohorts and recordings, and the
 trainer, which runs an operation live in a window."
-    DEPENDS "calot (= ${calot_version}), fonts-dejavu-core, qt6-qpa-plugins, shared-mime-info" RECOMMENDS qt6-wayland
+    DEPENDS "calot (= ${calot_version}), fonts-dejavu-core, libosmesa6, qt6-qpa-plugins, shared-mime-info" RECOMMENDS qt6-wayland
     SUGGESTS "qt6-speech-speechd-plugin, speech-dispatcher")
 endif()
 calot_package(documents NAME calot-doc ARCHITECTURE all SECTION doc SUMMARY "documentation of Calot"
@@ -81,11 +87,11 @@ recorder and analytics for programs of one's own."
 if(TARGET calot_python)
   calot_package(python NAME python3-calot SECTION python SUMMARY "Python module of Calot"
     TEXT "${calot_about}This package has the module for Python 3."
-    DEPENDS "python3 (>= 3.11), python3 (<< 3.12), python3-numpy, calot (= ${calot_version})")
+    DEPENDS "python3 (>= 3.11), python3 (<< 3.12), python3-numpy, libosmesa6, calot (= ${calot_version})")
 endif()
 # Everything that the packages hold.
 add_custom_target(calot_packaged)
-add_dependencies(calot_packaged ${calot_programs} ${calot_packaged_libraries} calot_manual_commands calot_changelogs)
+add_dependencies(calot_packaged ${calot_programs} ${calot_modules} ${calot_packaged_libraries} calot_manual_commands calot_changelogs)
 if(CALOT_WINDOWS)
   add_dependencies(calot_packaged calot_manual_windows)
 endif()

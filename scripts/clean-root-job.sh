@@ -28,6 +28,9 @@ want "unskilled" calot study study.db --group-by performer --include-synthetic -
 want "%PDF" head -c 4 study.pdf
 calot render skilled-1.h5 --at 2 -o moment.png >/dev/null
 want "PNG" head -c 4 moment.png
+want "frames" calot render skilled-1.h5 --from 1 --to 1.2 -o moment.mp4
+want "openigtlink:HOST:PORT" calot devices
+want "" calot devices print -o sheets.pdf
 want "version 12: module /usr/share/calot/engines/engine-12.wasm" calot engine list
 want "version 18: module /usr/share/calot/engines/engine-18.wasm" calot engine list
 want "version 19: program /usr/bin/calot-engine" calot engine list

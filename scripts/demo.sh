@@ -77,7 +77,7 @@ echo "pictures:        $demo/operation-*.png"
 if [[ ${1:-} == --windows ]]; then
   "$root/scripts/setup.sh" build
   configure release "${whole[@]}" -DBUILD_TESTING=OFF
-  build release calot calot-dashboard calot-trainer calot-engine
+  build release calot calot-engine calot_modules calot-dashboard calot-trainer
   echo "look at it:      $(dirname "$calot")/calot-dashboard $demo/cohort.db"
 else
   echo "look at it:      scripts/demo.sh --windows builds the dashboard and the trainer"

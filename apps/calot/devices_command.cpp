@@ -4,13 +4,11 @@
 
 #include "apps/calot/command.h"
 #include "apps/calot/source_options.h"
+#include "gui/report/pdf_report.h"
 #include "recorder/base/files.h"
 #include "recorder/loop.h"
 #include "recorder/sources/devices/force/force_server.h"
 #include "recorder/sources/devices/openigtlink_device.h"
-#ifdef CALOT_PDF
-#include "gui/report/pdf_report.h"
-#endif
 
 namespace calot::apps {
 namespace {
@@ -21,14 +19,10 @@ struct PrintOptions {
 };
 
 /// The sheets of handles and board as PDF.
-void printSheets([[maybe_unused]] const PrintOptions& o) {
-#ifdef CALOT_PDF
+void printSheets(const PrintOptions& o) {
   recorder::refuseOutput(o.output, o.force);
   recorder::writeText(o.output, gui::sheetsPdf(recorder::markerSheets(), recorder::softwareName(), recorder::tagCells),
                       o.force);
-#else
-  throw Error(ErrorKind::invalid, "this build writes no PDF");
-#endif
 }
 
 void printLine(const std::string& line) {
@@ -87,9 +81,7 @@ void serve(const ServeOptions& o) {
   recorder::OpenIgtLinkServerSettings settings = o.settings;
   settings.tool = toolsOf(o.device);
   stopOnSignals();
-  recorder::OpenIgtLinkServer server(motion, settings);
-  printLine(fmt::format("listening on 127.0.0.1:{}", server.port()));
-  server.run(stopRequested(), printLine);
+  recorder::serveOpenIgtLink(motion, settings, stopRequested(), printLine);
 }
 
 }  // namespace

@@ -136,7 +136,7 @@ void addGrade(CLI::App& app, Run& run) {
   command->add_flag("--mix-keys", o->mixKeys, "Compare across scenes, devices and versions, and say so");
   command->add_option("--html", o->html, "Write the sheet as one self-contained page");
   command->add_flag("--with-replay", o->withReplay, "The page carries the recording, for calot-page.html to play");
-  addPdfOption(*command, o->pdf, "Write the sheet on A4 pages");
+  command->add_option("--pdf", o->pdf, "Write the sheet on A4 pages");
   command->add_flag("--json", o->json, "Print JSON");
   command->add_flag("--force", o->force, "Replace files that are there");
 }

@@ -13,12 +13,10 @@
 #include "analytics/report/study_output.h"
 #include "apps/calot/command.h"
 #include "apps/calot/environment.h"
+#include "gui/report/pdf_report.h"
 #include "recorder/base/errors.h"
 #include "recorder/base/files.h"
 #include "recorder/loop.h"
-#ifdef CALOT_PDF
-#include "gui/report/pdf_report.h"
-#endif
 
 namespace calot::apps {
 namespace {
@@ -127,19 +125,11 @@ void addStudySource(CLI::App& command, StudySource& source) {
     command.get_option(name)->excludes(command.get_option("--protocol"));
 }
 
-void addPdfOption(CLI::App& command, std::string& file, const std::string& help) {
-  [[maybe_unused]] CLI::Option* option = command.add_option("--pdf", file, help);
-#ifndef CALOT_PDF
-  option->check([](const std::string&) { return "this build writes no PDF; --html writes the same report"; });
-#endif
-}
-
-void writeReport(const analytics::ReportDocument& document, const std::string& html,
-                 [[maybe_unused]] const std::string& pdf, bool force, const analytics::CarriedRecording* recording) {
+void writeReport(const analytics::ReportDocument& document, const std::string& html, const std::string& pdf, bool force,
+                 const analytics::CarriedRecording* recording) {
+  const std::string paper = pdf.empty() ? "" : gui::pdfReport(document, recorder::softwareName());
   if (!html.empty()) recorder::writeText(html, analytics::pageHtml(document, recording), force);
-#ifdef CALOT_PDF
-  if (!pdf.empty()) recorder::writeText(pdf, gui::pdfReport(document, recorder::softwareName()), force);
-#endif
+  if (!pdf.empty()) recorder::writeText(pdf, paper, force);
 }
 
 namespace {
@@ -346,7 +336,7 @@ void addStudy(CLI::App& app, Run& run) {
   command->add_flag("--all", options->all, "Print every figure and the methods, not only the first result");
   command->add_option("--csv", options->csv, "Write study.csv, values.csv, flow.csv and coverage.csv into this folder");
   command->add_option("--html", options->html, "Write one self-contained page with figures");
-  addPdfOption(*command, options->pdf, "Write the same on A4 pages");
+  command->add_option("--pdf", options->pdf, "Write the same on A4 pages");
   command->add_flag("--force", options->force, "Replace files that are there");
 }
 

@@ -29,9 +29,6 @@ analytics::StudyOptions protocolStudyOptions(const StudySource& source, const an
 /// @throws Error as makeStudy() and makeTableStudy(); (invalid) where neither a cohort nor a table is named.
 analytics::Study studyOf(StudySource& source, const analytics::StudyProgress& progress = {});
 
-/// Adds `--pdf FILE`. A build without Qt (CALOT_WINDOWS off) has no PDF and refuses the option.
-void addPdfOption(CLI::App& command, std::string& file, const std::string& help);
-
 /// Writes a report as a page and on paper, where a file is named. @param recording that the page carries, or null
 /// @throws Error as recorder::writeText and gui::pdfReport
 void writeReport(const analytics::ReportDocument& document, const std::string& html, const std::string& pdf, bool force,

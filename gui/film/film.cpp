@@ -215,7 +215,18 @@ void checkBeside(const FilmSettings& settings) {
                 fmt::format("{} pixels wide: two recordings side by side need a multiple of 4", settings.size.width));
 }
 
+constexpr int fastest = 120;  // pictures a second
+
 }  // namespace
+
+void FilmWriter::check(const std::filesystem::path& file, int width, int height, int fps) {
+  if (file.extension() != ".mp4" && file.extension() != ".mkv")
+    throw Error(ErrorKind::invalid, Where{file.string()}, "films are written as .mp4 or .mkv");
+  if (width % 2 != 0 || height % 2 != 0)
+    throw Error(ErrorKind::invalid, fmt::format("{}x{}: width and height of a film are even", width, height));
+  if (fps < 1 || fps > fastest)
+    throw Error(ErrorKind::invalid, fmt::format("{} frames a second: a film has 1 to {}", fps, fastest));
+}
 
 void checkFilm(const std::filesystem::path& recording, const std::filesystem::path& output,
                const FilmSettings& settings) {
@@ -244,16 +255,16 @@ std::int64_t writeFilm(const std::filesystem::path& recording, const std::filesy
   const double to = settings.to.value_or(cutter.seconds());
   const double each = settings.speed / settings.fps;
   const auto count = static_cast<std::uint64_t>(std::max(1.0, std::ceil((to - settings.from) / each - 1e-6)));
-  FilmWriter writer(output, settings.size.width, settings.size.height, settings.fps);
+  const auto writer = openFilm(output, settings.size.width, settings.size.height, settings.fps);
   LookAhead<Cutter::Scenes> scenes(
       count, [&](std::uint64_t k) { return cutter.at(settings.from + static_cast<double>(k) * each); });
   LookAhead<Image> pictures(count, [&](std::uint64_t) { return cutter.draw(scenes.next()); });
   for (std::uint64_t k = 0; k < count; ++k) {
-    writer.add(pictures.next());
+    writer->add(pictures.next());
     if (progress) progress(k + 1, count);
   }
-  writer.finish();
-  return writer.pictures();
+  writer->finish();
+  return writer->pictures();
 }
 
 ShownMoment writeMoment(const std::filesystem::path& recording, const std::filesystem::path& output,

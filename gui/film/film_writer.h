@@ -18,29 +18,27 @@ namespace calot::gui {
 /// is removed if finish() is never reached.
 class FilmWriter {
  public:
-  /// @param file ends with .mp4 or .mkv
-  /// @param fps pictures a second, 1 to 120
-  /// @throws calot::Error: invalid for another ending, an odd width or height (colour is stored for two by two pixels)
-  /// or a rate out of range; failure where libav has no encoder or the file cannot be written
-  FilmWriter(const std::filesystem::path& file, int width, int height, int fps);
-  ~FilmWriter();
+  FilmWriter() = default;
+  virtual ~FilmWriter() = default;
   FilmWriter(const FilmWriter&) = delete;
   FilmWriter& operator=(const FilmWriter&) = delete;
 
-  /// Checks the constructor's arguments before long work. @throws calot::Error (invalid)
+  /// Checks the arguments of openFilm(). @param file ends with .mp4 or .mkv @param fps pictures a second, 1 to 120
+  /// @throws calot::Error (invalid) for another ending, an odd width or height (colour is stored for two by two pixels)
+  /// or a rate out of range
   static void check(const std::filesystem::path& file, int width, int height, int fps);
 
   /// Appends a frame; its alpha is ignored. @pre of the film's size @throws calot::Error (failure)
-  void add(const Image& image);
+  virtual void add(const Image& image) = 0;
   /// Writes pending frames and renames the file to its final name. @throws calot::Error (failure)
-  void finish();
+  virtual void finish() = 0;
 
-  [[nodiscard]] std::int64_t pictures() const;
-
- private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
+  [[nodiscard]] virtual std::int64_t pictures() const = 0;
 };
+
+/// @pre FilmWriter::check() accepts them
+/// @throws calot::Error (failure) where libav has no encoder or the file cannot be written
+std::unique_ptr<FilmWriter> openFilm(const std::filesystem::path& file, int width, int height, int fps);
 
 /// Copies a film's pictures as they are encoded into a new MP4 file, and nothing else: no title, date, place, name of a
 /// device or program, no chapters, and no sound, in which people may be named.

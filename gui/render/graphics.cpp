@@ -3,6 +3,7 @@
 
 #include "gui/render/graphics.h"
 
+#include <dlfcn.h>
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
 #include <fmt/format.h>
@@ -110,31 +111,43 @@ class EglContext final : public GraphicsContext {
   std::string fault_;
 };
 
+/// A function of libOSMesa, which is loaded when software first draws: it brings a compiler, half of a program's start.
+template <class Function>
+Function* osmesa(const char* name) {
+  static void* const library = dlopen("libOSMesa.so.8", RTLD_NOW | RTLD_LOCAL);
+  if (library == nullptr)
+    throw Error(ErrorKind::failure, "rendering: libOSMesa.so.8 cannot be loaded; install libosmesa6");
+  return reinterpret_cast<Function*>(dlsym(library, name));
+}
+
 class OsmesaContext final : public GraphicsContext {
  public:
   OsmesaContext() {
     static constexpr int attributes[][2]{{OSMESA_FORMAT, OSMESA_RGBA},          {OSMESA_DEPTH_BITS, 0},
                                          {OSMESA_PROFILE, OSMESA_CORE_PROFILE}, {OSMESA_CONTEXT_MAJOR_VERSION, 4},
                                          {OSMESA_CONTEXT_MINOR_VERSION, 5},     {0, 0}};
-    context_ = OSMesaCreateContextAttribs(attributes[0], nullptr);
+    context_ = osmesa<decltype(OSMesaCreateContextAttribs)>("OSMesaCreateContextAttribs")(attributes[0], nullptr);
     if (context_ == nullptr)
       throw Error(ErrorKind::failure,
                   "rendering: no off-screen OpenGL 4.5; install a Mesa with libosmesa6 22 or newer");
   }
-  ~OsmesaContext() override { OSMesaDestroyContext(context_); }
+  ~OsmesaContext() override { destroy_(context_); }
   OsmesaContext(const OsmesaContext&) = delete;
   OsmesaContext& operator=(const OsmesaContext&) = delete;
 
   void makeCurrent() override {
     // Pictures are drawn into framebuffer objects; this buffer only has to exist.
-    if (OSMesaMakeCurrent(context_, buffer_.data(), GL_UNSIGNED_BYTE, side, side) != GL_TRUE)
+    if (makeCurrent_(context_, buffer_.data(), GL_UNSIGNED_BYTE, side, side) != GL_TRUE)
       throw Error(ErrorKind::failure, "rendering: the off-screen OpenGL context cannot be made current");
   }
-  Function function(const char* name) const override { return OSMesaGetProcAddress(name); }
+  Function function(const char* name) const override { return address_(name); }
   const char* way() const override { return "OSMesa"; }
 
  private:
   static constexpr int side = 16;
+  decltype(OSMesaDestroyContext)* destroy_ = osmesa<decltype(OSMesaDestroyContext)>("OSMesaDestroyContext");
+  decltype(OSMesaMakeCurrent)* makeCurrent_ = osmesa<decltype(OSMesaMakeCurrent)>("OSMesaMakeCurrent");
+  decltype(OSMesaGetProcAddress)* address_ = osmesa<decltype(OSMesaGetProcAddress)>("OSMesaGetProcAddress");
   std::array<unsigned char, 4 * side * side> buffer_{};
   OSMesaContext context_ = nullptr;
 };

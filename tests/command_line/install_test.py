@@ -16,7 +16,8 @@ from program import SOURCE, ProgramTest
 
 BUILD = program.PROGRAM.parents[1]
 WINDOWS = program.PROGRAM.with_name("calot-dashboard").exists()
-COMPONENTS = ["commands", "engines", "documents", "development", *(["windows"] if WINDOWS else [])]
+MODULES = (BUILD / "lib/calot").exists()
+COMPONENTS = ["commands", "engines", "documents", "development", *(["modules"] if MODULES else []), *(["windows"] if WINDOWS else [])]
 
 
 def run(*command, cwd="/", **environment):
@@ -69,6 +70,8 @@ class Installed(ProgramTest):
         engines = self.good(self.calot, "engine", "list")
         self.assertIn(str(self.prefix / "bin/calot-engine"), engines)
         self.assertIn(str(self.prefix / "share/calot/engines/engine-12.wasm"), engines)
+        if MODULES:
+            self.good(self.calot, "render", record, "--to", 0.2, "--size", "64x64", "-o", self.path("r.mp4"))
         self.good(self.prefix / "bin/calot-organs", "--check", self.prefix / "share/calot/organs")
 
     def test_there_is_no_clone_to_build_engines_from(self):

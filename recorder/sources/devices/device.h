@@ -181,14 +181,15 @@ struct DeviceKind {
   const char* usage;         ///< how to ask for one: "gamepad[:NAME]"
   const char* help;          ///< one line for people
   bool needsWindow = false;  ///< its input comes from a window, which opens it; `open` refuses
-  /// Its row of `calot devices`: name, detail, hands, senses, rate. Unused where `list` is set.
+  /// Its row of `calot devices`: name, detail, hands, senses, rate. Where `list` is set it is for what that throws.
   std::array<const char*, 5> row{};
-  /// Lists devices that are, or could be, available. Does not throw. Null: the row.
+  /// Lists devices that are, or could be, available. @throws Error that is their detail. Null: the row.
   std::vector<ListedDevice> (*list)() = nullptr;
   /// @throws Error: invalid, for a request that makes no sense; damaged, for a bad file; failure, where it is not
   /// there.
   OpenedDevice (*open)(const DeviceRequest& request);
 
+  /// Does not throw.
   [[nodiscard]] std::vector<ListedDevice> listed() const;
 };
 

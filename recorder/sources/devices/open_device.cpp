@@ -18,6 +18,45 @@
 #include "recorder/sources/devices/pointer_device.h"
 
 namespace calot::recorder {
+
+// Kinds whose drivers need libraries of others (drivers/).
+
+constinit const DeviceKind gamepadKind{
+    .name = "gamepad",
+    .usage = "gamepad[:NAME]",
+    .help = "the first gamepad whose name contains NAME; drives one hand at a time",
+    .row = {"gamepad", "", "1 at a time", "3 + roll, jaw, buttons", "250"},
+    .list = listGamepads,
+    .open = openGamepad,
+};
+
+constinit const DeviceKind spaceMouseKind{
+    .name = "spacenav",
+    .usage = "spacenav",
+    .help = "SpaceMouse by spacenavd; drives one hand",
+    .row = {"spacenav", "SpaceMouse, where spacenavd runs", "1", "3 + roll, jaw, buttons", "250"},
+    .open = openSpaceMouse,
+};
+
+constinit const DeviceKind openIgtLinkKind{
+    .name = "openigtlink",
+    .usage = "openigtlink[:HOST[:PORT]]",
+    .help = "tracked tools of an OpenIGTLink server",
+    .row = {"openigtlink:HOST:PORT", "a server's tracked tools; default localhost:18944", "2", "6, jaw by SENSOR",
+            "the server's"},
+    .open = openOpenIgtLink,
+};
+
+constinit const DeviceKind haplyKind{
+    .name = "haply",
+    .usage = "haply[:HOST[:PORT]]",
+    .help = "Haply Inverse3 by its Inverse Service; not yet run on hardware",
+    .row = {"haply:HOST:PORT",
+            "Haply Inverse3 by its Inverse Service, default localhost:10001; not yet run on hardware", "2",
+            "3, orientation and buttons of a VerseGrip; shows force", "1000"},
+    .open = openHaply,
+};
+
 namespace {
 
 // References, so that the linker keeps every device of the library.
@@ -64,8 +103,12 @@ OpenedDevice openDevice(const std::string& name, const std::array<std::string, h
 }
 
 std::vector<ListedDevice> DeviceKind::listed() const {
-  if (list != nullptr) return list();
-  return {{row[0], row[1], true, row[2], row[3], row[4]}};
+  try {
+    if (list != nullptr) return list();
+    return {{row[0], row[1], true, row[2], row[3], row[4]}};
+  } catch (const Error& e) {
+    return {{row[0], e.what(), false, row[2], row[3], row[4]}};
+  }
 }
 
 std::vector<ListedDevice> listDevices() {

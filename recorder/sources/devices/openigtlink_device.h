@@ -102,6 +102,7 @@ class OpenIgtLinkDevice final : public ReopeningDevice {
 };
 
 extern const DeviceKind openIgtLinkKind;
+OpenedDevice openOpenIgtLink(const DeviceRequest& request);
 
 struct OpenIgtLinkServerSettings {
   int port = openigtlink::defaultPort;  ///< 0: any that is free
@@ -110,26 +111,11 @@ struct OpenIgtLinkServerSettings {
   bool once = false;   ///< end when the first client has gone
 };
 
-/// Serves one client at a time. Each begins at the motion's first sample; at its end the last poses are sent on, ten
-/// times a second, until the client goes.
-class OpenIgtLinkServer {
- public:
-  /// @throws Error (failure) where the port is taken.
-  OpenIgtLinkServer(const DeviceScript& motion, OpenIgtLinkServerSettings settings);
-
-  [[nodiscard]] int port() const { return listener_.port(); }
-
-  /// Runs until `stop`, or with `once` until the first client has gone.
-  /// @param tell takes a line for each client that comes or goes.
-  void run(const std::atomic<bool>& stop, const std::function<void(const std::string&)>& tell);
-
- private:
-  void serve(TcpStream client, const std::atomic<bool>& stop);
-  bool send(TcpStream& client, const DeviceSample& sample);
-
-  const DeviceScript& motion_;
-  OpenIgtLinkServerSettings settings_;
-  TcpListener listener_;
-};
+/// Serves one client at a time until `stop`, or with `once` until the first one has gone. Each begins at the motion's
+/// first sample; at its end the last poses are sent on, ten times a second, until the client goes.
+/// @param tell takes a line with the port, and one for each client that comes or goes
+/// @throws Error (failure) where the port is taken
+void serveOpenIgtLink(const DeviceScript& motion, const OpenIgtLinkServerSettings& settings,
+                      const std::atomic<bool>& stop, const std::function<void(const std::string&)>& tell);
 
 }  // namespace calot::recorder

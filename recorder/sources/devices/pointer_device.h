@@ -94,6 +94,7 @@ class SpaceMouse final : public PointerDevice {
 };
 
 extern const DeviceKind spaceMouseKind;
+OpenedDevice openSpaceMouse(const DeviceRequest& request);
 
 /// A gamepad as one pointer: its sticks are speeds, so that an instrument stands where they are let go.
 ///
@@ -128,9 +129,9 @@ class GamepadDevice final : public PointerDevice {
   bool switching_ = false;  ///< Start was held at the last sample
 };
 
-/// Names of the gamepads that are attached. @throws Error (failure) where the system cannot be asked.
-std::vector<std::string> listGamepads();
-
 extern const DeviceKind gamepadKind;
+OpenedDevice openGamepad(const DeviceRequest& request);
+/// The gamepads that are attached. @throws Error (failure) where the system cannot be asked.
+std::vector<ListedDevice> listGamepads();
 
 }  // namespace calot::recorder

@@ -106,10 +106,10 @@ class FilmFile : public ::testing::Test {
     return std::distance(std::filesystem::directory_iterator(folder_), std::filesystem::directory_iterator());
   }
   static void write(const std::filesystem::path& file, int fps, int count) {
-    FilmWriter writer(file, width, height, fps);
-    for (int k = 0; k < count; ++k) writer.add(numbered(k));
-    writer.finish();
-    EXPECT_EQ(writer.pictures(), count);
+    const auto writer = openFilm(file, width, height, fps);
+    for (int k = 0; k < count; ++k) writer->add(numbered(k));
+    writer->finish();
+    EXPECT_EQ(writer->pictures(), count);
   }
   std::filesystem::path folder_;
 };
@@ -149,8 +149,8 @@ TEST_F(FilmFile, ColoursAreThoseOfBt709) {
 
 TEST_F(FilmFile, NothingIsLeftOfAFilmThatIsNotFinished) {
   {
-    FilmWriter writer(folder_ / "a.mp4", width, height, 25);
-    writer.add(numbered(0));
+    const auto writer = openFilm(folder_ / "a.mp4", width, height, 25);
+    writer->add(numbered(0));
     EXPECT_FALSE(std::filesystem::exists(folder_ / "a.mp4"));
     EXPECT_EQ(files(), 1) << "under another name";
   }
@@ -160,7 +160,8 @@ TEST_F(FilmFile, NothingIsLeftOfAFilmThatIsNotFinished) {
 TEST_F(FilmFile, RefusesWhatNoFilmIs) {
   const auto kindOf = [&](const std::filesystem::path& file, int w, int h, int fps) -> std::optional<ErrorKind> {
     try {
-      const FilmWriter writer(file, w, h, fps);
+      FilmWriter::check(file, w, h, fps);
+      static_cast<void>(openFilm(file, w, h, fps));
     } catch (const Error& error) {
       EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
       return error.kind();

@@ -95,14 +95,14 @@ RigFit measureRigLive(const CameraRequest& request, const RigSettings& settings,
                       const std::function<void(const std::string& text)>& step) {
   RigFit fit;
   fit.rig.printScale = settings.printScale;
-  std::vector<std::unique_ptr<LiveCamera>> cameras;
+  std::vector<std::unique_ptr<FrameSource>> cameras;
   std::vector<std::string> cards;
   for (const std::string& file : request.cameras) {
-    cameras.push_back(std::make_unique<LiveCamera>(file, 0, 0));
+    cameras.push_back(openLiveCamera(file, 0, 0));
     cards.push_back(cameras.back()->card());
   }
   fit.identity = cameraIdentity(cards);
-  for (const std::unique_ptr<LiveCamera>& camera : cameras) {
+  for (const std::unique_ptr<FrameSource>& camera : cameras) {
     step(fmt::format(
         "Show the board to {}: hold it still for a moment, tilt it by 30 degrees, move it to each corner of "
         "the picture, and so on ({:g} s).",
@@ -293,12 +293,12 @@ class ViewPicker {
 }  // namespace
 
 std::vector<BoardView> boardViews(FrameSource& source) {
-  TagDetector detector;
+  const TagDetector detect = makeTagDetector();
   ViewPicker picker(source.width());
   std::vector<BoardView> out;
   Frame frame;
   while (source.next(std::chrono::nanoseconds(0), frame) == FrameStatus::frame) {
-    std::vector<SeenTag> tags = boardTagsOf(detector.detect(frame.image));
+    std::vector<SeenTag> tags = boardTagsOf(detect(frame.image));
     if (picker.offer(tags)) out.push_back({frame.time, std::move(tags)});
   }
   return out;
@@ -306,7 +306,7 @@ std::vector<BoardView> boardViews(FrameSource& source) {
 
 void pairedViews(FrameSource& first, FrameSource& second, std::vector<BoardView>& ofFirst,
                  std::vector<BoardView>& ofSecond) {
-  TagDetector detector;
+  const TagDetector detect = makeTagDetector();
   ViewPicker picker(first.width());
   const auto near = static_cast<std::int64_t>(0.5e9 / std::max(first.rate(), second.rate()));
   Frame a, b;
@@ -314,9 +314,9 @@ void pairedViews(FrameSource& first, FrameSource& second, std::vector<BoardView>
               second.next(std::chrono::nanoseconds(0), b) == FrameStatus::frame;
   while (more) {
     if (std::abs(a.time - b.time) <= near) {
-      std::vector<SeenTag> mine = boardTagsOf(detector.detect(a.image));
+      std::vector<SeenTag> mine = boardTagsOf(detect(a.image));
       if (picker.offer(mine)) {
-        std::vector<SeenTag> theirs = boardTagsOf(detector.detect(b.image));
+        std::vector<SeenTag> theirs = boardTagsOf(detect(b.image));
         if (theirs.size() >= fewestTags) {
           ofFirst.push_back({a.time, std::move(mine)});
           ofSecond.push_back({b.time, std::move(theirs)});

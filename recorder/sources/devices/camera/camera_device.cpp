@@ -169,7 +169,7 @@ void CameraDevice::measure(std::int64_t time, DeviceInput& out) {
     if (!c.waiting || c.pending.time > time + period_ / 2) continue;
     c.waiting = false;
     missed = frames.empty() ? c.pending.missed : std::min(missed, c.pending.missed);
-    frames.push_back({i, c.pending.time, c.detector.detect(c.pending.image)});
+    frames.push_back({i, c.pending.time, c.detect(c.pending.image)});
   }
   if (keys_ && !keys_->read()) {
     tell(DeviceEvent::Kind::malformed, "the keyboard of the pedals is gone: they are up", out);
@@ -266,10 +266,8 @@ OpenedDevice openCamera(const DeviceRequest& request) {
   std::vector<std::unique_ptr<FrameSource>> sources;
   std::vector<std::string> cards;
   for (std::size_t i = 0; i < wanted.cameras.size(); ++i) {
-    auto camera =
-        std::make_unique<LiveCamera>(wanted.cameras[i], rig.cameras[i].lens.width, rig.cameras[i].lens.height);
-    cards.push_back(camera->card());
-    sources.push_back(std::move(camera));
+    sources.push_back(openLiveCamera(wanted.cameras[i], rig.cameras[i].lens.width, rig.cameras[i].lens.height));
+    cards.push_back(sources.back()->card());
   }
   DeviceInfo info = cameraInfo(cameraIdentity(cards));
   info.detail = fmt::format("{}", fmt::join(wanted.cameras, ", "));
@@ -280,7 +278,7 @@ OpenedDevice openCamera(const DeviceRequest& request) {
 
 std::vector<ListedDevice> listCameras() {
   std::vector<ListedDevice> out;
-  for (const auto& [file, card] : LiveCamera::list())
+  for (const auto& [file, card] : listLiveCameras())
     out.push_back({fmt::format("camera:{}", file.substr(std::string("/dev/video").size())), card, true, "2", "6, jaw",
                    "the camera's"});
   if (out.empty())
@@ -326,7 +324,7 @@ CameraRequest parseCameraRequest(const DeviceRequest& request) {
 std::vector<std::unique_ptr<FrameSource>> openFilmSources(const std::vector<std::string>& files) {
   std::vector<std::unique_ptr<FrameSource>> out;
   out.reserve(files.size());
-  for (const std::string& file : files) out.push_back(std::make_unique<VideoFile>(file));
+  for (const std::string& file : files) out.push_back(openFilmSource(file));
   return out;
 }
 
@@ -355,6 +353,7 @@ constinit const DeviceKind cameraKind{
     .name = "camera",
     .usage = "camera:N[,N][,keys=KEYBOARD]|[paced,]FILM[,FILM]",
     .help = "printed handles before one or two cameras, or in films of them",
+    .row = {"camera", "", "2", "6, jaw", "the camera's"},
     .list = listCameras,
     .open = openCamera,
 };

@@ -65,7 +65,7 @@ class CameraDevice final : public Device {
     Frame pending;
     bool waiting = false;  ///< `pending` is a frame
     FrameStatus status = FrameStatus::none;
-    TagDetector detector;
+    TagDetector detect = makeTagDetector();
   };
   [[nodiscard]] bool live() const { return info_.capabilities.realTime; }
   bool gather(std::chrono::nanoseconds wait, DeviceInput& out);

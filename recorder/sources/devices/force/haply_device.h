@@ -79,5 +79,6 @@ class HaplyDevice final : public ForceFeedbackDevice {
 };
 
 extern const DeviceKind haplyKind;
+OpenedDevice openHaply(const DeviceRequest& request);
 
 }  // namespace calot::recorder

@@ -32,8 +32,9 @@ struct Rig {
 
 TEST(Gamepad, IsListedAndNamed) {
   Rig rig;
-  const std::vector<std::string> pads = listGamepads();
-  EXPECT_NE(std::find(pads.begin(), pads.end(), "Calot test pad"), pads.end());
+  const std::vector<ListedDevice> pads = listGamepads();
+  EXPECT_TRUE(
+      std::any_of(pads.begin(), pads.end(), [](const ListedDevice& d) { return d.detail == "Calot test pad"; }));
   EXPECT_EQ(rig.device.info().name, "gamepad");
   EXPECT_EQ(rig.device.info().identity, "gamepad:Calot test pad");
   EXPECT_EQ(rig.device.info().operatorKind, OperatorKind::human);

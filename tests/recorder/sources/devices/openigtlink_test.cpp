@@ -136,13 +136,22 @@ TEST(OpenIgtLinkServer, FeedsTheLibrarysClientAndOurSource) {
   OpenIgtLinkServerSettings settings;
   settings.port = 0;
   settings.speed = 3.0;
-  OpenIgtLinkServer server(motion, settings);
   std::atomic<bool> stop{false};
   std::vector<std::string> told;
-  std::thread thread([&] { server.run(stop, [&](const std::string& line) { told.push_back(line); }); });
+  std::promise<int> listening;
+  std::thread thread([&] {
+    serveOpenIgtLink(motion, settings, stop, [&](const std::string& line) {
+      if (line.starts_with("listening on 127.0.0.1:")) {
+        listening.set_value(std::stoi(line.substr(line.rfind(':') + 1)));
+      } else {
+        told.push_back(line);
+      }
+    });
+  });
+  const int port = listening.get_future().get();
   {
     igtl::ClientSocket::Pointer client = igtl::ClientSocket::New();
-    ASSERT_EQ(client->ConnectToServer("127.0.0.1", server.port()), 0);
+    ASSERT_EQ(client->ConnectToServer("127.0.0.1", port), 0);
     client->SetReceiveTimeout(2000);
     int transforms = 0;
     for (int i = 0; i < 20; ++i) {
@@ -167,7 +176,7 @@ TEST(OpenIgtLinkServer, FeedsTheLibrarysClientAndOurSource) {
   }
   OpenIgtLinkSettings client;
   client.host = "127.0.0.1";
-  client.port = server.port();
+  client.port = port;
   DeviceSource source(std::make_unique<OpenIgtLinkDevice>(client), devicetest::emptyScene(), {});
   source.waitForFirst(10.0);
   TickSamples tick;

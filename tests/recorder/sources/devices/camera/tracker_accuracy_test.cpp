@@ -35,7 +35,7 @@ Outcome measured(const Condition& condition, int frames, std::uint64_t seed) {
   Random random(seed);
   std::vector<HandleTracker> trackers;
   for (const Hand hand : {Hand::left, Hand::right}) trackers.emplace_back(rig, hand);
-  TagDetector detector;
+  const TagDetector detect = makeTagDetector();
   std::vector<double> errors, turns;
   Outcome out;
   for (int f = 0; f < frames; ++f) {
@@ -52,7 +52,7 @@ Outcome measured(const Condition& condition, int frames, std::uint64_t seed) {
         occluder = Occluder{x - 90.0, 250.0, x + 90.0, 720.0};
       }
       seen.push_back({c, static_cast<std::int64_t>(std::floor(1e9 * time + 0.5)),
-                      detector.detect(rendered(rig.cameras[c], bodies, time, condition.imaging, random, occluder))});
+                      detect(rendered(rig.cameras[c], bodies, time, condition.imaging, random, occluder))});
     }
     for (const Hand hand : {Hand::left, Hand::right}) {
       const HandleSight sight = trackers[static_cast<std::size_t>(hand)].track(seen);

@@ -104,65 +104,61 @@ void OpenIgtLinkDevice::read(std::chrono::nanoseconds wait, DeviceInput& out) {
   if (!stream_.receiveAll(decode)) lose("disconnected: what the server sends is no OpenIGTLink", out);
 }
 
-constinit const DeviceKind openIgtLinkKind{
-    .name = "openigtlink",
-    .usage = "openigtlink[:HOST[:PORT]]",
-    .help = "tracked tools of an OpenIGTLink server",
-    .row = {"openigtlink:HOST:PORT", "a server's tracked tools; default localhost:18944", "2", "6, jaw by SENSOR",
-            "the server's"},
-    .open =
-        [](const DeviceRequest& request) {
-          checkTools(request.tools);
-          OpenIgtLinkSettings settings;
-          settings.tool = request.tools;
-          request.readAddress(settings.host, settings.port);
-          return OpenedDevice{std::make_unique<OpenIgtLinkDevice>(settings), nullptr};
-        },
-};
+OpenedDevice openOpenIgtLink(const DeviceRequest& request) {
+  checkTools(request.tools);
+  OpenIgtLinkSettings settings;
+  settings.tool = request.tools;
+  request.readAddress(settings.host, settings.port);
+  return {std::make_unique<OpenIgtLinkDevice>(settings), nullptr};
+}
 
 namespace {
+
 using Clock = std::chrono::steady_clock;
 constexpr std::chrono::milliseconds lookPeriod{50};  // between two looks at `stop`
 constexpr std::chrono::milliseconds rest{100};       // between two sendings of the last poses
-}  // namespace
 
-OpenIgtLinkServer::OpenIgtLinkServer(const DeviceScript& motion, OpenIgtLinkServerSettings settings)
-    : motion_(motion), settings_(std::move(settings)), listener_(settings_.port) {}
-
-bool OpenIgtLinkServer::send(TcpStream& client, const DeviceSample& sample) {
-  const std::string& name = settings_.tool[static_cast<std::size_t>(sample.hand)];
-  if (name.empty()) return true;
+bool send(TcpStream& client, const std::string& tool, const DeviceSample& sample) {
+  if (tool.empty()) return true;
   const std::int64_t now =
       std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::system_clock::now().time_since_epoch()).count();
-  std::vector<std::byte> bytes = openigtlink::sensorMessage(name + "Jaw", now, sample.gripper);
-  const std::vector<std::byte> pose = openigtlink::transformMessage(name, now, sample.position, sample.orientation);
+  std::vector<std::byte> bytes = openigtlink::sensorMessage(tool + "Jaw", now, sample.gripper);
+  const std::vector<std::byte> pose = openigtlink::transformMessage(tool, now, sample.position, sample.orientation);
   bytes.insert(bytes.end(), pose.begin(), pose.end());
   return client.send(bytes);
 }
 
-void OpenIgtLinkServer::serve(TcpStream client, const std::atomic<bool>& stop) {
+void serveClient(TcpStream client, const DeviceScript& motion, const OpenIgtLinkServerSettings& settings,
+                 const std::atomic<bool>& stop) {
   const Clock::time_point begin = Clock::now();
   std::array<std::optional<DeviceSample>, handCount> last;
   std::array<std::byte, 4096> unread;  // what clients say is passed over
-  for (const DeviceSample& sample : motion_.samples) {
+  for (const DeviceSample& sample : motion.samples) {
+    const auto hand = static_cast<std::size_t>(sample.hand);
     const auto due = begin + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double, std::nano>(
-                                 static_cast<double>(sample.hostTime) / settings_.speed));
+                                 static_cast<double>(sample.hostTime) / settings.speed));
     while (Clock::now() < due && !stop) std::this_thread::sleep_until(std::min(due, Clock::now() + lookPeriod));
-    if (stop || !send(client, sample)) return;
+    if (stop || !send(client, settings.tool[hand], sample)) return;
     client.receive(unread);
-    last[static_cast<std::size_t>(sample.hand)] = sample;
+    last[hand] = sample;
   }
   while (client.open() && !stop) {
     std::this_thread::sleep_for(rest);
-    for (const auto& sample : last) {
-      if (sample) send(client, *sample);
+    for (std::size_t h = 0; h < handCount; ++h) {
+      if (last[h]) send(client, settings.tool[h], *last[h]);
     }
     client.receive(unread);
   }
 }
 
-void OpenIgtLinkServer::run(const std::atomic<bool>& stop, const std::function<void(const std::string&)>& tell) {
-  listener_.serve(stop, settings_.once, tell, [&](TcpStream client) { serve(std::move(client), stop); });
+}  // namespace
+
+void serveOpenIgtLink(const DeviceScript& motion, const OpenIgtLinkServerSettings& settings,
+                      const std::atomic<bool>& stop, const std::function<void(const std::string&)>& tell) {
+  TcpListener listener(settings.port);
+  tell(fmt::format("listening on 127.0.0.1:{}", listener.port()));
+  listener.serve(stop, settings.once, tell,
+                 [&](TcpStream client) { serveClient(std::move(client), motion, settings, stop); });
 }
 
 }  // namespace calot::recorder

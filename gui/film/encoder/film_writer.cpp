@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cassert>
+#include <memory>
 #include <string>
 #include <system_error>
 
@@ -24,7 +25,6 @@ namespace calot::gui {
 namespace {
 
 constexpr int encoderThreads = 1;  // the renderer needs the processors
-constexpr int fastest = 120;       // pictures a second
 
 std::string reasonOf(int error) {
   std::array<char, AV_ERROR_MAX_STRING_SIZE> text{};
@@ -53,62 +53,47 @@ void removeQuietly(const std::filesystem::path& file) {
   std::filesystem::remove(file, ignored);
 }
 
-}  // namespace
-
-struct FilmWriter::Impl {
-  std::filesystem::path file, temporary;
-  int width = 0, height = 0;
-  Held<AVFormatContext> format;
-  Held<AVCodecContext> encoder;
-  Held<AVFrame> frame;
-  Held<AVPacket> packet;
-  Held<SwsContext> scaler;
-  AVStream* stream = nullptr;  // of the format
-  std::int64_t next = 0;
-  bool finished = false;
-
-  ~Impl() {
-    if (!finished) removeQuietly(temporary);
+class Encoder final : public FilmWriter {
+ public:
+  Encoder(const std::filesystem::path& file, int width, int height) : file_(file), width_(width), height_(height) {
+    temporary_ += fmt::format(".{}.part", ::getpid());
   }
-  [[noreturn]] void fail(const std::string& why) const {
-    throw Error(ErrorKind::failure, Where{file.string()}, fmt::format("cannot write the film: {}", why));
-  }
-  void need(int result) const {
-    if (result < 0) fail(reasonOf(result));
+  ~Encoder() override {
+    if (!finished_) removeQuietly(temporary_);
   }
 
   void open(int fps) {
     AVFormatContext* made = nullptr;
     // By the name that the file will have; the temporary one has no ending.
-    need(avformat_alloc_output_context2(&made, nullptr, file.extension() == ".mkv" ? "matroska" : "mp4",
-                                        temporary.c_str()));
-    format.reset(made);
-    format->flags |= AVFMT_FLAG_BITEXACT;
+    need(avformat_alloc_output_context2(&made, nullptr, file_.extension() == ".mkv" ? "matroska" : "mp4",
+                                        temporary_.c_str()));
+    format_.reset(made);
+    format_->flags |= AVFMT_FLAG_BITEXACT;
     const AVCodec* codec = avcodec_find_encoder_by_name("libx264");
     const bool h264 = codec != nullptr;
     if (!h264) codec = avcodec_find_encoder_by_name("libvpx-vp9");
     if (codec == nullptr) fail("this libav can encode neither H.264 nor VP9; install Debian's libavcodec59");
-    encoder.reset(avcodec_alloc_context3(codec));
-    stream = avformat_new_stream(format.get(), nullptr);
-    frame.reset(av_frame_alloc());
-    packet.reset(av_packet_alloc());
-    if (!encoder || stream == nullptr || !frame || !packet) fail("not enough memory");
-    encoder->width = width;
-    encoder->height = height;
-    encoder->pix_fmt = AV_PIX_FMT_YUV420P;
-    encoder->time_base = {1, fps};
-    encoder->framerate = {fps, 1};
-    encoder->gop_size = 2 * fps;  // a player seeks to these
-    encoder->thread_count = encoderThreads;
-    encoder->flags |= AV_CODEC_FLAG_BITEXACT;
-    encoder->color_range = AVCOL_RANGE_MPEG;
-    encoder->colorspace = AVCOL_SPC_BT709;
-    encoder->color_primaries = AVCOL_PRI_BT709;
-    encoder->color_trc = AVCOL_TRC_BT709;
-    if ((format->oformat->flags & AVFMT_GLOBALHEADER) != 0) encoder->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
+    encoder_.reset(avcodec_alloc_context3(codec));
+    stream_ = avformat_new_stream(format_.get(), nullptr);
+    frame_.reset(av_frame_alloc());
+    packet_.reset(av_packet_alloc());
+    if (!encoder_ || stream_ == nullptr || !frame_ || !packet_) fail("not enough memory");
+    encoder_->width = width_;
+    encoder_->height = height_;
+    encoder_->pix_fmt = AV_PIX_FMT_YUV420P;
+    encoder_->time_base = {1, fps};
+    encoder_->framerate = {fps, 1};
+    encoder_->gop_size = 2 * fps;  // a player seeks to these
+    encoder_->thread_count = encoderThreads;
+    encoder_->flags |= AV_CODEC_FLAG_BITEXACT;
+    encoder_->color_range = AVCOL_RANGE_MPEG;
+    encoder_->colorspace = AVCOL_SPC_BT709;
+    encoder_->color_primaries = AVCOL_PRI_BT709;
+    encoder_->color_trc = AVCOL_TRC_BT709;
+    if ((format_->oformat->flags & AVFMT_GLOBALHEADER) != 0) encoder_->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
     // Good quality at low cost: the renderer needs the processors.
     const auto option = [&](const char* name, const char* value) {
-      need(av_opt_set(encoder->priv_data, name, value, 0));
+      need(av_opt_set(encoder_->priv_data, name, value, 0));
     };
     if (h264) {
       option("preset", "veryfast");
@@ -118,86 +103,80 @@ struct FilmWriter::Impl {
       option("cpu-used", "6");
       option("crf", "30");
     }
-    need(avcodec_open2(encoder.get(), codec, nullptr));
-    need(avcodec_parameters_from_context(stream->codecpar, encoder.get()));
-    stream->time_base = encoder->time_base;
-    stream->avg_frame_rate = encoder->framerate;
+    need(avcodec_open2(encoder_.get(), codec, nullptr));
+    need(avcodec_parameters_from_context(stream_->codecpar, encoder_.get()));
+    stream_->time_base = encoder_->time_base;
+    stream_->avg_frame_rate = encoder_->framerate;
 
-    frame->format = encoder->pix_fmt;
-    frame->width = width;
-    frame->height = height;
-    need(av_frame_get_buffer(frame.get(), 0));
-    scaler.reset(sws_getContext(width, height, AV_PIX_FMT_RGBA, width, height, AV_PIX_FMT_YUV420P,
-                                SWS_BILINEAR | SWS_ACCURATE_RND | SWS_BITEXACT, nullptr, nullptr, nullptr));
-    if (!scaler) fail("not enough memory");
+    frame_->format = encoder_->pix_fmt;
+    frame_->width = width_;
+    frame_->height = height_;
+    need(av_frame_get_buffer(frame_.get(), 0));
+    scaler_.reset(sws_getContext(width_, height_, AV_PIX_FMT_RGBA, width_, height_, AV_PIX_FMT_YUV420P,
+                                 SWS_BILINEAR | SWS_ACCURATE_RND | SWS_BITEXACT, nullptr, nullptr, nullptr));
+    if (!scaler_) fail("not enough memory");
     const int* const bt709 = sws_getCoefficients(SWS_CS_ITU709);
-    need(sws_setColorspaceDetails(scaler.get(), bt709, 1, bt709, 0, 0, 1 << 16, 1 << 16));
+    need(sws_setColorspaceDetails(scaler_.get(), bt709, 1, bt709, 0, 0, 1 << 16, 1 << 16));
 
-    need(avio_open(&format->pb, temporary.c_str(), AVIO_FLAG_WRITE));
-    need(avformat_write_header(format.get(), nullptr));
+    need(avio_open(&format_->pb, temporary_.c_str(), AVIO_FLAG_WRITE));
+    need(avformat_write_header(format_.get(), nullptr));
+  }
+
+  void add(const Image& image) override {
+    assert(image.width == width_ && image.height == height_ && !finished_);
+    need(av_frame_make_writable(frame_.get()));
+    const std::uint8_t* const rows[1] = {image.rgba.data()};
+    const int stride[1] = {4 * image.width};
+    sws_scale(scaler_.get(), rows, stride, 0, image.height, frame_->data, frame_->linesize);
+    frame_->pts = next_++;
+    encode(frame_.get());
+  }
+
+  void finish() override {
+    encode(nullptr);
+    need(av_write_trailer(format_.get()));
+    need(avio_closep(&format_->pb));
+    std::error_code error;
+    std::filesystem::rename(temporary_, file_, error);
+    if (error) fail(error.message());
+    finished_ = true;
+  }
+
+  [[nodiscard]] std::int64_t pictures() const override { return next_; }
+
+ private:
+  [[noreturn]] void fail(const std::string& why) const {
+    throw Error(ErrorKind::failure, Where{file_.string()}, fmt::format("cannot write the film: {}", why));
+  }
+  void need(int result) const {
+    if (result < 0) fail(reasonOf(result));
   }
 
   /// @param input null: there is no more
   void encode(const AVFrame* input) {
-    need(avcodec_send_frame(encoder.get(), input));
+    need(avcodec_send_frame(encoder_.get(), input));
     while (true) {
-      const int result = avcodec_receive_packet(encoder.get(), packet.get());
+      const int result = avcodec_receive_packet(encoder_.get(), packet_.get());
       if (result == AVERROR(EAGAIN) || result == AVERROR_EOF) return;
       need(result);
-      packet->duration = 1;
-      av_packet_rescale_ts(packet.get(), encoder->time_base, stream->time_base);
-      packet->stream_index = stream->index;
-      need(av_interleaved_write_frame(format.get(), packet.get()));
+      packet_->duration = 1;
+      av_packet_rescale_ts(packet_.get(), encoder_->time_base, stream_->time_base);
+      packet_->stream_index = stream_->index;
+      need(av_interleaved_write_frame(format_.get(), packet_.get()));
     }
   }
+
+  std::filesystem::path file_, temporary_ = file_;
+  int width_, height_;
+  Held<AVFormatContext> format_;
+  Held<AVCodecContext> encoder_;
+  Held<AVFrame> frame_;
+  Held<AVPacket> packet_;
+  Held<SwsContext> scaler_;
+  AVStream* stream_ = nullptr;  // of the format
+  std::int64_t next_ = 0;
+  bool finished_ = false;
 };
-
-void FilmWriter::check(const std::filesystem::path& file, int width, int height, int fps) {
-  if (file.extension() != ".mp4" && file.extension() != ".mkv")
-    throw Error(ErrorKind::invalid, Where{file.string()}, "films are written as .mp4 or .mkv");
-  if (width % 2 != 0 || height % 2 != 0)
-    throw Error(ErrorKind::invalid, fmt::format("{}x{}: width and height of a film are even", width, height));
-  if (fps < 1 || fps > fastest)
-    throw Error(ErrorKind::invalid, fmt::format("{} frames a second: a film has 1 to {}", fps, fastest));
-}
-
-FilmWriter::FilmWriter(const std::filesystem::path& file, int width, int height, int fps)
-    : impl_(std::make_unique<Impl>()) {
-  check(file, width, height, fps);
-  av_log_set_level(AV_LOG_QUIET);  // errors are reported by return values
-  impl_->file = file;
-  impl_->temporary = file;
-  impl_->temporary += fmt::format(".{}.part", ::getpid());
-  impl_->width = width;
-  impl_->height = height;
-  impl_->open(fps);
-}
-
-FilmWriter::~FilmWriter() = default;
-
-void FilmWriter::add(const Image& image) {
-  assert(image.width == impl_->width && image.height == impl_->height && !impl_->finished);
-  impl_->need(av_frame_make_writable(impl_->frame.get()));
-  const std::uint8_t* const rows[1] = {image.rgba.data()};
-  const int stride[1] = {4 * image.width};
-  sws_scale(impl_->scaler.get(), rows, stride, 0, image.height, impl_->frame->data, impl_->frame->linesize);
-  impl_->frame->pts = impl_->next++;
-  impl_->encode(impl_->frame.get());
-}
-
-void FilmWriter::finish() {
-  impl_->encode(nullptr);
-  impl_->need(av_write_trailer(impl_->format.get()));
-  impl_->need(avio_closep(&impl_->format->pb));
-  std::error_code error;
-  std::filesystem::rename(impl_->temporary, impl_->file, error);
-  if (error) impl_->fail(error.message());
-  impl_->finished = true;
-}
-
-std::int64_t FilmWriter::pictures() const { return impl_->next; }
-
-namespace {
 
 void needFilm(int result, const std::filesystem::path& film) {
   if (result < 0)
@@ -256,6 +235,13 @@ void copyPictures(const std::filesystem::path& film, const std::filesystem::path
 }
 
 }  // namespace
+
+std::unique_ptr<FilmWriter> openFilm(const std::filesystem::path& file, int width, int height, int fps) {
+  av_log_set_level(AV_LOG_QUIET);  // errors are reported by return values
+  auto encoder = std::make_unique<Encoder>(file, width, height);
+  encoder->open(fps);
+  return encoder;
+}
 
 void copyCleanFilm(const std::filesystem::path& film, const std::filesystem::path& output) {
   try {

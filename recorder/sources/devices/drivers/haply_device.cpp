@@ -228,20 +228,11 @@ void HaplyDevice::read(std::chrono::nanoseconds wait, DeviceInput& out) {
   if (stream_.receive(message, wait)) take(message, out);
 }
 
-constinit const DeviceKind haplyKind{
-    .name = "haply",
-    .usage = "haply[:HOST[:PORT]]",
-    .help = "Haply Inverse3 by its Inverse Service; not yet run on hardware",
-    .row = {"haply:HOST:PORT",
-            "Haply Inverse3 by its Inverse Service, default localhost:10001; not yet run on hardware", "2",
-            "3, orientation and buttons of a VerseGrip; shows force", "1000"},
-    .open =
-        [](const DeviceRequest& request) {
-          HaplySettings settings;
-          settings.hand = request.hand;
-          request.readAddress(settings.host, settings.port);
-          return OpenedDevice{std::make_unique<HaplyDevice>(std::move(settings)), nullptr};
-        },
-};
+OpenedDevice openHaply(const DeviceRequest& request) {
+  HaplySettings settings;
+  settings.hand = request.hand;
+  request.readAddress(settings.host, settings.port);
+  return {std::make_unique<HaplyDevice>(std::move(settings)), nullptr};
+}
 
 }  // namespace calot::recorder

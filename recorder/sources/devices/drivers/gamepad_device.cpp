@@ -130,39 +130,24 @@ void GamepadDevice::advance(double seconds, std::int64_t now, DeviceInput& out) 
   press(sample.buttons, pad.pressed(SDL_CONTROLLER_BUTTON_DPAD_LEFT), button::retractLess);
 }
 
-std::vector<std::string> listGamepads() {
+std::vector<ListedDevice> listGamepads() {
   const Subsystem subsystem;
   SDL_GameControllerUpdate();
-  std::vector<std::string> names;
+  std::vector<ListedDevice> out;
+  const auto add = [&out](const std::string& name, const std::string& detail, bool present) {
+    out.push_back({name, detail, present, gamepadKind.row[2], gamepadKind.row[3], gamepadKind.row[4]});
+  };
   for (int i = 0; i < SDL_NumJoysticks(); ++i) {
-    if (SDL_IsGameController(i) == SDL_TRUE) names.push_back(nameFrom(SDL_GameControllerNameForIndex(i)));
+    if (SDL_IsGameController(i) == SDL_FALSE) continue;
+    const std::string pad = nameFrom(SDL_GameControllerNameForIndex(i));
+    add("gamepad:" + pad, pad, true);
   }
-  return names;
+  if (out.empty()) add("gamepad", "none is attached", false);
+  return out;
 }
 
-constinit const DeviceKind gamepadKind{
-    .name = "gamepad",
-    .usage = "gamepad[:NAME]",
-    .help = "the first gamepad whose name contains NAME; drives one hand at a time",
-    .list =
-        [] {
-          std::vector<ListedDevice> out;
-          const auto add = [&out](const std::string& name, const std::string& detail, bool present) {
-            out.push_back({name, detail, present, "1 at a time", "3 + roll, jaw, buttons", "250"});
-          };
-          try {
-            for (const std::string& pad : listGamepads()) add("gamepad:" + pad, pad, true);
-            if (out.empty()) add("gamepad", "none is attached", false);
-          } catch (const Error& e) {
-            add("gamepad", e.what(), false);
-          }
-          return out;
-        },
-    .open =
-        [](const DeviceRequest& request) {
-          return OpenedDevice{std::make_unique<GamepadDevice>(request.argument, monotonicNanoseconds, request.hand),
-                              nullptr};
-        },
-};
+OpenedDevice openGamepad(const DeviceRequest& request) {
+  return {std::make_unique<GamepadDevice>(request.argument, monotonicNanoseconds, request.hand), nullptr};
+}
 
 }  // namespace calot::recorder
