@@ -22,8 +22,8 @@ inline void recordSkilled(const std::filesystem::path& file, const std::string& 
   AttemptSettings settings;
   settings.seed = seed;
   settings.purpose = "golden";
-  RecordingWriter writer(
-      file, makeHeader(prepared.model(), std::move(loaded.assets), source->provenance(), settings), {true});
+  RecordingWriter writer(file, makeHeader(prepared.model(), std::move(loaded.assets), source->provenance(), settings),
+                         {true});
   SerialExecutor executor;
   Session session(prepared.model(), seed, executor, prepared.services());
   session.join(writer);
