@@ -291,17 +291,16 @@ void judge(GoldenReplay& run, const std::filesystem::path& file) {
   report.verdict = recorder::ReplayVerdict::diverged;
   if (const auto version = kept.at("simulation_version").integer(positive); version != simulationVersion) {
     report.verdict = recorder::ReplayVerdict::undecided;
-    report.message = fmt::format("made by simulation version {}; this build has {}", version, simulationVersion);
+    report.error = fmt::format("made by simulation version {}; this build has {}", version, simulationVersion);
   } else if (kept.at("scene").text(1000) != now.at("scene").text(1000)) {
-    report.message = "the scene changed " + wasAndIs("scene");
+    report.error = "the scene changed " + wasAndIs("scene");
   } else if (steps && (!samples || *steps < *samples)) {
     report.divergence = {*steps, {}, "step", "digest", ""};
-    report.message = describe(*report.divergence);
+    report.error = fmt::format("diverged at step {}: step digest", *steps);
   } else if (samples) {  // all that the performer perceived was as before
     report.divergence = {*samples, {}, "performer", "samples", ""};
-    report.message =
-        fmt::format("the performer changed: its samples differ from step {} on, and no step before does {}", *samples,
-                    wasAndIs("performer"));
+    report.error = fmt::format("the performer changed: its samples differ from step {} on, and no step before does {}",
+                               *samples, wasAndIs("performer"));
   } else {
     report.verdict = recorder::ReplayVerdict::exact;
   }
@@ -479,9 +478,9 @@ void updateGolden(const GoldenOptions& o) {
       if (made.report.divergence && made.report.divergence->component == "step") {
         throw Error(ErrorKind::refused, fmt::format("golden: {}: {}: what changes a step raises simulationVersion "
                                                     "(sim/scene/version.h) first",
-                                                    entry.file, made.report.message));
+                                                    entry.file, made.report.error));
       }
-      fmt::print("{}: {}\n", entry.file, made.report.message);
+      fmt::print("{}: {}\n", entry.file, made.report.error);
     }
     if (entry.isDigests()) {
       made.digests["reason"] = o.reason;
