@@ -186,7 +186,7 @@ def build(folder, kind, output, work, jobs):
     os.replace(temporary, output)
 
 
-def keep(version, calot, jobs):
+def keep(version, calot, jobs, built):
     """Notes the module of the last commit as that of its version. Golden recordings are copied: git stores them once."""
     if run(["git", "-C", ROOT, "status", "--porcelain", "sim", "recorder", "apps/calot-engine"]).strip():
         fail("the source has changes that are in no commit: an engine is kept of a commit")
@@ -196,8 +196,11 @@ def keep(version, calot, jobs):
     if any(e["version"] == version for e in known["engines"]):
         fail(f"engine {version} is kept already, and never changes")
     file = ENGINES / f"engine-{version}.wasm"
-    with tempfile.TemporaryDirectory() as folder:
-        build(ROOT, "module", file, pathlib.Path(folder), jobs)
+    if built:
+        shutil.copy(built, file)
+    else:
+        with tempfile.TemporaryDirectory() as folder:
+            build(ROOT, "module", file, pathlib.Path(folder), jobs)
     beside = ENGINES / str(version)
     beside.mkdir(exist_ok=True)
     for recording in sorted((ROOT / "assets/golden").glob("*.h5")):
@@ -214,7 +217,7 @@ def entry_of(version, commit, file):
                               "libxxhash-dev", "libfmt-dev", "nlohmann-json3-dev"]).split("\n")[:-1]}
 
 
-def measure(calot, jobs):
+def measure(calot, jobs, built):
     """Bytes that the next version adds to a clone. Other seeds stand for its other digests: they are as many."""
     with tempfile.TemporaryDirectory() as folder:
         clone = pathlib.Path(folder) / "clone"
@@ -241,7 +244,8 @@ def measure(calot, jobs):
         commit("The next version")
         run([calot, "golden", "update", "--folder", listed.parent, "--reason", "measured"], env={**os.environ, "CALOT_ASSETS": str(clone / "assets")})
         commit("Its goldens")
-        run([sys.executable, clone / "scripts/engine.py", "--jobs", jobs, "keep", version + 1, "--calot", calot])
+        run([sys.executable, clone / "scripts/engine.py", "--jobs", jobs, "keep", version + 1, "--calot", calot,
+             *(["--built", built] if built else [])])
         changed = run(["git", "-C", clone, "status", "--porcelain", "--untracked-files=all"]).splitlines()
         commit("Its engine")
         after = stored()
@@ -265,6 +269,7 @@ def main():
     three = commands.add_parser("measure")
     for command in (two, three):
         command.add_argument("--calot", type=pathlib.Path, default=ROOT / "build/release/bin/calot", help="of this tree's version")
+        command.add_argument("--built", type=pathlib.Path, help="the module, where it is built already (of the next version, to measure)")
     commands.add_parser("self-test")
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1)
     arguments = parser.parse_args()
@@ -272,10 +277,10 @@ def main():
         self_test()
         return 0
     if arguments.command == "keep":
-        keep(arguments.version, arguments.calot.resolve(), arguments.jobs)
+        keep(arguments.version, arguments.calot.resolve(), arguments.jobs, arguments.built)
         return 0
     if arguments.command == "measure":
-        measure(arguments.calot.resolve(), arguments.jobs)
+        measure(arguments.calot.resolve(), arguments.jobs, arguments.built and arguments.built.resolve())
         return 0
     kind = "module" if arguments.module else "native"
     output = arguments.output.resolve()
