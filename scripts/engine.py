@@ -4,7 +4,9 @@
 
   engine.py build N [--module] -o FILE   from the history of this clone, as assets/engines/engines.json names it
   engine.py build here [--module] -o F   from this tree as it is
-  engine.py keep N                       makes the module of this tree's version the kept one, and notes it
+  engine.py keep N [--calot PROGRAM]     makes the module of this tree's version the kept one, and notes it; its transcript
+                                         and the golden recordings go beside it
+  engine.py measure [--calot PROGRAM]    makes what the next version would add in a scratch clone; fails above 2 MB
 
 An old version's source may lack the engine's protocol: then assets/engines/N/source.patch is applied to it. A kept module
 is built anew with the same bytes wherever clang is the same. Needs clang 14 with wasi-libc and libc++ for wasm32 (a
@@ -29,6 +31,8 @@ CONTRACT = ["-std=c++20", "-O3", "-DNDEBUG", "-ffp-contract=off", "-fno-fast-mat
             "-DEIGEN_DONT_VECTORIZE", "-DEIGEN_MPL2_ONLY", "-DFMT_HEADER_ONLY"]
 MODULE = ["--target=wasm32-wasi", "-msimd128", "-fignore-exceptions", "-DJSON_HAS_FILESYSTEM=0", "-DJSON_HAS_EXPERIMENTAL_FILESYSTEM=0"]
 STACK = 8 << 20
+# What a simulation version may add to a clone (bytes): engine, transcript, goldens.
+MOST_ADDED = 2_000_000
 FOREIGN = {"Eigen": "eigen3/Eigen", "xxhash.h": "xxhash.h", "fmt": "fmt", "nlohmann": "nlohmann"}
 
 
@@ -182,8 +186,8 @@ def build(folder, kind, output, work, jobs):
     os.replace(temporary, output)
 
 
-def keep(version, jobs):
-    """Notes the module of the last commit as that of its version."""
+def keep(version, calot, jobs, built):
+    """Notes the module of the last commit as that of its version. Golden recordings are copied: git stores them once."""
     if run(["git", "-C", ROOT, "status", "--porcelain", "sim", "recorder", "apps/calot-engine"]).strip():
         fail("the source has changes that are in no commit: an engine is kept of a commit")
     if version_of(ROOT) != version:
@@ -192,8 +196,16 @@ def keep(version, jobs):
     if any(e["version"] == version for e in known["engines"]):
         fail(f"engine {version} is kept already, and never changes")
     file = ENGINES / f"engine-{version}.wasm"
-    with tempfile.TemporaryDirectory() as folder:
-        build(ROOT, "module", file, pathlib.Path(folder), jobs)
+    if built:
+        shutil.copy(built, file)
+    else:
+        with tempfile.TemporaryDirectory() as folder:
+            build(ROOT, "module", file, pathlib.Path(folder), jobs)
+    beside = ENGINES / str(version)
+    beside.mkdir(exist_ok=True)
+    for recording in sorted((ROOT / "assets/golden").glob("*.h5")):
+        shutil.copy(recording, beside)
+        run([calot, "engine", "transcript", recording, "--engine", file, "-o", beside / f"{recording.stem}.transcript"])
     known["engines"].append(entry_of(version, run(["git", "-C", ROOT, "rev-parse", "HEAD"]).strip(), file))
     MANIFEST.write_text(json.dumps(known, indent=2) + "\n")
 
@@ -203,6 +215,45 @@ def entry_of(version, commit, file):
             "compiler": run(["clang++-14", "--version"]).splitlines()[0],
             "libraries": run(["dpkg-query", "-W", "-f", "${Package} ${Version}\\n", "wasi-libc", "libc++-14-dev-wasm32", "libeigen3-dev",
                               "libxxhash-dev", "libfmt-dev", "nlohmann-json3-dev"]).split("\n")[:-1]}
+
+
+def measure(calot, jobs, built):
+    """Bytes that the next version adds to a clone. Other seeds stand for its other digests: they are as many."""
+    with tempfile.TemporaryDirectory() as folder:
+        clone = pathlib.Path(folder) / "clone"
+        run(["git", "clone", "--quiet", "--no-local", ROOT, clone])
+
+        def commit(what):
+            run(["git", "-C", clone, "add", "-A"])
+            run(["git", "-C", clone, "-c", "user.name=measure", "-c", "user.email=measure@example.org", "commit", "--quiet", "-m", what])
+
+        def stored():
+            run(["git", "-C", clone, "gc", "--quiet"])
+            return sum(f.stat().st_size for f in (clone / ".git").rglob("*") if f.is_file())
+
+        before = stored()
+        listed = clone / "assets/golden/golden.json"
+        goldens = json.loads(listed.read_text())
+        for golden in goldens["recordings"]:
+            (listed.parent / golden["file"]).unlink()
+            golden["seed"] += 1000
+        listed.write_text(json.dumps(goldens, indent=1) + "\n")
+        header = clone / "sim/scene/version.h"
+        version = version_of(clone)
+        header.write_text(header.read_text().replace(f"simulationVersion = {version};", f"simulationVersion = {version + 1};"))
+        commit("The next version")
+        run([calot, "golden", "update", "--folder", listed.parent, "--reason", "measured"], env={**os.environ, "CALOT_ASSETS": str(clone / "assets")})
+        commit("Its goldens")
+        run([sys.executable, clone / "scripts/engine.py", "--jobs", jobs, "keep", version + 1, "--calot", calot,
+             *(["--built", built] if built else [])])
+        changed = run(["git", "-C", clone, "status", "--porcelain", "--untracked-files=all"]).splitlines()
+        commit("Its engine")
+        after = stored()
+        for name in sorted({line[3:] for line in changed} | set(run(["git", "-C", clone, "ls-files", "assets/golden"]).split())):
+            print(f"{(clone / name).stat().st_size:>10} {name}")
+        print(f"engine: .git has {before} bytes, and {after} after the next version: {after - before} more; at most {MOST_ADDED}")
+        if after - before > MOST_ADDED:
+            fail("a simulation version adds too much: docs/how-to/golden.md, \"Size\"")
 
 
 def main():
@@ -215,6 +266,10 @@ def main():
     one.add_argument("--work", type=pathlib.Path, help="keeps what was compiled")
     two = commands.add_parser("keep")
     two.add_argument("version", type=int)
+    three = commands.add_parser("measure")
+    for command in (two, three):
+        command.add_argument("--calot", type=pathlib.Path, default=ROOT / "build/release/bin/calot", help="of this tree's version")
+        command.add_argument("--built", type=pathlib.Path, help="the module, where it is built already (of the next version, to measure)")
     commands.add_parser("self-test")
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1)
     arguments = parser.parse_args()
@@ -222,7 +277,10 @@ def main():
         self_test()
         return 0
     if arguments.command == "keep":
-        keep(arguments.version, arguments.jobs)
+        keep(arguments.version, arguments.calot.resolve(), arguments.jobs, arguments.built)
+        return 0
+    if arguments.command == "measure":
+        measure(arguments.calot.resolve(), arguments.jobs, arguments.built and arguments.built.resolve())
         return 0
     kind = "module" if arguments.module else "native"
     output = arguments.output.resolve()

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Guards the run time: instructions of golden replays within a narrow margin, ratios of benchmarks within a wide one.
+"""Guards the run time: instructions of replays of goldens within a narrow margin, ratios of benchmarks within a wide one.
 
 Instructions are counted by callgrind: they do not depend on what else the machine does, but on the compiler; kept are
 those of Debian 12's g++, optimised. Ratios compare with a peer in the same run. What is kept stands in
@@ -18,9 +18,12 @@ from concurrent.futures import ThreadPoolExecutor
 kept_path = "tests/bench/guard.json"
 
 
-def instructions(calot: str, recording: str) -> int:
-    """Instructions of a replay, which must be bit-exact."""
+def instructions(calot: str, golden: dict) -> int:
+    """Instructions of the replay of a golden's run, recorded anew, which must be bit-exact."""
     with tempfile.TemporaryDirectory() as folder:
+        recording = f"{folder}/golden.h5"
+        subprocess.run([calot, "record", "--scene", golden["scene"], "--performer", golden["performer"], "--seed", str(golden["seed"]),
+                        "--seconds", str(golden["seconds"]), "--purpose", "golden", "-o", recording], check=True, capture_output=True)
         run = subprocess.run(
             ["valgrind", "--tool=callgrind", f"--callgrind-out-file={folder}/out", calot, "replay", recording],
             capture_output=True, text=True, check=False)
@@ -58,9 +61,10 @@ def main() -> int:
         kept = json.load(file)
     failed = 0
     recordings = list(kept["instructions"])
+    with open(os.path.join(args.root, "assets/golden/golden.json"), encoding="utf-8") as file:
+        goldens = {os.path.splitext(golden["file"])[0]: golden for golden in json.load(file)["recordings"]}
     with ThreadPoolExecutor(args.jobs) as pool:
-        counts = list(pool.map(
-            lambda name: instructions(args.calot, os.path.join(args.root, "assets/golden", name + ".h5")), recordings))
+        counts = list(pool.map(lambda name: instructions(args.calot, goldens[name]), recordings))
     for name, count in zip(recordings, counts):
         before = kept["instructions"][name]
         change = count / before - 1.0 if before else 0.0

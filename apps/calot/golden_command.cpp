@@ -185,9 +185,12 @@ struct DigestChain {
 /// First step of which two chains have other links; none: they are the same.
 std::optional<std::uint64_t> firstDifference(const recorder::JsonPlace& kept, const recorder::JsonPlace& now) {
   constexpr std::size_t line = DigestChain::shortLinks + 16, lastOfLine = DigestChain::stepsPerLine - 1;
-  std::string before, after;
-  for (const recorder::JsonPlace& place : kept.list(1, 100000)) before += place.text(line);
-  for (const recorder::JsonPlace& place : now.list(1, 100000)) after += place.text(line);
+  const auto joined = [](const recorder::JsonPlace& lines) {
+    std::string text;
+    for (const recorder::JsonPlace& place : lines.list(1, 100000)) text += place.text(line);
+    return text;
+  };
+  const std::string before = joined(kept), after = joined(now);
   if (before == after) return std::nullopt;
   const auto differing = std::mismatch(before.begin(), before.end(), after.begin(), after.end());
   const auto at = static_cast<std::size_t>(differing.first - before.begin());
@@ -283,17 +286,16 @@ void judge(GoldenReplay& run, const std::filesystem::path& file) {
   report.verdict = recorder::ReplayVerdict::diverged;
   if (const auto version = kept.at("simulation_version").integer(positive); version != simulationVersion) {
     report.verdict = recorder::ReplayVerdict::undecided;
-    report.message = fmt::format("made by simulation version {}; this build has {}", version, simulationVersion);
+    report.error = fmt::format("made by simulation version {}; this build has {}", version, simulationVersion);
   } else if (kept.at("scene").text(1000) != now.at("scene").text(1000)) {
-    report.message = "the scene changed " + wasAndIs("scene");
+    report.error = "the scene changed " + wasAndIs("scene");
   } else if (steps && (!samples || *steps < *samples)) {
     report.divergence = {*steps, {}, "step", "digest", ""};
-    report.message = describe(*report.divergence);
+    report.error = fmt::format("diverged at step {}: step digest", *steps);
   } else if (samples) {  // all that the performer perceived was as before
     report.divergence = {*samples, {}, "performer", "samples", ""};
-    report.message =
-        fmt::format("the performer changed: its samples differ from step {} on, and no step before does {}", *samples,
-                    wasAndIs("performer"));
+    report.error = fmt::format("the performer changed: its samples differ from step {} on, and no step before does {}",
+                               *samples, wasAndIs("performer"));
   } else {
     report.verdict = recorder::ReplayVerdict::exact;
   }
@@ -353,31 +355,20 @@ struct Temporary {
   }
 };
 
-/// The reason given. @throws Error (invalid) where it is empty.
-const std::string& requiredReason(const std::string& reason) {
-  if (reason.find_first_not_of(" \t\n") == std::string::npos)
-    throw Error(ErrorKind::invalid, "golden: --reason: say why the recordings or their values change");
-  return reason;
-}
-
-/// A golden names a revision. @throws Error (invalid): `folder` is in no work tree, or in one with changes outside of
-/// it
+/// A golden names a revision.
+/// @throws Error (invalid): `folder` is in no work tree, or in one with changes outside of it
 void refuseChanges(const std::filesystem::path& folder) {
-  std::string quoted;
+  std::string quoted, changes;
   for (const char c : folder.string()) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
   const std::string command = "git -C '" + quoted + "' status --porcelain -- :/ ':(exclude).' 2>/dev/null";
   std::FILE* const pipe = popen(command.c_str(), "r");
-  std::string changes;
   for (int c = 0; pipe != nullptr && (c = std::fgetc(pipe)) != EOF;) changes += static_cast<char>(c);
-  if (pipe == nullptr || pclose(pipe) != 0) {
-    throw Error(ErrorKind::invalid, fmt::format("golden: {} lies in no git work tree, or git is not there: golden "
-                                                "recordings belong to a revision",
-                                                folder.string()));
-  }
-  if (!changes.empty()) {
-    throw Error(ErrorKind::invalid, fmt::format("golden: the work tree has changes ({}): commit them first",
-                                                changes.substr(0, changes.find('\n'))));
-  }
+  const std::string fault = pipe == nullptr || pclose(pipe) != 0 ? " lies in no git work tree, or git is not there"
+                            : changes.empty()                    ? ""
+                                                                 : ": the work tree has changes (" +
+                                                    changes.substr(0, changes.find('\n')) + "): commit them first";
+  if (!fault.empty())
+    throw Error(ErrorKind::invalid, "golden: " + folder.string() + fault + ": goldens belong to a revision");
 }
 
 struct GoldenOptions {
@@ -436,7 +427,7 @@ ExitCode checkGolden(const GoldenOptions& o) {
 ExitCode takeValues(const GoldenOptions& o) {
   const std::filesystem::path folder = folderOf(o);
   GoldenList list = readGoldenList(folder / listName);
-  list.valuesReason = requiredReason(o.reason);
+  list.valuesReason = o.reason;
   Progress progress("replaying, recordings", false);
   for (std::size_t i = 0; i < list.recordings.size(); ++i) {
     GoldenEntry& entry = list.recordings[i];
@@ -463,7 +454,6 @@ void updateGolden(const GoldenOptions& o) {
   stopOnSignals();
   const std::filesystem::path folder = folderOf(o);
   GoldenList list = readGoldenList(folder / listName);
-  requiredReason(o.reason);
   refuseChanges(folder);
   const bool all = list.simulationVersion < simulationVersion;
   Temporary temporary;
@@ -483,9 +473,9 @@ void updateGolden(const GoldenOptions& o) {
       if (made.report.divergence && made.report.divergence->component == "step") {
         throw Error(ErrorKind::refused, fmt::format("golden: {}: {}: what changes a step raises simulationVersion "
                                                     "(sim/scene/version.h) first",
-                                                    entry.file, made.report.message));
+                                                    entry.file, made.report.error));
       }
-      fmt::print("{}: {}\n", entry.file, made.report.message);
+      fmt::print("{}: {}\n", entry.file, made.report.error);
     }
     if (entry.isDigests()) {
       made.digests["reason"] = o.reason;
@@ -535,8 +525,11 @@ void addGolden(CLI::App& app, Run& run) {
   for (CLI::App* one : {checking, values}) addThreads(*one, o->threads, "of the simulation; 0: all");
   addJunitOptions(*checking, o->junit);
   checking->add_flag("--json", o->json, "print the result as JSON");
+  const auto stated = [](const std::string& reason) {
+    return reason.find_first_not_of(" \t\n") == std::string::npos ? "say why goldens or their values change" : "";
+  };
   for (CLI::App* one : {updating, values})
-    one->add_option("--reason", o->reason, "why they change; kept in the list")->required();
+    one->add_option("--reason", o->reason, "why they change; kept with them")->required()->check(stated);
 }
 
 }  // namespace calot::apps

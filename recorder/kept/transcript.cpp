@@ -102,7 +102,6 @@ Transcript makeTranscript(const std::vector<std::string>& command, Recording& re
   ask(wire::Restore{broken, 0, {}});
   ask(wire::Restore{keyframe, 0, {}});
   for (std::uint64_t n = half + 1; n < steps; ++n) ask(stepOf(recording.step(n), 0));
-  ask(wire::AskView{});
   ask(wire::Step{});  // without its ticks: a fault, and the end
   return transcript;
 }

@@ -56,13 +56,14 @@ Work workIn(const std::string& scene, double seconds) {
 }
 
 /// CPU time of the loop's thread for all steps (s). @param to where they are recorded, or empty
-double run(const Work& work, const std::filesystem::path& to) {
+double run(const Work& work, const std::filesystem::path& to, const char* purpose = "training") {
   SerialExecutor executor;
   recorder::Session session(*work.model, seed, executor);
   std::unique_ptr<recorder::RecordingWriter> writer;
   if (!to.empty()) {
     recorder::AttemptSettings settings;
     settings.seed = seed;
+    settings.purpose = purpose;
     recorder::Provenance by;
     by.profile = "skilled";
     writer = std::make_unique<recorder::RecordingWriter>(
@@ -106,7 +107,9 @@ void overhead(benchmark::State& bench, const std::string& scene) {
 }
 
 void replay(benchmark::State& bench) {
-  const std::filesystem::path golden = assets + "/golden/cholecystectomy.h5";
+  static const Folder folder("replay");
+  const std::filesystem::path golden = folder / "golden.h5";
+  run(workIn("cholecystectomy", 600.0), golden, "golden");
   recorder::ReplayReport report;
   double spent = 0.0;
   for (auto _ : bench) {

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Golden recordings: made only on purpose, lean, replayed bit for bit, their checkpoints compared."""
+"""Goldens: made only on purpose, small, repeated bit for bit, their checkpoints compared."""
 
 import json
+import os
+import shutil
 import subprocess
 
 import h5py
@@ -10,6 +12,7 @@ import schema_names
 from program import SCENE
 
 ENTRY = {"file": "touch.h5", "scene": SCENE, "performer": "skilled", "seed": 7, "seconds": 4}
+LONG = {**ENTRY, "file": "long.json", "seconds": 2}
 
 
 class Golden(program.ProgramTest):
@@ -113,6 +116,102 @@ class Golden(program.ProgramTest):
         answer = program.calot("golden", "values", "--folder", self.golden, "--reason", "x")
         self.assertEqual(answer.code, 3, answer)
         self.assertEqual(self.listed(), before, "values of another simulation were taken over")
+
+    def made_long(self):
+        """A golden of digests, as it was made."""
+        self.write([LONG])
+        self.commit()
+        self.assertEqual(self.update().code, 0)
+        self.commit()
+        return json.loads((self.golden / "long.json").read_text())
+
+    def check(self, digests, *options):
+        (self.golden / "long.json").write_text(digests if isinstance(digests, str) else json.dumps(digests))
+        return program.calot("golden", "check", "--folder", self.golden, *options)
+
+    @staticmethod
+    def with_fault(digests, **steps):
+        """One digit of the link of a step is another."""
+        planted = {**digests}
+        for chain, step in steps.items():
+            line, at = divmod(step, 100)
+            planted[chain] = list(digests[chain])
+            text = planted[chain][line]
+            planted[chain][line] = text[:4 * at] + ("1" if text[4 * at] == "0" else "0") + text[4 * at + 1:]
+        return planted
+
+    def test_a_long_golden_is_digests(self):
+        made = self.made_long()
+        self.assertEqual(sorted(p.name for p in self.golden.iterdir()), ["golden.json", "long.json"])
+        self.assertEqual(list(made), ["simulation_version", "build", "scene", "performer", "samples", "steps", "reason"])
+        self.assertEqual(made["reason"], "contact is solved in another way")
+        self.assertRegex(made["scene"], rf"^{SCENE}, SHA-256 [0-9a-f]{{64}}$")
+        self.assertRegex(made["performer"], r"^skilled [\d.]+, seed 7$")
+        for chain in ("samples", "steps"):  # 200 steps, and how the run ended
+            self.assertEqual([len(line) for line in made[chain]], [99 * 4 + 16, 99 * 4 + 16, 16])
+        self.assertRegex(self.check(made).out, r"long\.json: bit-exact, 2\.00 s \(200 steps\)")
+
+        # A step and the performer have verdicts of their own, each with the first step that differs.
+        performer = "the performer changed: its samples differ from step {} on, and no step before does (skilled "
+        for fault, says in (({"steps": 120}, "diverged at step 120: step digest"), ({"steps": 99}, "diverged at step 99: step digest"),
+                            ({"samples": 57}, performer.format(57)), ({"samples": 57, "steps": 57}, performer.format(57)),
+                            ({"samples": 57, "steps": 120}, performer.format(57)), ({"samples": 120, "steps": 57}, "diverged at step 57: step digest")):
+            answer = self.check(self.with_fault(made, **fault))
+            self.assertEqual(answer.code, 3, answer)
+            self.assertIn(f"long.json: {says}", answer.err)
+        report = json.loads(self.check(self.with_fault(made, samples=57), "--json").out)["recordings"][0]
+        self.assertEqual((report["verdict"], report["divergence"]["component"], report["divergence"]["step"]), ("diverged", "performer", 57))
+
+        # A run that ends sooner or later is its performer's doing.
+        answer = self.check({**made, **{chain: [*made[chain][:2], made[chain][1][:100] + made[chain][2]] for chain in ("samples", "steps")}})
+        self.assertIn(performer.format(200), answer.err)
+
+        self.assertEqual(self.check({**made, "simulation_version": 1}).code, 5)
+        for text, says in (("no json", "long.json"), (json.dumps({**made, "samples": 1}), "/samples"), (json.dumps({"samples": made["samples"]}), "steps")):
+            answer = self.check(text)
+            self.assertEqual(answer.code, 4, answer)
+            self.assertIn(says, answer.err)
+
+    def test_a_changed_step_raises_the_version(self):
+        made = self.made_long()
+        self.refused(2, "golden", "update", "--folder", self.golden, "--reason", "again", names=["raises simulationVersion"])
+        planted = json.dumps(self.with_fault(made, steps=120))
+        (self.golden / "long.json").write_text(planted)
+        self.refused(3, "golden", "update", "--folder", self.golden, "--reason", "again", names=["long.json", "step 120", "raises simulationVersion"])
+        self.assertEqual((self.golden / "long.json").read_text(), planted)
+
+    def test_a_changed_performer_makes_its_golden_again(self):
+        made = self.made_long()
+        assets = self.folder / "assets"
+        for part in ("scenes", "organs", "performers"):
+            shutil.copytree(program.SOURCE / "assets" / part, assets / part)
+        before = os.environ.get("CALOT_ASSETS")
+        self.addCleanup(os.environ.update if before else os.environ.pop, *([{"CALOT_ASSETS": before}] if before else ["CALOT_ASSETS"]))
+        os.environ["CALOT_ASSETS"] = str(assets)
+        self.assertEqual(self.check(made).code, 0)
+
+        profile = assets / "performers/skilled.json"
+        skilled = json.loads(profile.read_text())
+        version = skilled["version"]
+        skilled["motor"]["tremorAmplitude"] *= 2
+        profile.write_text(json.dumps({**skilled, "version": "9.9"}))
+        answer = self.check(made)
+        self.assertEqual(answer.code, 3, answer)
+        self.assertRegex(answer.err, r"the performer changed: its samples differ from step \d+ on, and no step before does "
+                         rf"\(skilled {version}, seed 7 -> skilled 9\.9, seed 7\)")
+        again = self.update("a steadier hand was measured")
+        self.assertEqual(again.code, 0, again)
+        self.assertIn("the performer changed", again.out)
+        now = json.loads((self.golden / "long.json").read_text())
+        self.assertEqual((now["reason"], now["performer"]), ("a steadier hand was measured", "skilled 9.9, seed 7"))
+        self.assertEqual(self.listed()["reason"], "contact is solved in another way")
+        self.assertEqual(self.check(now).code, 0)
+
+        scene = assets / f"scenes/{SCENE}.json"
+        scene.write_text(scene.read_text() + "\n")
+        answer = self.check(now)
+        self.assertEqual(answer.code, 3, answer)
+        self.assertIn(f"the scene changed ({SCENE}, SHA-256", answer.err)
 
     def test_an_update_belongs_to_a_revision(self):
         (self.tree / "source.txt").write_text("changed\n")

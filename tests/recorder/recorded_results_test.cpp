@@ -10,6 +10,8 @@
 #include "recorder/formats/scene_file.h"
 #include "recorder/replay.h"
 #include "sim/scene/version.h"
+#include "tests/recorder/support/performed_recording.h"
+#include "tests/recorder/support/small_scene.h"
 
 namespace calot::recorder {
 namespace {
@@ -125,7 +127,7 @@ TEST_F(EarlierOperation, LaterVersionsPassUnchanged) {
   EXPECT_EQ(&results.of(step_), &step_.result);
 }
 
-/// What the golden recordings hold, judged by the rules and by others: the replay is bit-exact both times.
+/// A recorded operation, judged by the rules and by others: the replay is bit-exact both times.
 TEST(GoldenContent, ARuleIsChangedAndNoBitIs) {
   struct Judging final : Observer {
     Judge judge;
@@ -148,7 +150,9 @@ TEST(GoldenContent, ARuleIsChangedAndNoBitIs) {
     stricter = std::make_unique<Judging>(scene, strict);
     return std::vector<Observer*>{usual.get(), stricter.get()};
   };
-  const ReplayReport report = replayRecording(root / "assets/golden/clip-and-cut.h5", settings);
+  const test::Folder folder;
+  test::recordSkilled(folder / "clips.h5", "clip-and-cut", 2, 0.0);
+  const ReplayReport report = replayRecording(folder / "clips.h5", settings);
   ASSERT_EQ(report.verdict, ReplayVerdict::exact) << report.error;
   const Judgement& a = usual->judge.judgement();
   const Judgement& b = stricter->judge.judgement();
