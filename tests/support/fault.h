@@ -35,10 +35,8 @@ std::optional<Error> caught(Call call) {
 
 /// @param where file and place, "a.csv: line 3"; empty: any
 /// @param values numbers and names that the message holds behind the place
-/// @param remedies that the error must name; not given: any
 inline void expectFault(ErrorKind kind, const std::string& where, const std::vector<std::string>& values,
-                        const std::optional<Error>& error,
-                        const std::optional<std::vector<Remedy>>& remedies = std::nullopt) {
+                        const std::optional<Error>& error) {
   if (!error) {
     ADD_FAILURE() << "no error: " << where << " " << testing::PrintToString(values);
     return;
@@ -52,15 +50,22 @@ inline void expectFault(ErrorKind kind, const std::string& where, const std::vec
   }
   EXPECT_EQ(message.find('\n'), std::string::npos) << message;
   expectNames(message.substr(std::min(fault, message.size())), values);
-  if (remedies) {
-    EXPECT_EQ(error->remedies(), *remedies) << message;
-  }
 }
 
 template <std::invocable Call>
+void expectFault(ErrorKind kind, const std::string& where, const std::vector<std::string>& values, Call call) {
+  expectFault(kind, where, values, caught(call));
+}
+
+/// @param remedies that the error names, no more and no fewer
+template <std::invocable Call>
 void expectFault(ErrorKind kind, const std::string& where, const std::vector<std::string>& values, Call call,
-                 const std::optional<std::vector<Remedy>>& remedies = std::nullopt) {
-  expectFault(kind, where, values, caught(call), remedies);
+                 const std::vector<Remedy>& remedies) {
+  const std::optional<Error> error = caught(call);
+  expectFault(kind, where, values, error);
+  if (error) {
+    EXPECT_EQ(error->remedies(), remedies) << error->what();
+  }
 }
 
 }  // namespace calot

@@ -28,7 +28,7 @@ class BorderlineNorm : public testing::Test {
   }
 
   void add(unsigned n, const std::string& who, int rating, double error) {
-    if (!findParticipant(cohort_, who)) cohort_.addParticipant({who, "", "", "", {}, {}});
+    if (!support::findParticipant(cohort_, who)) cohort_.addParticipant({who, "", "", "", {}, {}});
     cohort_.storeAttempt(humanAttempt(n, who), {makeValue(*findCheckpoint("path-length"), "left", Origin::samples,
                                                           100.0 - 10.0 * rating + error)});
     rate(n, "R1", rating);

@@ -53,7 +53,7 @@ class Grades : public testing::Test {
   }
 
   void add(unsigned n, const std::string& who, const std::string& group, const std::vector<CheckpointValue>& values) {
-    if (!findParticipant(cohort_, who)) cohort_.addParticipant({who, group, "", "", {}, {}});
+    if (!support::findParticipant(cohort_, who)) cohort_.addParticipant({who, group, "", "", {}, {}});
     cohort_.storeAttempt(humanAttempt(n, who), values);
   }
 

@@ -34,7 +34,7 @@ class NormRule : public testing::Test {
 
   void add(unsigned n, const std::string& who, const std::string& group, double time, double straight, double view,
            double errors) {
-    if (!findParticipant(cohort_, who)) cohort_.addParticipant({who, group, "", "", {}, {}});
+    if (!support::findParticipant(cohort_, who)) cohort_.addParticipant({who, group, "", "", {}, {}});
     cohort_.storeAttempt(humanAttempt(n, who),
                          {makeValue(*findCheckpoint("elapsed-time"), "", Origin::resimulated, time),
                           makeValue(*findCheckpoint("movement-straightness"), "left", Origin::samples, straight),

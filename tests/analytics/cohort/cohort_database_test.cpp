@@ -108,7 +108,7 @@ TEST(CohortDatabase, olderSchemaIsBroughtUpToDate) {
   expectFault(ErrorKind::failure, path, {}, [&] { CohortDatabase(path, Access::read); });
   CohortDatabase database(path, Access::write);
   EXPECT_EQ(database.schemaVersion(), static_cast<int>(cohortMigrations().size()));
-  EXPECT_EQ(findParticipant(database, "P01")->group, "expert");
+  EXPECT_EQ(support::findParticipant(database, "P01")->group, "expert");
   SQLite::Database backup(path + ".schema-1.bak", SQLite::OPEN_READONLY);
   EXPECT_EQ(backup.execAndGet("PRAGMA user_version").getInt(), 1);
   EXPECT_EQ(backup.execAndGet("SELECT pseudonym FROM participant").getString(), "P01");
@@ -226,7 +226,7 @@ TEST(CohortDatabase, keepsEverythingOfAnAttempt) {
   EXPECT_EQ(database.values(a.uuid), values);
   EXPECT_FALSE(database.attempt(uuidOf(8)));
   EXPECT_TRUE(database.values(uuidOf(8)).empty());
-  EXPECT_TRUE(findParticipant(database, "P07")) << "a participant named by an attempt is added";
+  EXPECT_TRUE(support::findParticipant(database, "P07")) << "a participant named by an attempt is added";
 }
 
 TEST(CohortDatabase, storingTwiceChangesNothing) {
@@ -326,7 +326,7 @@ TEST(CohortDatabase, participantsAreAddedAndChanged) {
                                   .site = std::nullopt,
                                   .experience = {{"level", "attending"}, {"laparoscopies", "241"}},
                                   .consent = {}});
-  const auto p = findParticipant(database, "P01");
+  const auto p = support::findParticipant(database, "P01");
   ASSERT_TRUE(p);
   EXPECT_EQ(p->group, "expert");
   EXPECT_EQ(p->arm, "B");

@@ -77,7 +77,7 @@ TEST(Merge, isTheUnionWhicheverWayRoundAndDoneTwiceIsDoneOnce) {
         if (n % 5 == 0) database.excludeAttempts({attempt.uuid}, "alarm", "me");
         if (random() % 3 == 0) database.tagAttempts({attempt.uuid}, random() % 2 == 0 ? "teaching" : "odd", "me");
       }
-      if (findParticipant(database, "P1")) {
+      if (support::findParticipant(database, "P1")) {
         ParticipantChange change;
         if (random() % 2 == 0) change.group = "expert";
         if (random() % 2 == 0) change.experience["level"] = "attending";
