@@ -16,13 +16,30 @@
 #include "sim/step/bodies.h"
 #include "sim/step/body.h"
 #include "sim/step/contact_block.h"
-#include "sim/step/grasping.h"
 #include "sim/step/placed_instrument.h"
 #include "sim/step/surfaces.h"
 #include "sim/step/tissue_contacts.h"
 #include "sim/tissue/organ/organ_tissue.h"
 
 namespace calot {
+
+// Stage 1 of a step: the newest measurement of each hand, and the newest camera.
+
+/// Reads: the step's samples. Writes: each hand's real pose, jaw, buttons and mounted instrument, what is asked of the
+/// assistant, the camera, and the digests of the samples as they came. A sample that is no measurement (isMeasurement)
+/// changes nothing but is reported when it begins and when it ends.
+class SampleStage {
+ public:
+  explicit SampleStage(const Model& model) : model_(model) {}
+  /// @pre samples.size() == ticksPerStep
+  void run(std::span<const TickSamples> samples, State& state, StepLog& log) const;
+
+ private:
+  void readHand(std::span<const TickSamples> samples, std::size_t hand, State& state, StepLog& log) const;
+  void readRequests(std::span<const TickSamples> samples, std::size_t hand, State& state, StepLog& log) const;
+  void askAssistant(std::size_t hand, bool more, State& state, StepLog& log) const;
+  const Model& model_;
+};
 
 // Stage 2 of a step: instruments follow the hands as far as free space reaches.
 
@@ -54,24 +71,6 @@ class InstrumentMotion {
   const Model& model_;
   Grasping& grasping_;
   PlacedInstrument instrument_, other_;
-};
-
-// Stage 1 of a step: the newest measurement of each hand, and the newest camera.
-
-/// Reads: the step's samples. Writes: each hand's real pose, jaw, buttons and mounted instrument, what is asked of the
-/// assistant, the camera, and the digests of the samples as they came. A sample that is no measurement (isMeasurement)
-/// changes nothing but is reported when it begins and when it ends.
-class SampleStage {
- public:
-  explicit SampleStage(const Model& model) : model_(model) {}
-  /// @pre samples.size() == ticksPerStep
-  void run(std::span<const TickSamples> samples, State& state, StepLog& log) const;
-
- private:
-  void readHand(std::span<const TickSamples> samples, std::size_t hand, State& state, StepLog& log) const;
-  void readRequests(std::span<const TickSamples> samples, std::size_t hand, State& state, StepLog& log) const;
-  void askAssistant(std::size_t hand, bool more, State& state, StepLog& log) const;
-  const Model& model_;
 };
 
 // Stage 3 of a step: contact points of instruments and among organs, and the bodies that are awake.
