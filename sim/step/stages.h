@@ -138,6 +138,9 @@ SolidSolver::Impulse pressedPatch(const OrganModel& organ, const Skin& skin, con
 
 // Stage 4 of a step: the unconstrained motion of all tissue.
 
+/// Reports a solve of a body that did not reach its tolerance.
+void reportMiss(const Bodies& bodies, std::size_t which, const SolveReport& report, StepLog& log);
+
 /// One implicit step of each awake body under gravity, ties, connective tissue and retraction, and under the contact
 /// forces that the last step left: vessels first, then organs (those that connective tissue ties as one system), which
 /// take the vessels that are grown to them along, then fat. A body solved later sees the new velocities of those before
@@ -156,7 +159,6 @@ class UnconstrainedMotion {
                     State& state, StepLog& log);
   void solveGroup(Bodies& bodies, const ContactSystem& contact, const Activity& activity, std::size_t group,
                   State& state, StepResult& result, StepLog& log);
-  void reportMiss(const Bodies& bodies, std::size_t which, const SolveReport& report, StepLog& log);
   void gatherLoads(Bodies& bodies, const ContactSystem& contact, const Activity& activity, const State& state,
                    std::size_t which);
   void gatherTies(const Bodies& bodies, const Activity& activity, const State& state, std::size_t which);
@@ -252,7 +254,6 @@ class ContactSolution {
  private:
   void solve(const ContactProblem& problem, ContactSystem& contact, ContactResult& result);
   void gatherImpulses(Bodies& bodies, const ContactSystem& contact, std::size_t which);
-  void reportMiss(const Bodies& bodies, std::size_t which, const SolveReport& report, StepLog& log);
   void applyToGroup(Bodies& bodies, const Activity& activity, const ContactSystem& contact, std::size_t group,
                     StepLog& log);
   void applyContactImpulses(Bodies& bodies, const Activity& activity, const ContactSystem& contact, StepLog& log);
