@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "recorder/base/identity.h"
-#include "sim/solid/rest_compliance.h"
+#include "sim/solid/solid.h"
 
 namespace calot::recorder {
 

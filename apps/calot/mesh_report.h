@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "apps/calot/command.h"
-#include "sim/geometry/hole_filling.h"
 #include "sim/geometry/isosurface_stuffing.h"
 #include "sim/geometry/surface_report.h"
 

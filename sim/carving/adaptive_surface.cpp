@@ -79,18 +79,13 @@ void AdaptiveSurface::mark(const CarvedField& field, std::uint32_t brick) {
   const Index3 to = (origin + high).array() + reachAbove;
   const Index3 first = from.cwiseMax(0) / 4;
   const Index3 last = (to / 4).cwiseMin((2 * lattice_.bricks().array() - 1).matrix());
-  Index3 b;
-  for (b[2] = first[2]; b[2] <= last[2]; ++b[2]) {
-    for (b[1] = first[1]; b[1] <= last[1]; ++b[1]) {
-      for (b[0] = first[0]; b[0] <= last[0]; ++b[0]) {
-        const std::uint32_t in = lattice_.brick(b / 2);
-        const std::uint32_t block = 8 * in + static_cast<std::uint32_t>((b[0] & 1) + 2 * (b[1] & 1) + 4 * (b[2] & 1));
-        if (dirty_[block] != 0) continue;
-        dirty_[block] = 1;
-        changedBlock_.push_back(block);
-      }
-    }
-  }
+  forEachIndex(first, last, [&](const Index3& b) {
+    const std::uint32_t in = lattice_.brick(b / 2);
+    const std::uint32_t block = 8 * in + static_cast<std::uint32_t>((b[0] & 1) + 2 * (b[1] & 1) + 4 * (b[2] & 1));
+    if (dirty_[block] != 0) return;
+    dirty_[block] = 1;
+    changedBlock_.push_back(block);
+  });
 }
 
 bool AdaptiveSurface::insideAt(const CarvedField& field, const Index3& node) const {

@@ -8,7 +8,7 @@
 #include <map>
 #include <utility>
 
-#include "sim/geometry/embedding.h"
+#include "sim/geometry/isosurface_stuffing.h"
 
 namespace calot {
 

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-//
 #include "sim/math/no_fused_pairs.h"  // first
 
 #include "sim/fat/fat_body.h"

@@ -86,16 +86,11 @@ std::unique_ptr<FatModel> FatModel::make(const TriangleMesh& surface, const FatS
   for (const FatRegion& region : regions) {
     model->regionName_.push_back(region.name);
     std::vector<BrickBits>& bits = model->region_.emplace_back(lattice.brickCount(), BrickBits{});
-    Index3 n;
-    for (n[2] = 0; n[2] < lattice.nodes()[2]; ++n[2]) {
-      for (n[1] = 0; n[1] < lattice.nodes()[1]; ++n[1]) {
-        for (n[0] = 0; n[0] < lattice.nodes()[0]; ++n[0]) {
-          if (!region.contains(lattice.position(n))) continue;
-          const std::uint32_t node = lattice.node(n);
-          bits[node / BrickLattice::brickNodes][node >> 6U & 7U] |= std::uint64_t{1} << (node & 63U);
-        }
-      }
-    }
+    forEachIndex(Index3::Zero(), lattice.nodes().array() - 1, [&](const Index3& n) {
+      if (!region.contains(lattice.position(n))) return;
+      const std::uint32_t node = lattice.node(n);
+      bits[node / BrickLattice::brickNodes][node >> 6U & 7U] |= std::uint64_t{1} << (node & 63U);
+    });
   }
   return model;
 }
@@ -164,32 +159,22 @@ std::string FatModel::divide(const SolidModel::Material& material) {
     const Index3 at = h + Index3(c & 1, c >> 1 & 1, c >> 2);
     return slot(at[0]) + slot(corners[0]) * (slot(at[1]) + slot(corners[1]) * slot(at[2]));
   };
-  Index3 h;
-  for (h[2] = 0; h[2] < hexahedra_[2]; ++h[2]) {
-    for (h[1] = 0; h[1] < hexahedra_[1]; ++h[1]) {
-      for (h[0] = 0; h[0] < hexahedra_[0]; ++h[0]) {
-        const std::uint32_t number = fill.hexahedron(h);
-        if (fill.counts()[number] == 0) continue;
-        cubeOf_[number] = static_cast<std::int32_t>(hexahedron_.size());
-        hexahedron_.push_back(h);
-        restFill_.push_back(std::min(1.0, static_cast<double>(fill.counts()[number]) / fullCount()));
-        for (int c = 0; c < 8; ++c) nodeOf[cornerAt(h, c)] = 0;
-      }
-    }
-  }
+  forEachIndex(Index3::Zero(), hexahedra_.array() - 1, [&](const Index3& h) {
+    const std::uint32_t number = fill.hexahedron(h);
+    if (fill.counts()[number] == 0) return;
+    cubeOf_[number] = static_cast<std::int32_t>(hexahedron_.size());
+    hexahedron_.push_back(h);
+    restFill_.push_back(std::min(1.0, static_cast<double>(fill.counts()[number]) / fullCount()));
+    for (int c = 0; c < 8; ++c) nodeOf[cornerAt(h, c)] = 0;
+  });
   const double edge = k_ * lattice().cell();
   std::vector<Vec3> rest;
-  Index3 n;
-  for (n[2] = 0; n[2] < corners[2]; ++n[2]) {
-    for (n[1] = 0; n[1] < corners[1]; ++n[1]) {
-      for (n[0] = 0; n[0] < corners[0]; ++n[0]) {
-        std::int32_t& number = nodeOf[cornerAt(n, 0)];
-        if (number < 0) continue;
-        number = static_cast<std::int32_t>(rest.size());
-        rest.emplace_back(lattice().origin() + edge * n.cast<double>());
-      }
-    }
-  }
+  forEachIndex(Index3::Zero(), hexahedra_, [&](const Index3& n) {
+    std::int32_t& number = nodeOf[cornerAt(n, 0)];
+    if (number < 0) return;
+    number = static_cast<std::int32_t>(rest.size());
+    rest.emplace_back(lattice().origin() + edge * n.cast<double>());
+  });
   std::vector<Index8> cubes;
   std::vector<std::vector<std::int32_t>> at(rest.size());
   for (const Index3& cube : hexahedron_) {

@@ -11,6 +11,17 @@
 
 namespace calot {
 
+/// Calls visit(n) for each n from `first` to `last` (both included), the first component running fastest.
+template <class Visit>
+void forEachIndex(const Index3& first, const Index3& last, Visit&& visit) {
+  Index3 n;
+  for (n[2] = first[2]; n[2] <= last[2]; ++n[2]) {
+    for (n[1] = first[1]; n[1] <= last[1]; ++n[1]) {
+      for (n[0] = first[0]; n[0] <= last[0]; ++n[0]) visit(n);
+    }
+  }
+}
+
 /// Nodes at origin + cell (i, j, k), 0 <= i < nodes[0] and so on, in bricks of 8^3 nodes: neighbours in space are close
 /// in memory, and bricks are the unit of change, saving and hashing.
 ///

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sim/geometry/embedding.h"
+#include "sim/geometry/isosurface_stuffing.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 
+#include "sim/geometry/brick_lattice.h"
 #include "sim/geometry/surface_distance.h"
 #include "sim/math/linear.h"
 
@@ -30,13 +31,8 @@ class TetrahedronGrid {
     for (std::size_t t = 0; t < mesh.tetrahedron.size(); ++t) {
       Box box;
       for (int a = 0; a < 4; ++a) box.include(mesh.vertex[slot(mesh.tetrahedron[t][a])]);
-      const Index3 from = cellOf(box.lower);
-      const Index3 to = cellOf(box.upper);
-      for (int k = from[2]; k <= to[2]; ++k) {
-        for (int j = from[1]; j <= to[1]; ++j) {
-          for (int i = from[0]; i <= to[0]; ++i) cells_[number(Index3(i, j, k))].push_back(static_cast<int>(t));
-        }
-      }
+      forEachIndex(cellOf(box.lower), cellOf(box.upper),
+                   [&](const Index3& cell) { cells_[number(cell)].push_back(static_cast<int>(t)); });
     }
   }
   [[nodiscard]] const std::vector<int>& near(const Vec3& p) const { return cells_[number(cellOf(p))]; }

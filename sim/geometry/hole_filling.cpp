@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sim/geometry/hole_filling.h"
+#include "sim/geometry/surface_report.h"
 
 #include <algorithm>
 #include <cmath>

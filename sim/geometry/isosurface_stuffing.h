@@ -3,8 +3,10 @@
 // tetrahedral meshes with good dihedral angles", ACM Transactions on Graphics 26(3)) on a body-centred cubic lattice.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -125,5 +127,27 @@ inline constexpr int maxTetrahedronCount = 2'000'000;
 /// @param surface closed, outward, manifold (surface_report.h); metres
 /// @param tetrahedra at least 12, at most maxTetrahedronCount
 [[nodiscard]] StuffedMesh stuffToCount(const TriangleMesh& surface, int tetrahedra);
+
+/// A fine surface embedded in a coarse tetrahedral mesh: each vertex is an affine combination of the corners of one
+/// tetrahedron, x = sum_a w_a x_a with sum_a w_a = 1 (barycentric mapping). A vertex outside the mesh belongs to the
+/// tetrahedron behind the nearest point of the mesh's boundary, so its weights may be negative or above one.
+class Embedding {
+ public:
+  struct Anchor {
+    std::array<int, 4> node{};
+    std::array<double, 4> weight{};
+  };
+
+  /// @pre the mesh has tetrahedra, all of positive volume; the points are finite
+  Embedding(std::span<const Vec3> points, const TetrahedralMesh& mesh);
+
+  [[nodiscard]] const std::vector<Anchor>& anchors() const { return anchor_; }
+
+  /// Maps the surface's points for these node positions.
+  void map(std::span<const Vec3> nodes, std::vector<Vec3>& points) const;
+
+ private:
+  std::vector<Anchor> anchor_;
+};
 
 }  // namespace calot

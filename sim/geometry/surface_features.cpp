@@ -198,15 +198,9 @@ void signByRegions(const TriangleMesh& mesh, const BrickLattice& lattice, double
       }
     }
   };
-  Index3 n;
-  for (n[2] = 0; n[2] < lattice.nodes()[2]; ++n[2]) {
-    for (n[1] = 0; n[1] < lattice.nodes()[1]; ++n[1]) {
-      for (n[0] = 0; n[0] < lattice.nodes()[0]; ++n[0]) {
-        if (seen[lattice.node(n)] != 0) continue;
-        flood(n, surface.windingNumber(lattice.position(n)) > 0.5);
-      }
-    }
-  }
+  forEachIndex(Index3::Zero(), lattice.nodes().array() - 1, [&](const Index3& n) {
+    if (seen[lattice.node(n)] == 0) flood(n, surface.windingNumber(lattice.position(n)) > 0.5);
+  });
 }
 
 }  // namespace calot

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim/math/no_fused_pairs.h"  // first
 
-#include "sim/solid/point_coupling.h"
+#include "sim/solid/solid.h"
 
 #include <algorithm>
 #include <utility>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sim/solid/rest_compliance.h"
+#include "sim/solid/solid.h"
 
 #include <algorithm>
 #include <utility>

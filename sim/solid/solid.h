@@ -3,13 +3,16 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "sim/math/executor.h"
 #include "sim/math/linear.h"
+#include "sim/math/vectors.h"
 #include "sim/solid/coarse_lattice.h"
 #include "sim/solid/conjugate_gradient.h"
 #include "sim/solid/solid_model.h"
@@ -169,6 +172,109 @@ class SolidSolver {
   std::optional<CoarseLattice> lattice_;
   const SolidModel* latticeModel_ = nullptr;  ///< it was built for
   StiffnessAssembly::Scale latticeScale_;     ///< of the matrix it was built for
+};
+
+/// Cache of a scene's rest compliances, shared by steppers. They depend on the Model alone, so every run of it can have
+/// them from any other.
+class ComplianceStore {
+ public:
+  ComplianceStore() = default;
+  ComplianceStore(const ComplianceStore&) = delete;
+  ComplianceStore& operator=(const ComplianceStore&) = delete;
+  virtual ~ComplianceStore() = default;
+
+  /// The column of a node (RestCompliance), or null: the caller then computes it. It stays where it is for as long as
+  /// the store is there. Steppers of several threads may call at the same time.
+  /// @param solid organs of the Model, then its bodies of fat
+  [[nodiscard]] virtual const float* find(std::size_t solid, std::size_t node) = 0;
+  /// Takes a column that find() did not have. @returns the one that is kept, with the same numbers
+  virtual const float* keep(std::size_t solid, std::size_t node, std::vector<float> column) = 0;
+};
+
+/// A solid's part of a store; of none, the solid keeps its columns itself.
+struct ComplianceShelf {
+  ComplianceStore* store = nullptr;
+  std::size_t solid = 0;
+};
+
+/// Compliance of a solid in its reference configuration, rotated with its nodes (compliance warping).
+///
+/// Solving the step's own matrix for each row of the contact problem would cost many times the motion itself. The
+/// reference configuration never changes, so its compliance C = A_rest^-1 is computed once for each node that is ever
+/// touched and rotated with the nodes (Saupin, Duriez, Cotin and Grisoni 2008):
+///   (A^-1)_ab ~ R_a C_ab R_b^T.
+/// Only contact forces depend on it; their effect on the solid is solved with the step's own matrix.
+class RestCompliance {
+ public:
+  /// @param model outlives this. Assembles A in the reference configuration; columns are computed on demand.
+  /// @param surroundings attachments and fill in the reference configuration: without its springs, a solid without
+  /// fixed nodes would respond as a free body
+  /// @param shelf where columns are kept; its store outlives this
+  RestCompliance(const SolidModel& model, const SolidSolver::Settings& settings, Executor& executor,
+                 const Surroundings& surroundings = {}, const ComplianceShelf& shelf = {});
+
+  /// Computes missing columns of these nodes, eight right-hand sides at a time. A column depends on the model alone,
+  /// not on the order of requests.
+  void precomputeCompliance(std::span<const int> nodes);
+
+  /// C_ab: velocity of node a (m/s) for an impulse on node b (N s). @pre precomputeCompliance() was called for b
+  [[nodiscard]] Mat3 block(int a, int b) const;
+  /// The blocks between some nodes and others, row-major, at 9 (i b.size() + j). @param out at least that many numbers
+  void blocks(std::span<const int> a, std::span<const int> b, std::span<double> out) const;
+
+ private:
+  const SolidModel& model_;
+  SolidSolver::Settings settings_;
+  SolidSolver solver_;
+  ComplianceShelf shelf_;
+  std::vector<const float*> column_;       ///< per node: 9 numbers for each node, row-major; null: not asked for yet
+  std::vector<std::vector<float>> fresh_;  ///< per node: its column that is being computed, or that no store keeps
+  std::vector<std::pair<std::size_t, std::size_t>> pending_;  ///< requested nodes and axes
+  std::vector<SolidSolver::Impulse> impulses_;
+  std::vector<std::vector<Vec3>> response_;
+};
+
+/// Rotation of a node: the mean of its tetrahedra's co-rotations, as a unit quaternion.
+Quat nodeRotation(const SolidModel& model, const SolidState& state, int node);
+
+/// Isotropic dampers between points of two solids, in the matrix of both as one system: the blocks beside the solids'
+/// own matrices,
+///   A_pq = -h sum of c_s w_sp w_sq I   over the dampers s, for node p of the first solid and q of the second.
+/// Each damper also enters the solids' own matrices, as an Attachment.
+class PointCoupling final : public SystemCoupling {
+ public:
+  /// Structure of the blocks. @param first, second the systems of the solids' steps @param points per damper: in the
+  /// first solid, in the second
+  PointCoupling(const SolidSystem& first, const SolidSystem& second,
+                std::span<const std::array<MaterialPoint, 2>> points);
+
+  /// Values of a step. @param damper per damper (N s/m) @param step h (s)
+  void assemble(std::span<const double> damper, double step);
+
+  /// Adds the blocks' part of the product with the present search directions, both ways.
+  void addTo(ConjugateGradient& first, ConjugateGradient& second) override;
+
+ private:
+  /// Rows of one solid that any block has, with direction and product.
+  struct Side {
+    std::vector<std::size_t> row;  ///< ascending
+    std::vector<FourFloats> direction, product;
+
+    void gather(const ConjugateGradient& from);
+    void scatter(ConjugateGradient& to) const;
+  };
+  /// Share of a damper in a block.
+  struct Share {
+    std::uint32_t block;
+    float weight;
+  };
+
+  Side side_[2];
+  std::vector<std::uint32_t> first_;   ///< per row of the first solid: its first block; and the end
+  std::vector<std::uint32_t> column_;  ///< per block: number of the row of the second solid
+  std::vector<float> value_;           ///< per block
+  std::vector<Share> share_;           ///< by dampers
+  std::vector<std::uint32_t> start_;   ///< per damper: its first share; and the end
 };
 
 }  // namespace calot

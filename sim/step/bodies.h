@@ -15,8 +15,7 @@
 #include "sim/math/vectors.h"
 #include "sim/scene/model.h"
 #include "sim/solid/conjugate_gradient.h"
-#include "sim/solid/point_coupling.h"
-#include "sim/solid/rest_compliance.h"
+#include "sim/solid/solid.h"
 #include "sim/step/body.h"
 #include "sim/vessel/beam_solver.h"
 

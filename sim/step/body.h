@@ -16,7 +16,6 @@
 #include "sim/contact/surface_patches.h"
 #include "sim/fat/fat_body.h"
 #include "sim/scene/state.h"
-#include "sim/solid/rest_compliance.h"
 #include "sim/solid/solid.h"
 #include "sim/vessel/beam_solver.h"
 #include "sim/vessel/tube_surface.h"

@@ -29,12 +29,6 @@ void ContactSolution::gatherImpulses(Bodies& bodies, const ContactSystem& contac
   if (which >= bodies.firstFat()) bodies.joined().passOn(which, nodal_);
 }
 
-void ContactSolution::reportMiss(const Bodies& bodies, std::size_t which, const SolveReport& report, StepLog& log) {
-  if (report.converged || log.hasMissed(miss::solver)) return;
-  log.miss(miss::solver);
-  log.emit(EventKind::solverMiss, StepLog::noHand, bodies.firstStructure(which), Vec3::Zero(), report.residual);
-}
-
 void ContactSolution::applyToGroup(Bodies& bodies, const Activity& activity, const ContactSystem& contact,
                                    std::size_t group, StepLog& log) {
   const std::vector<std::size_t>& members = bodies.joined().groups()[group];
@@ -47,7 +41,7 @@ void ContactSolution::applyToGroup(Bodies& bodies, const Activity& activity, con
   }
   if (!pushed && !bodies.joined().isOpen(group)) return;
   const SolveReport report = bodies.joined().applyImpulses(group, bodies.couplings(), loose_);
-  reportMiss(bodies, members[0], report, log);
+  if (!log.hasMissed(miss::solver)) reportMiss(bodies, members[0], report, log);
 }
 
 /// Applies a change of forces to all bodies at once: vessels, then organs and fat with everything tied to them.
@@ -249,10 +243,7 @@ void ContactResponse::integrateTissue(Surfaces& surfaces, Bodies& bodies, const 
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     if (!activity.awake[b]) continue;
     diverged_[b] = !bodies[b].advance(state);
-    if (diverged_[b]) {
-      log.miss(miss::solver);
-      log.emit(EventKind::solverMiss, StepLog::noHand, bodies.firstStructure(b), Vec3::Zero(), 1e300);
-    }
+    if (diverged_[b]) reportMiss(bodies, b, {0, 1e300, false}, log);
     if (const double speed = bodies[b].heldBack(); speed > 0.0) {
       log.miss(miss::speed);
       log.emit(EventKind::motionHeldBack, StepLog::noHand, bodies.firstStructure(b), Vec3::Zero(), speed);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sim/step/grasping.h"
+#include "sim/step/placed_instrument.h"
 
 #include <algorithm>
 

@@ -16,13 +16,30 @@
 #include "sim/step/bodies.h"
 #include "sim/step/body.h"
 #include "sim/step/contact_block.h"
-#include "sim/step/grasping.h"
 #include "sim/step/placed_instrument.h"
 #include "sim/step/surfaces.h"
 #include "sim/step/tissue_contacts.h"
 #include "sim/tissue/organ/organ_tissue.h"
 
 namespace calot {
+
+// Stage 1 of a step: the newest measurement of each hand, and the newest camera.
+
+/// Reads: the step's samples. Writes: each hand's real pose, jaw, buttons and mounted instrument, what is asked of the
+/// assistant, the camera, and the digests of the samples as they came. A sample that is no measurement (isMeasurement)
+/// changes nothing but is reported when it begins and when it ends.
+class SampleStage {
+ public:
+  explicit SampleStage(const Model& model) : model_(model) {}
+  /// @pre samples.size() == ticksPerStep
+  void run(std::span<const TickSamples> samples, State& state, StepLog& log) const;
+
+ private:
+  void readHand(std::span<const TickSamples> samples, std::size_t hand, State& state, StepLog& log) const;
+  void readRequests(std::span<const TickSamples> samples, std::size_t hand, State& state, StepLog& log) const;
+  void askAssistant(std::size_t hand, bool more, State& state, StepLog& log) const;
+  const Model& model_;
+};
 
 // Stage 2 of a step: instruments follow the hands as far as free space reaches.
 
@@ -54,24 +71,6 @@ class InstrumentMotion {
   const Model& model_;
   Grasping& grasping_;
   PlacedInstrument instrument_, other_;
-};
-
-// Stage 1 of a step: the newest measurement of each hand, and the newest camera.
-
-/// Reads: the step's samples. Writes: each hand's real pose, jaw, buttons and mounted instrument, what is asked of the
-/// assistant, the camera, and the digests of the samples as they came. A sample that is no measurement (isMeasurement)
-/// changes nothing but is reported when it begins and when it ends.
-class SampleStage {
- public:
-  explicit SampleStage(const Model& model) : model_(model) {}
-  /// @pre samples.size() == ticksPerStep
-  void run(std::span<const TickSamples> samples, State& state, StepLog& log) const;
-
- private:
-  void readHand(std::span<const TickSamples> samples, std::size_t hand, State& state, StepLog& log) const;
-  void readRequests(std::span<const TickSamples> samples, std::size_t hand, State& state, StepLog& log) const;
-  void askAssistant(std::size_t hand, bool more, State& state, StepLog& log) const;
-  const Model& model_;
 };
 
 // Stage 3 of a step: contact points of instruments and among organs, and the bodies that are awake.
@@ -139,6 +138,9 @@ SolidSolver::Impulse pressedPatch(const OrganModel& organ, const Skin& skin, con
 
 // Stage 4 of a step: the unconstrained motion of all tissue.
 
+/// Reports a solve of a body that did not reach its tolerance.
+void reportMiss(const Bodies& bodies, std::size_t which, const SolveReport& report, StepLog& log);
+
 /// One implicit step of each awake body under gravity, ties, connective tissue and retraction, and under the contact
 /// forces that the last step left: vessels first, then organs (those that connective tissue ties as one system), which
 /// take the vessels that are grown to them along, then fat. A body solved later sees the new velocities of those before
@@ -157,7 +159,6 @@ class UnconstrainedMotion {
                     State& state, StepLog& log);
   void solveGroup(Bodies& bodies, const ContactSystem& contact, const Activity& activity, std::size_t group,
                   State& state, StepResult& result, StepLog& log);
-  void reportMiss(const Bodies& bodies, std::size_t which, const SolveReport& report, StepLog& log);
   void gatherLoads(Bodies& bodies, const ContactSystem& contact, const Activity& activity, const State& state,
                    std::size_t which);
   void gatherTies(const Bodies& bodies, const Activity& activity, const State& state, std::size_t which);
@@ -253,7 +254,6 @@ class ContactSolution {
  private:
   void solve(const ContactProblem& problem, ContactSystem& contact, ContactResult& result);
   void gatherImpulses(Bodies& bodies, const ContactSystem& contact, std::size_t which);
-  void reportMiss(const Bodies& bodies, std::size_t which, const SolveReport& report, StepLog& log);
   void applyToGroup(Bodies& bodies, const Activity& activity, const ContactSystem& contact, std::size_t group,
                     StepLog& log);
   void applyContactImpulses(Bodies& bodies, const Activity& activity, const ContactSystem& contact, StepLog& log);

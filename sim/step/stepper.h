@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// step(Model, State, samples) -> StepResult: nine stages, in the order of their headers' numbers.
+// step(Model, State, samples) -> StepResult: nine stages (stages.h).
 #pragma once
 
 #include <memory>
@@ -12,7 +12,7 @@
 #include "sim/scene/samples.h"
 #include "sim/scene/state.h"
 #include "sim/scene/step_result.h"
-#include "sim/solid/rest_compliance.h"
+#include "sim/solid/solid.h"
 
 namespace calot {
 

@@ -73,7 +73,7 @@ void UnconstrainedMotion::gatherLoads(Bodies& bodies, const ContactSystem& conta
   }
 }
 
-void UnconstrainedMotion::reportMiss(const Bodies& bodies, std::size_t which, const SolveReport& report, StepLog& log) {
+void reportMiss(const Bodies& bodies, std::size_t which, const SolveReport& report, StepLog& log) {
   if (report.converged) return;
   log.miss(miss::solver);
   log.emit(EventKind::solverMiss, StepLog::noHand, bodies.firstStructure(which), Vec3::Zero(), report.residual);

@@ -10,7 +10,6 @@
 
 #include "sim/contact/surface_patches.h"
 #include "sim/contact/surface_surface.h"
-#include "sim/geometry/embedding.h"
 #include "sim/geometry/isosurface_stuffing.h"
 #include "sim/math/record.h"
 #include "sim/solid/solid.h"

@@ -8,7 +8,7 @@
 #include <cstdio>
 
 #include "sim/math/random.h"
-#include "sim/solid/point_coupling.h"
+#include "sim/solid/solid.h"
 #include "tests/accuracy/support/cube_box.h"
 
 namespace calot {

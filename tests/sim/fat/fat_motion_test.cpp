@@ -5,7 +5,7 @@
 #include <cmath>
 #include <iostream>
 
-#include "sim/solid/rest_compliance.h"
+#include "sim/solid/solid.h"
 #include "tests/sim/fat/support/fat_bodies.h"
 
 namespace calot {

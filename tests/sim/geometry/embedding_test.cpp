@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sim/geometry/embedding.h"
+#include "sim/geometry/isosurface_stuffing.h"
 
 #include <gtest/gtest.h>
 
 #include <vector>
 
-#include "sim/geometry/isosurface_stuffing.h"
 #include "sim/math/random.h"
 #include "tests/sim/scene/support/scenes.h"
 

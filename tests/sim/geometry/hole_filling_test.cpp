@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sim/geometry/hole_filling.h"
+#include "sim/geometry/surface_report.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "recorder/formats/mesh_file.h"
-#include "sim/geometry/surface_report.h"
 #include "tests/sim/geometry/surfaces.h"
 
 namespace calot {
