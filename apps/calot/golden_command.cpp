@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <list>
 #include <set>
 
 #include "analytics/checkpoints/checkpoint.h"
@@ -288,6 +289,7 @@ void judge(GoldenReplay& run, const std::filesystem::path& file) {
     report.verdict = recorder::ReplayVerdict::undecided;
     report.error = fmt::format("made by simulation version {}; this build has {}", version, simulationVersion);
   } else if (kept.at("scene").text(1000) != now.at("scene").text(1000)) {
+    report.divergence = {0, {}, "scene", "files", ""};
     report.error = "the scene changed " + wasAndIs("scene");
   } else if (steps && (!samples || *steps < *samples)) {
     report.divergence = {*steps, {}, "step", "digest", ""};
@@ -335,9 +337,9 @@ void refuseValues(const GoldenEntry& entry, const std::vector<GoldenValue>& now)
   for (const GoldenValue& before : entry.values) {
     const GoldenValue* after = sameOf(now, before);
     const analytics::CheckpointDefinition* definition = analytics::findCheckpoint(before.name);
-    if (after != nullptr ? after->value == before.value || after->version > before.version
-                         : definition == nullptr || definition->version > before.version)
-      continue;
+    if (after == nullptr && definition == nullptr) continue;
+    const std::uint32_t version = after != nullptr ? after->version : definition->version;
+    if (version > before.version || (after != nullptr && after->value == before.value)) continue;
     throw Error(ErrorKind::refused,
                 fmt::format("golden: {}: {} has another value ({} -> {}) and still definition version "
                             "{}: raise the version or mend the checkpoint",
@@ -345,15 +347,6 @@ void refuseValues(const GoldenEntry& entry, const std::vector<GoldenValue>& now)
                             after == nullptr ? "none" : shownValue(*after), before.version));
   }
 }
-
-/// Removes what was made and not taken over.
-struct Temporary {
-  std::vector<std::filesystem::path> files;
-  ~Temporary() {
-    std::error_code ignored;
-    for (const std::filesystem::path& file : files) std::filesystem::remove(file, ignored);
-  }
-};
 
 /// A golden names a revision.
 /// @throws Error (invalid): `folder` is in no work tree, or in one with changes outside of it
@@ -456,18 +449,17 @@ void updateGolden(const GoldenOptions& o) {
   GoldenList list = readGoldenList(folder / listName);
   refuseChanges(folder);
   const bool all = list.simulationVersion < simulationVersion;
-  Temporary temporary;
-  std::vector<std::filesystem::path> replaced;
+  std::list<recorder::BranchFile> fresh;
   for (GoldenEntry& entry : list.recordings) {
-    const std::filesystem::path file = folder / entry.file, fresh = folder / ("new." + entry.file);
+    const std::filesystem::path file = folder / entry.file;
     const bool kept = !all && std::filesystem::exists(file);
     if (kept && !entry.isDigests()) continue;  // no performer changes it: it carries its samples
-    temporary.files.push_back(fresh);
-    GoldenReplay made = perform(entry, entry.isDigests() ? std::filesystem::path() : fresh, 1);
+    const std::filesystem::path& target = fresh.emplace_back(file, true).path();
+    GoldenReplay made = perform(entry, entry.isDigests() ? std::filesystem::path() : target, 1);
     if (kept) {
       judge(made, file);
       if (made.report.verdict == recorder::ReplayVerdict::exact) {
-        temporary.files.pop_back();
+        fresh.pop_back();
         continue;
       }
       if (made.report.divergence && made.report.divergence->component == "step") {
@@ -479,20 +471,18 @@ void updateGolden(const GoldenOptions& o) {
     }
     if (entry.isDigests()) {
       made.digests["reason"] = o.reason;
-      recorder::writeText(fresh, made.digests.dump(1) + "\n", true);
+      recorder::writeText(target, made.digests.dump(1) + "\n", true);
     }
-    replaced.push_back(file);
     printChanges(entry.file, made.values.size(), changedValues(entry.values, made.values));
     entry.values = std::move(made.values);
   }
-  if (replaced.empty()) {
+  if (fresh.empty()) {
     throw Error(ErrorKind::invalid,
                 fmt::format("golden: the goldens are of simulation version {} and so is this build, and no performer "
                             "changed: what changes them raises simulationVersion (sim/scene/version.h) first",
                             list.simulationVersion));
   }
-  for (std::size_t i = 0; i < replaced.size(); ++i) std::filesystem::rename(temporary.files[i], replaced[i]);
-  temporary.files.clear();
+  for (recorder::BranchFile& file : fresh) file.publish();
   if (all) {
     list.reason = o.reason;
     list.valuesReason.reset();
