@@ -168,7 +168,7 @@ std::optional<double> MotionCoverage::share() const {
   return notNegative(1.0 - lengthOf(lost) / whole);
 }
 
-MotionCoverage within(const MotionCoverage& coverage, const TimeSpans& window) {
+MotionCoverage coverageWithin(const MotionCoverage& coverage, const TimeSpans& window) {
   return {intersection(coverage.mounted, window), intersection(coverage.lost, window)};
 }
 

@@ -123,7 +123,7 @@ struct MotionCoverage {
 };
 
 /// Coverage of a part of the attempt.
-MotionCoverage within(const MotionCoverage& coverage, const TimeSpans& window);
+MotionCoverage coverageWithin(const MotionCoverage& coverage, const TimeSpans& window);
 /// While both hands have an instrument; lost is what either hand lost.
 MotionCoverage ofBoth(const MotionCoverage& left, const MotionCoverage& right);
 

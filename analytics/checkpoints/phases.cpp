@@ -88,7 +88,7 @@ std::vector<PhaseMotion> PhaseTrack::cut(const std::array<Motion, handCount>& mo
     for (std::size_t h = 0; h < motion.size(); ++h) {
       Motion& hand = part.motion[h];
       hand.mounted = motion[h].mounted;
-      hand.coverage = within(motion[h].coverage, window);
+      hand.coverage = coverageWithin(motion[h].coverage, window);
       hand.interval = motion[h].interval;
       hand.rate = motion[h].rate;
       hand.cutoff = motion[h].cutoff;

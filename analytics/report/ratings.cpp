@@ -52,8 +52,8 @@ struct RatedAttempt {
 /// A complete table of one figure, a row a participant; `figure` gives none where an item was left blank.
 /// @param rated by start. @param[out] repeated complete attempts of those who have a row already
 template <class Figure>
-RatingTable tableOf(const std::vector<RatedAttempt>& rated, const std::set<std::string>& raters, Figure figure,
-                    std::uint64_t& repeated) {
+RatingTable scoresOf(const std::vector<RatedAttempt>& rated, const std::set<std::string>& raters, Figure figure,
+                     std::uint64_t& repeated) {
   RatingTable table;
   table.raters = raters.size();
   std::set<std::string> seen;
@@ -149,7 +149,7 @@ void addAgreement(FormReport& report, const RatingForm& form, const std::vector<
       const std::optional<double> sum = sumOf(r, keys);
       return sum ? std::optional(*sum / divisor) : std::nullopt;
     };
-    return report.agreement.emplace_back(agreementOn(figure, tableOf(rated, raters, value, repeated))).attempts;
+    return report.agreement.emplace_back(agreementOn(figure, scoresOf(rated, raters, value, repeated))).attempts;
   };
   std::vector<std::string> keys;
   keys.reserve(items.size());

@@ -449,7 +449,7 @@ void updateGolden(const GoldenOptions& o) {
   GoldenList list = readGoldenList(folder / listName);
   refuseChanges(folder);
   const bool all = list.simulationVersion < simulationVersion;
-  std::list<recorder::BranchFile> fresh;
+  std::list<recorder::NewFile> fresh;
   for (GoldenEntry& entry : list.recordings) {
     const std::filesystem::path file = folder / entry.file;
     const bool kept = !all && std::filesystem::exists(file);
@@ -482,7 +482,7 @@ void updateGolden(const GoldenOptions& o) {
                             "changed: what changes them raises simulationVersion (sim/scene/version.h) first",
                             list.simulationVersion));
   }
-  for (recorder::BranchFile& file : fresh) file.publish();
+  for (recorder::NewFile& file : fresh) file.publish();
   if (all) {
     list.reason = o.reason;
     list.valuesReason.reset();

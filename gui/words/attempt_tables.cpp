@@ -29,7 +29,7 @@ std::string columnTitle(const analytics::CheckpointEntry& entry, const std::stri
   const std::string_view word = entry.place.summaryTitle;
   if (subject.empty()) return fmt::format("{} {}", word, d.displayUnit);
   if (d.aggregation != analytics::Aggregation::hand) return fmt::format("{} {} {}", subject, word, d.displayUnit);
-  return fmt::format("{} {} {}", word, subject == analytics::handNames[0] ? "L" : "R", d.displayUnit);
+  return fmt::format("{} {} {}", word, subject == handNames[0] ? "L" : "R", d.displayUnit);
 }
 
 /// The checkpoints that ask for columns, for every subject that some attempt has a value of.
