@@ -58,14 +58,18 @@ void expectFault(ErrorKind kind, const std::string& where, const std::vector<std
 }
 
 /// @param remedies that the error names, no more and no fewer
-template <std::invocable Call>
-void expectFault(ErrorKind kind, const std::string& where, const std::vector<std::string>& values, Call call,
-                 const std::vector<Remedy>& remedies) {
-  const std::optional<Error> error = caught(call);
+inline void expectFault(ErrorKind kind, const std::string& where, const std::vector<std::string>& values,
+                        const std::optional<Error>& error, const std::vector<Remedy>& remedies) {
   expectFault(kind, where, values, error);
   if (error) {
     EXPECT_EQ(error->remedies(), remedies) << error->what();
   }
+}
+
+template <std::invocable Call>
+void expectFault(ErrorKind kind, const std::string& where, const std::vector<std::string>& values, Call call,
+                 const std::vector<Remedy>& remedies) {
+  expectFault(kind, where, values, caught(call), remedies);
 }
 
 }  // namespace calot

@@ -107,7 +107,7 @@ TEST_F(Grades, theRuleIsDeclaredAndRefusedWhereItCannotBe) {
   request_.checkpoints = {"path-length"};
   expectFault(ErrorKind::refused, "", {"path-length"}, [&] { made(); });
   request_.checkpoints = {"sparc"};
-  expectFault(ErrorKind::invalid, "", {"\"sparc\""}, [&] { made(); }, {{Remedy::nameCheckpoints}});
+  expectFault(ErrorKind::invalid, "", {"\"sparc\""}, [&] { made(); }, {Remedy::nameCheckpoints});
   request_.checkpoints.clear();
   request_.leastPassed = 2;
   expectFault(ErrorKind::refused, "", {"2", "1"}, [&] { made(); });
@@ -241,7 +241,7 @@ TEST_F(Grades, comparesOnlyWhatCompares) {
   AttemptRecord other = humanAttempt(30, "T9");
   other.comparabilityKey = "another/1";
   cohort_.storeAttempt(other, figures(1, 1));
-  expectFault(ErrorKind::refused, "", {"clinic", uuidOf(30)}, [&] { graded(30, norm); }, {{Remedy::mixKeys}});
+  expectFault(ErrorKind::refused, "", {"clinic", uuidOf(30)}, [&] { graded(30, norm); }, {Remedy::mixKeys});
   EXPECT_EQ(graded(30, norm, true).remarks.size(), 1U);
   AttemptRecord bad = humanAttempt(31, "T8");
   bad.verification.verdict = Verdict::diverged;

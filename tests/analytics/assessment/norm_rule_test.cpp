@@ -127,7 +127,7 @@ TEST_F(NormRule, whatCannotBeFixedIsRefused) {
   request_.fixed = {parseFixedCut("clip-errors>=0")};
   expectFault(ErrorKind::invalid, "", {"norm", "clip-errors"}, [&] { made(); });
   request_.fixed = {parseFixedCut("sparc left>=0")};
-  expectFault(ErrorKind::invalid, "", {"\"sparc left\""}, [&] { made(); }, {{Remedy::nameCheckpoints}});
+  expectFault(ErrorKind::invalid, "", {"\"sparc left\""}, [&] { made(); }, {Remedy::nameCheckpoints});
 }
 
 }  // namespace

@@ -85,7 +85,7 @@ TEST_F(CohortDesign, occasionsAreNumberedByStart) {
 
 TEST_F(CohortDesign, oneEachWantsARule) {
   DesignChoices choices = choicesOf(Design::severalGroups);
-  expectFault(ErrorKind::refused, "", {"\"P0\"", "3"}, [&] { (void)read(choices); }, {{Remedy::chooseAttemptRule}});
+  expectFault(ErrorKind::refused, "", {"\"P0\"", "3"}, [&] { (void)read(choices); }, {Remedy::chooseAttemptRule});
   choices.attemptRule = AttemptRule::first;
   const DesignData data = read(choices);
   EXPECT_EQ(data.groups.size(), 3U);

@@ -369,7 +369,7 @@ TEST(Study, refusesToMixComparabilityKeys) {
   other.comparabilityKey = "touch-liver/2 device=performer calibration=- simulation=1 results=1 mode=assessment";
   database.storeAttempt(other, valuesOf(22, 0.022));
   expectFault(ErrorKind::refused, "", {"2"}, [&] { (void)makeStudy(database, performers); },
-              {{Remedy::chooseKey, Remedy::mixKeys}});
+              {Remedy::chooseKey, Remedy::mixKeys});
   StudyOptions one = performers;
   one.key = attemptOf(0, "skilled").comparabilityKey;
   const Study chosen = makeStudy(database, one);
@@ -409,14 +409,14 @@ TEST(Study, needsTwoIndependentGroups) {
   expectFault(ErrorKind::refused, "", {"skilled"}, [&] { (void)makeStudy(database, performers); });
   database.storeAttempt(attemptOf(2, "unskilled"), valuesOf(1, 1));
   database.storeAttempt(attemptOf(3, "intermediate"), valuesOf(1, 1));
-  expectFault(ErrorKind::refused, "", {"3"}, [&] { (void)makeStudy(database, performers); }, {{Remedy::nameGroups}});
+  expectFault(ErrorKind::refused, "", {"3"}, [&] { (void)makeStudy(database, performers); }, {Remedy::nameGroups});
   StudyOptions named = performers;
   named.groups = {"unskilled", "intermediate"};
   EXPECT_EQ(makeStudy(database, named).groups[0], "unskilled");
   named.groups = {"skilled", "absent"};
   expectFault(ErrorKind::refused, "", {"\"absent\""}, [&] { (void)makeStudy(database, named); });
   named.groups = {"skilled", "skilled"};
-  expectFault(ErrorKind::invalid, "", {}, [&] { (void)makeStudy(database, named); }, {{Remedy::nameGroups}});
+  expectFault(ErrorKind::invalid, "", {}, [&] { (void)makeStudy(database, named); }, {Remedy::nameGroups});
   AttemptRecord a = attemptOf(4, "skilled"), b = attemptOf(5, "unskilled");
   a.participant = b.participant = "P1";
   database.storeAttempt(a, valuesOf(1, 1));
@@ -462,7 +462,7 @@ TEST(Study, jsonAndCsvHoldTheTable) {
   std::getline(summary, line);
   const auto columns = std::count(line.begin(), line.end(), ',');
   while (std::getline(summary, line)) EXPECT_EQ(std::count(line.begin(), line.end(), ','), columns) << line;
-  expectFault(ErrorKind::invalid, "", {out}, [&] { writeStudyCsv(study, out, false); }, {{Remedy::replaceExisting}});
+  expectFault(ErrorKind::invalid, "", {out}, [&] { writeStudyCsv(study, out, false); }, {Remedy::replaceExisting});
   EXPECT_NO_THROW(writeStudyCsv(study, out, true));
   expectFault(ErrorKind::failure, folder.file("c.db"), {}, [&] { writeStudyCsv(study, folder.file("c.db"), false); });
 }

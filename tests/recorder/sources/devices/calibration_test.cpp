@@ -73,7 +73,7 @@ TEST(Calibration, AssessmentRefusesWhatPracticeMayUse) {
     return caught([&] { checkCalibration(calibration, info, mode, now, "c.json"); });
   };
   const auto refuses = [](const std::vector<std::string>& values, const std::optional<Error>& error) {
-    expectFault(ErrorKind::refused, "c.json", values, error, {{Remedy::measureCalibration}});
+    expectFault(ErrorKind::refused, "c.json", values, error, {Remedy::measureCalibration});
   };
   EXPECT_FALSE(verdict(c, device, Mode::assessment, "2026-01-01T12:00:00Z"));
   EXPECT_FALSE(verdict(c, device, Mode::assessment, "2026-01-31T11:59:59Z"));

@@ -10,6 +10,7 @@
 #include <igtlTransformMessage.h>
 
 #include <atomic>
+#include <future>
 #include <thread>
 
 #include "recorder/sources/devices/device_source.h"
