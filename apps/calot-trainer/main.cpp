@@ -204,7 +204,7 @@ bool waitFor(const std::function<bool()>& there, int seconds) {
 void takePictures(gui::TrainerWindow& window, std::optional<recorder::LoadedScene> scene, const std::string& folder) {
   const auto save = [&](const char* name) {
     window.refresh();
-    window.savePicture(QString::fromStdString(folder + "/" + name + ".png"));
+    gui::parts::savePicture(window, QString::fromStdString(folder + "/" + name + ".png"));
   };
   const auto wanted = [](bool there, const char* what) {
     if (!there) throw Error(ErrorKind::failure, std::string("--pictures: ") + what);

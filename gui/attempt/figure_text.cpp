@@ -212,9 +212,8 @@ AttemptStanding standingOf(const analytics::AttemptRow& attempt, const std::vect
   return standing;
 }
 
-SummaryPanel::SummaryPanel(QWidget* parent)
-    : QWidget(parent),
-      verdict_(parts::selectableLabel("summary-verdict")),
+SummaryPanel::SummaryPanel()
+    : verdict_(parts::selectableLabel("summary-verdict")),
       criticalView_(parts::selectableLabel("summary-critical-view")),
       errors_(parts::selectableLabel("summary-errors")),
       figures_(parts::selectableLabel("summary-figures")) {

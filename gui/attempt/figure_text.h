@@ -98,7 +98,7 @@ AttemptStanding standingOf(const analytics::AttemptRow& attempt, const std::vect
 class SummaryPanel : public QWidget {
   Q_OBJECT
  public:
-  explicit SummaryPanel(QWidget* parent = nullptr);
+  SummaryPanel();
   void showSummary(const analytics::AttemptSummary& summary);
 
  private:

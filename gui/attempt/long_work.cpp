@@ -15,16 +15,20 @@
 
 namespace calot::gui {
 
-void Background::run(Job job) {
-  thread_.start([this, mine = ++newest_, job = std::move(job)] {
+void Background::run(Job job, Failed failed) {
+  thread_.start([this, mine = ++newest_, job = std::move(job), failed = std::move(failed)] {
     if (mine != newest_) return;
     stepBack(behindInterface);
-    QMetaObject::invokeMethod(
-        this,
-        [this, mine, answer = job()] {
-          if (mine == newest_) answer();
-        },
-        Qt::QueuedConnection);
+    Completion answer;
+    try {
+      answer = job();
+    } catch (const std::exception& error) {
+      answer = [failed, reason = QString::fromStdString(problemText(error))] { failed(reason); };
+    }
+    const auto complete = [this, mine, answer = std::move(answer)] {
+      if (mine == newest_) answer();
+    };
+    QMetaObject::invokeMethod(this, complete, Qt::QueuedConnection);
   });
 }
 
@@ -100,9 +104,8 @@ QString leftText(double seconds) {
   return QString("about %1 min left").arg(std::lround(seconds / 60.0));
 }
 
-WorkStrip::WorkStrip(LongWork& work, QWidget* parent)
-    : QWidget(parent),
-      text_(parts::plainLabel("work-text", false)),
+WorkStrip::WorkStrip(LongWork& work)
+    : text_(parts::plainLabel("work-text", false)),
       bar_(parts::named("work-progress", new QProgressBar)),
       cancel_(parts::named("work-cancel", new QPushButton("Cance&l"))),
       appear_(new QTimer(this)) {

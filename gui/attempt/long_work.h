@@ -23,13 +23,14 @@ namespace calot::gui {
 class Background : public QObject {
   Q_OBJECT
  public:
-  using Completion = std::function<void()>;  ///< called on the object's thread
-  using Job = std::function<Completion()>;   ///< called on the background's thread; must not throw
+  using Completion = std::function<void()>;                   ///< called on the object's thread
+  using Job = std::function<Completion()>;                    ///< called on the background's thread
+  using Failed = std::function<void(const QString& reason)>;  ///< where a job threw; called on the object's thread
 
-  explicit Background(QObject* parent = nullptr) : QObject(parent) { thread_.setMaxThreadCount(1); }
+  Background() { thread_.setMaxThreadCount(1); }
   /// Waits for the job that is being done; its answer is dropped.
   ~Background() override { forget(); }
-  void run(Job job);
+  void run(Job job, Failed failed);
   /// Drops the job that waits and the answer of the one that is being done.
   void forget() { ++newest_; }
 
@@ -106,7 +107,6 @@ class LongWork : public QObject {
   /// Ends with what to say of it. @throws Error, or what Control throws
   using Work = std::function<QString(Control&)>;
 
-  explicit LongWork(QObject* parent = nullptr) : QObject(parent) {}
   /// Breaks off what is being done, without waiting for it.
   ~LongWork() override;
   /// Cancels the present work and begins again.
@@ -140,7 +140,7 @@ class WorkStrip : public QWidget {
   Q_OBJECT
  public:
   /// @param work outlives this
-  explicit WorkStrip(LongWork& work, QWidget* parent = nullptr);
+  explicit WorkStrip(LongWork& work);
   /// @param after ms: shorter work shows nothing, so that a page does not jump
   void begin(const QString& what, int after = 0);
 

@@ -14,7 +14,7 @@
 
 namespace calot::gui {
 
-Replay::Replay(Sink sink, QObject* parent) : QObject(parent), sink_(std::move(sink)) {}
+Replay::Replay(Sink sink) : sink_(std::move(sink)) {}
 
 Replay::~Replay() { close(); }
 
@@ -94,9 +94,8 @@ QComboBox* speedChoice(const char* name, const char* spokenName) {
   return made;
 }
 
-TransportBar::TransportBar(Replay& replay, QWidget* parent)
-    : QWidget(parent),
-      replay_(replay),
+TransportBar::TransportBar(Replay& replay)
+    : replay_(replay),
       play_(transportButton("play", "Play or pause (Space)", QStyle::SP_MediaPlay)),
       back_(transportButton("step-back", "One step back (,)", QStyle::SP_MediaSkipBackward)),
       forward_(transportButton("step-forward", "One step forward (.)", QStyle::SP_MediaSkipForward)),

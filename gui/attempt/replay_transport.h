@@ -27,7 +27,7 @@ class Replay : public QObject {
   using Sink = std::function<void(std::shared_ptr<const SceneView>)>;
 
   /// @param sink takes the pictures to be; called on the player's thread
-  explicit Replay(Sink sink, QObject* parent = nullptr);
+  explicit Replay(Sink sink);
   ~Replay() override;
 
   /// Ends what was open, without waiting for it, and opens another recording. opened() or failed() follows.
@@ -82,7 +82,7 @@ class TransportBar : public QWidget {
   Q_OBJECT
  public:
   /// @param replay outlives the bar
-  explicit TransportBar(Replay& replay, QWidget* parent = nullptr);
+  explicit TransportBar(Replay& replay);
 
  private:
   void show(const PlayerPosition& position);

@@ -11,6 +11,8 @@
 #include <QStyleFactory>
 #include <utility>
 
+#include "recorder/base/errors.h"
+
 namespace calot::gui {
 
 QBoxLayout* parts::fill(QBoxLayout* layout, std::initializer_list<Item> items) {
@@ -30,6 +32,12 @@ QBoxLayout* parts::fill(QBoxLayout* layout, std::initializer_list<Item> items) {
       layout->addSpacing(item.pixels);
   }
   return layout;
+}
+
+void parts::savePicture(QWidget& window, const QString& file) {
+  QApplication::processEvents();
+  if (!window.grab().save(file, "PNG"))
+    throw Error(ErrorKind::failure, Where{file.toStdString()}, "cannot write the picture; does the folder exist?");
 }
 
 namespace theme {

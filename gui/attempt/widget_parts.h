@@ -117,6 +117,9 @@ inline QWidget* boxed(QLayout* layout) {
   return made;
 }
 
+/// Writes a PNG of what a window shows. @throws calot::Error (failure)
+void savePicture(QWidget& window, const QString& file);
+
 /// Hides a label that has nothing to say.
 inline void say(QLabel* label, const QString& text) {
   if (label->text() != text) label->setText(text);

@@ -149,9 +149,8 @@ QString writeGradeSheet(const SheetRequest& request, LongWork::Control& control)
 
 }  // namespace
 
-AttemptPage::AttemptPage(QWidget* parent)
-    : CohortPage(parent),
-      strip_(new WorkStrip(work_)),
+AttemptPage::AttemptPage()
+    : strip_(new WorkStrip(work_)),
       banner_(new AttemptBanner),
       summary_(new SummaryPanel),
       figures_(new FigurePanel),

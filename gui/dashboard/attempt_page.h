@@ -17,7 +17,7 @@ class SummaryPanel;
 class AttemptPage : public CohortPage {
   Q_OBJECT
  public:
-  explicit AttemptPage(QWidget* parent = nullptr);
+  AttemptPage();
 
   /// Reads what belongs to the attempt when the page is visible.
   void setAttempt(std::shared_ptr<const CohortDocument> document, const analytics::AttemptRow& attempt);

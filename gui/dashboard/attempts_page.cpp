@@ -59,9 +59,7 @@ QVariant AttemptTableModel::headerData(int section, Qt::Orientation orientation,
   return AttemptLines::title(section);
 }
 
-AttemptFilter::AttemptFilter(QObject* parent) : QSortFilterProxyModel(parent) {
-  setSortRole(AttemptTableModel::sortRole);
-}
+AttemptFilter::AttemptFilter() { setSortRole(AttemptTableModel::sortRole); }
 
 void AttemptFilter::set(const Criteria& wanted) {
   if (wanted == wanted_) return;
@@ -89,9 +87,8 @@ constexpr std::array verdicts{Verdict::verified, Verdict::diverged, Verdict::dam
 
 }  // namespace
 
-AttemptsPage::AttemptsPage(QWidget* parent)
-    : CohortPage(parent),
-      search_(parts::named("search", new QLineEdit)),
+AttemptsPage::AttemptsPage()
+    : search_(parts::named("search", new QLineEdit)),
       verdict_(parts::named("verdict", new QComboBox)),
       operators_(parts::named("operators", new QComboBox)),
       tag_(parts::choice("tag", 8)),

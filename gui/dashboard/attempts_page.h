@@ -51,7 +51,7 @@ class AttemptFilter : public QSortFilterProxyModel {
     bool operator==(const Criteria&) const = default;
   };
 
-  explicit AttemptFilter(QObject* parent = nullptr);
+  AttemptFilter();
   /// Lays the whole table out again: rows that go one by one, as invalidateFilter() has them, take seconds of
   /// thousands.
   void set(const Criteria& wanted);
@@ -68,7 +68,7 @@ class AttemptFilter : public QSortFilterProxyModel {
 class AttemptsPage : public CohortPage {
   Q_OBJECT
  public:
-  explicit AttemptsPage(QWidget* parent = nullptr);
+  AttemptsPage();
   /// Shows a document at once; the first attempt is selected.
   void setDocument(std::shared_ptr<const CohortDocument> document) override;
   void focusSearch();

@@ -315,8 +315,8 @@ class FamilyTreeModel::Entry : public QStandardItem {
   int place_;
 };
 
-FamilyTreeModel::FamilyTreeModel(const CheckpointTableModel& source, QObject* parent)
-    : QStandardItemModel(0, CheckpointTableModel::columnTotal, parent), source_(source) {
+FamilyTreeModel::FamilyTreeModel(const CheckpointTableModel& source)
+    : QStandardItemModel(0, CheckpointTableModel::columnTotal), source_(source) {
   connect(&source_, &QAbstractItemModel::modelReset, this, &FamilyTreeModel::fill);
   connect(&source_, &QAbstractItemModel::dataChanged, this, [this](const QModelIndex& first, const QModelIndex& last) {
     for (int f = 0; f < rowCount(); ++f) {
@@ -384,11 +384,11 @@ int FamilyTreeModel::sourceRow(const QModelIndex& index) const {
   return static_cast<const Entry*>(itemFromIndex(index.siblingAtColumn(0)))->place();
 }
 
-QModelIndex FamilyTreeModel::indexOf(int sourceRow, int column) const {
+QModelIndex FamilyTreeModel::indexOf(int sourceRow) const {
   for (int f = 0; f < rowCount(); ++f) {
     const QModelIndex family = index(f, 0);
     for (int row = 0; row < rowCount(family); ++row) {
-      if (this->sourceRow(index(row, 0, family)) == sourceRow) return index(row, column, family);
+      if (this->sourceRow(index(row, 0, family)) == sourceRow) return index(row, 0, family);
     }
   }
   return {};

@@ -94,12 +94,12 @@ class FamilyTreeModel : public QStandardItemModel {
   Q_OBJECT
  public:
   /// @param source outlives this
-  explicit FamilyTreeModel(const CheckpointTableModel& source, QObject* parent = nullptr);
+  explicit FamilyTreeModel(const CheckpointTableModel& source);
 
   /// The source's row, or -1 of a family.
   [[nodiscard]] int sourceRow(const QModelIndex& index) const;
   /// Position of a row of the source; invalid if it is left out.
-  [[nodiscard]] QModelIndex indexOf(int sourceRow, int column = 0) const;
+  [[nodiscard]] QModelIndex indexOf(int sourceRow) const;
   [[nodiscard]] int leftOut() const { return leftOut_; }  ///< checkpoints that the scene has nothing for
 
   [[nodiscard]] QVariant data(const QModelIndex& index, int role) const override;

@@ -118,7 +118,7 @@ class CohortWriter : public QObject {
  public:
   using Change = std::function<void(analytics::CohortDatabase&)>;
 
-  explicit CohortWriter(QObject* parent = nullptr) : QObject(parent) { thread_.setMaxThreadCount(1); }
+  CohortWriter() { thread_.setMaxThreadCount(1); }
   /// Ends with written() or failed(). @param change throws calot::Error where it cannot be
   /// @param undone called on the writer's thread where nothing was written, before failed()
   void write(const std::string& database, Change change, std::function<void()> undone);

@@ -48,28 +48,21 @@ QStringList localFiles(const QMimeData& data) {
 struct DashboardWindow::Opened {
   std::shared_ptr<const CohortDocument> document;
   bool upgraded = false;  ///< it was of an older schema
-  QString fault;          ///< why there is no document
 };
 
 DashboardWindow::Opened DashboardWindow::openOrUpgrade(const std::string& path) {
-  Opened opened;
-  opened.fault = faultOf([&] {
-    try {
-      opened.document = std::make_shared<const CohortDocument>(path);
-    } catch (const Error& error) {
-      const std::vector<Remedy>& remedies = error.remedies();
-      if (std::find(remedies.begin(), remedies.end(), Remedy::upgradeCohort) == remedies.end()) throw;
-      const analytics::CohortDatabase upgraded(path, analytics::CohortDatabase::Access::write);
-      opened = {std::make_shared<const CohortDocument>(path), true, {}};
-    }
-  });
-  return opened;
+  try {
+    return {std::make_shared<const CohortDocument>(path), false};
+  } catch (const Error& error) {
+    const std::vector<Remedy>& remedies = error.remedies();
+    if (std::find(remedies.begin(), remedies.end(), Remedy::upgradeCohort) == remedies.end()) throw;
+    const analytics::CohortDatabase upgraded(path, analytics::CohortDatabase::Access::write);
+    return {std::make_shared<const CohortDocument>(path), true};
+  }
 }
 
-DashboardWindow::DashboardWindow(const AssessProgram& program, const std::vector<std::filesystem::path>& assetFolders,
-                                 QWidget* parent)
-    : QMainWindow(parent),
-      problem_(parts::selectableLabel("problem")),
+DashboardWindow::DashboardWindow(const AssessProgram& program, const std::vector<std::filesystem::path>& assetFolders)
+    : problem_(parts::selectableLabel("problem")),
       stack_(new QStackedWidget),
       greeting_(new GreetingPage(program)),
       tabs_(new QTabWidget),
@@ -235,53 +228,53 @@ void DashboardWindow::setDocument(std::shared_ptr<const CohortDocument> document
   emit documentShown();
 }
 
-bool DashboardWindow::takeOpened(const Opened& opened) {
-  if (!opened.document) {
-    showProblem(opened.fault);
-    return false;
-  }
+bool DashboardWindow::tryTo(const std::function<void()>& call) {
+  const QString fault = faultOf(call);
+  if (!fault.isEmpty()) showProblem(fault);
+  return fault.isEmpty();
+}
+
+void DashboardWindow::takeOpened(const Opened& opened) {
   loader_.forget();  // the former one, read again
   setDocument(opened.document);
   if (opened.upgraded)
     showProblem("This cohort was of an older Calot and has been brought up to date. A copy as it was is beside it.");
-  return true;
 }
 
 bool DashboardWindow::openDatabase(const QString& path) {
   opener_.forget();
-  return takeOpened(openOrUpgrade(path.toStdString()));
+  return tryTo([&] { takeOpened(openOrUpgrade(path.toStdString())); });
 }
 
 void DashboardWindow::openLater(const QString& path) {
   statusBar()->showMessage("Opening " + QFileInfo(path).fileName() + " …");
-  opener_.run([this, path = path.toStdString()] {
-    return [this, opened = openOrUpgrade(path)] {
-      statusBar()->clearMessage();
-      takeOpened(opened);
-    };
-  });
+  opener_.run(
+      [this, path = path.toStdString()] {
+        return [this, opened = openOrUpgrade(path)] {
+          statusBar()->clearMessage();
+          takeOpened(opened);
+        };
+      },
+      [this](const QString& reason) {
+        statusBar()->clearMessage();
+        showProblem(reason);
+      });
 }
 
 bool DashboardWindow::createDatabase(const QString& path) {
-  const QString fault = faultOf(
-      [&] { const analytics::CohortDatabase made(path.toStdString(), analytics::CohortDatabase::Access::create); });
-  if (fault.isEmpty()) return openDatabase(path);
-  showProblem(fault);
-  return false;
+  const auto create = [&] {
+    const analytics::CohortDatabase made(path.toStdString(), analytics::CohortDatabase::Access::create);
+  };
+  return tryTo(create) && openDatabase(path);
 }
 
 void DashboardWindow::reload() {
   if (!document_) return;
-  loader_.run([this, path = document_->path()] {
-    std::shared_ptr<const CohortDocument> document;
-    const QString fault = faultOf([&] { document = std::make_shared<const CohortDocument>(path); });
-    return [this, document, fault] {
-      if (document)
-        setDocument(document);
-      else
-        showProblem(fault);
-    };
-  });
+  loader_.run(
+      [this, path = document_->path()] {
+        return [this, document = std::make_shared<const CohortDocument>(path)] { setDocument(document); };
+      },
+      [this](const QString& fault) { showProblem(fault); });
 }
 
 void DashboardWindow::importRecordings(const QStringList& paths) {

@@ -36,8 +36,7 @@ class DashboardWindow : public QMainWindow {
  public:
   /// @param program what imports recordings
   /// @param assetFolders that may hold forms (recorder::ProgramFiles)
-  explicit DashboardWindow(const AssessProgram& program, const std::vector<std::filesystem::path>& assetFolders = {},
-                           QWidget* parent = nullptr);
+  explicit DashboardWindow(const AssessProgram& program, const std::vector<std::filesystem::path>& assetFolders = {});
   ~DashboardWindow() override;
 
   /// Shows an open document. @pre not null
@@ -90,8 +89,9 @@ class DashboardWindow : public QMainWindow {
   void focusPage();  ///< puts the keyboard where the page begins
   void openAttempt(const QString& uuid);
   struct Opened;
-  static Opened openOrUpgrade(const std::string& path);  ///< any thread
-  bool takeOpened(const Opened& opened);                 ///< @return true if there is a document
+  static Opened openOrUpgrade(const std::string& path);  ///< any thread @throws Error
+  void takeOpened(const Opened& opened);
+  bool tryTo(const std::function<void()>& call);  ///< shows a fault as a problem @return false if there was one
   void askForNewDatabase();
   void askForRecordings();
   void askForExclusion();

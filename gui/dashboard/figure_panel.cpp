@@ -29,9 +29,8 @@ std::optional<double> MomentCycle::next(const analytics::FigureMoments& figure) 
   return std::max(0.0, moments[at_].begin - leadIn);
 }
 
-FigurePanel::FigurePanel(QWidget* parent)
-    : QWidget(parent),
-      norm_(parts::named("norm", new QComboBox)),
+FigurePanel::FigurePanel()
+    : norm_(parts::named("norm", new QComboBox)),
       verdict_(parts::plainLabel("verdict-of-norm")),
       sheet_(parts::named("grade-sheet", new QPushButton("Gr&ade sheet …"))),
       onePage_(parts::named("one-page", new QPushButton("&One page …"))),

@@ -45,7 +45,7 @@ class MomentCycle {
 class FigurePanel : public QWidget {
   Q_OBJECT
  public:
-  explicit FigurePanel(QWidget* parent = nullptr);
+  FigurePanel();
 
   /// Reads and shows the figures; their moments and the events are still to come. @pre not null
   void setAttempt(std::shared_ptr<const CohortDocument> document, const analytics::AttemptRow& attempt);

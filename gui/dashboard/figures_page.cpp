@@ -9,9 +9,8 @@
 
 namespace calot::gui {
 
-FiguresPage::FiguresPage(const std::string& prefix, PlotView* chart, QWidget* parent)
-    : CohortPage(parent),
-      figure_(parts::choice((prefix + "figure").c_str(), 13)),
+FiguresPage::FiguresPage(const std::string& prefix, PlotView* chart)
+    : figure_(parts::choice((prefix + "figure").c_str(), 13)),
       key_(parts::choice((prefix + "key").c_str(), 13)),
       chart_(chart),
       caption_(parts::plainLabel((prefix + "caption").c_str())) {
@@ -23,26 +22,26 @@ FiguresPage::FiguresPage(const std::string& prefix, PlotView* chart, QWidget* pa
 void FiguresPage::read() {
   ready_ = false;
   caption_->setText("Reading the values …");
-  background_.run([this, document = document_]() -> Background::Completion {
-    std::shared_ptr<const FigureValues> values;
-    const QString fault = faultOf([&] { values = document->figureValues(); });
-    return [this, values, fault] {
-      if (!fault.isEmpty()) emit problem(fault);
-      values_ = values;
-      ready_ = true;
-      QStringList titles;
-      if (values_) {
-        for (const Figure& f : values_->figures()) titles += figureTitle(f.name, f.subject);
-      }
-      refill(*figure_, titles);
-      fillChoices();
-      redraw();
-    };
-  });
+  const auto take = [this](const std::shared_ptr<const FigureValues>& values) {
+    values_ = values;
+    ready_ = true;
+    QStringList titles;
+    if (values_) {
+      for (const Figure& f : values_->figures()) titles += figureTitle(f.name, f.subject);
+    }
+    refill(*figure_, titles);
+    fillChoices();
+    redraw();
+  };
+  background_.run([take, document = document_] { return [take, values = document->figureValues()] { take(values); }; },
+                  [this, take](const QString& fault) {
+                    emit problem(fault);
+                    take(nullptr);
+                  });
 }
 
-ComparePage::ComparePage(QWidget* parent)
-    : FiguresPage("", new PlotView("comparison-chart", "Attempts by group"), parent),
+ComparePage::ComparePage()
+    : FiguresPage("", new PlotView("comparison-chart", "Attempts by group")),
       groupBy_(parts::choice("group-by", 13)),
       synthetic_(parts::named("synthetic", new QCheckBox("&Synthetic attempts"))) {
   // Keys are long: they have a line of their own.
@@ -106,8 +105,8 @@ QString curveText(const TraineeHistory& history) {
 
 }  // namespace
 
-TraineePage::TraineePage(QWidget* parent)
-    : FiguresPage("trainee-", new PlotView("history-chart", "A figure over the attempts"), parent),
+TraineePage::TraineePage()
+    : FiguresPage("trainee-", new PlotView("history-chart", "A figure over the attempts")),
       trainee_(parts::choice("trainee", 13)),
       goal_(parts::plainLabel("trainee-goal")),
       tasks_(makeTextTable({"Task", "Attempts", "First", "Last", "Last started"}, "trainee-tasks",

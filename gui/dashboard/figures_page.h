@@ -22,7 +22,7 @@ class FiguresPage : public CohortPage {
 
  protected:
   /// Makes its widgets, which the page puts into its layout. @param prefix of their names
-  FiguresPage(const std::string& prefix, PlotView* chart, QWidget* parent);
+  FiguresPage(const std::string& prefix, PlotView* chart);
 
   /// The document's values were read, or could not be: fills the choices other than the figure's, quietly.
   virtual void fillChoices() = 0;
@@ -45,7 +45,7 @@ class FiguresPage : public CohortPage {
 class ComparePage : public FiguresPage {
   Q_OBJECT
  public:
-  explicit ComparePage(QWidget* parent = nullptr);
+  ComparePage();
 
  private:
   void fillChoices() override;
@@ -59,7 +59,7 @@ class ComparePage : public FiguresPage {
 class TraineePage : public FiguresPage {
   Q_OBJECT
  public:
-  explicit TraineePage(QWidget* parent = nullptr);
+  TraineePage();
 
  private:
   void fillChoices() override;

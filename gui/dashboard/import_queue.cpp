@@ -80,7 +80,7 @@ QStringList recordingsIn(const QStringList& paths) {
   return files;
 }
 
-ImportQueue::ImportQueue(AssessProgram how, QObject* parent) : QObject(parent), how_(std::move(how)) {
+ImportQueue::ImportQueue(AssessProgram how) : how_(std::move(how)) {
   process_.setChildProcessModifier([] { stepBack(behindInterface); });
   connect(&process_, &QProcess::readyReadStandardOutput, this, [this] { collect(); });
   connect(&process_, &QProcess::readyReadStandardError, this, [this] { collect(); });
@@ -159,9 +159,8 @@ void ImportQueue::finishCurrent(ImportResult result) {
   });
 }
 
-ImportPanel::ImportPanel(ImportQueue& queue, QWidget* parent)
-    : QWidget(parent),
-      queue_(queue),
+ImportPanel::ImportPanel(ImportQueue& queue)
+    : queue_(queue),
       text_(parts::plainLabel("import-text", false)),
       bar_(parts::named("import-progress", new QProgressBar)),
       stop_(parts::named("import-stop", new QPushButton("Stop importin&g"))),
@@ -208,9 +207,8 @@ void ImportPanel::addResult(const ImportResult& result) {
   results_->scrollToItem(item);
 }
 
-GreetingPage::GreetingPage(AssessProgram program, QWidget* parent)
-    : QWidget(parent),
-      program_(std::move(program)),
+GreetingPage::GreetingPage(AssessProgram program)
+    : program_(std::move(program)),
       title_(parts::plainLabel("greeting-title", false)),
       text_(parts::selectableLabel("greeting")) {
   parts::enlarge(title_, 1.8);

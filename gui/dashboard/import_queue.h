@@ -52,7 +52,7 @@ class ImportQueue : public QObject {
   Q_OBJECT
  public:
   /// @param how the program is called
-  explicit ImportQueue(AssessProgram how, QObject* parent = nullptr);
+  explicit ImportQueue(AssessProgram how);
   ~ImportQueue() override;
 
   /// Sets program and database for the next recordings. @pre not busy()
@@ -95,7 +95,7 @@ class ImportPanel : public QWidget {
   Q_OBJECT
  public:
   /// @param queue outlives the panel
-  explicit ImportPanel(ImportQueue& queue, QWidget* parent = nullptr);
+  explicit ImportPanel(ImportQueue& queue);
 
  private:
   void showProgress();
@@ -114,7 +114,7 @@ class ImportPanel : public QWidget {
 class GreetingPage : public QWidget {
   Q_OBJECT
  public:
-  explicit GreetingPage(AssessProgram program, QWidget* parent = nullptr);
+  explicit GreetingPage(AssessProgram program);
   void explainNoDatabase();
   void explainEmptyDatabase(const QString& fileName);
 

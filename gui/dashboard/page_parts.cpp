@@ -161,9 +161,8 @@ bool CohortPage::tryTo(const std::function<void()>& call) {
   return fault.isEmpty();
 }
 
-AttemptBanner::AttemptBanner(QWidget* parent)
-    : QWidget(parent),
-      watermark_(parts::selectableLabel("watermark")),
+AttemptBanner::AttemptBanner()
+    : watermark_(parts::selectableLabel("watermark")),
       identity_(parts::selectableLabel("identity")),
       badge_(parts::selectableLabel("badge")) {
   watermark_->setText("SYNTHETIC — made by a performer");

@@ -69,7 +69,6 @@ struct GroupFields {
 class CohortPage : public QWidget {
   Q_OBJECT
  public:
-  using QWidget::QWidget;
   /// @pre not null
   virtual void setDocument(std::shared_ptr<const CohortDocument> document);
   /// Puts the keyboard where one begins. No focus proxy: Tab would pass over what stands before it.
@@ -102,7 +101,7 @@ class CohortPage : public QWidget {
 class AttemptBanner : public QWidget {
   Q_OBJECT
  public:
-  explicit AttemptBanner(QWidget* parent = nullptr);
+  AttemptBanner();
   void showAttempt(const analytics::AttemptRow& attempt);
   /// For half a window: the mark of performers in one word.
   void makeNarrow();

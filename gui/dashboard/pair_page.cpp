@@ -26,8 +26,8 @@ constexpr double farAway = 0.25;  // s (times speed) that a side may be off befo
 
 }  // namespace
 
-PairSide::PairSide(const QString& name, QWidget* parent)
-    : RecordingView({.transport = false}, parent), choice_(parts::choice("", 20)), banner_(new AttemptBanner) {
+PairSide::PairSide(const QString& name)
+    : RecordingView({.transport = false}), choice_(parts::choice("", 20)), banner_(new AttemptBanner) {
   choice_->setObjectName(name + "-attempt");
   choice_->setAccessibleName("Attempt on the " + name);
   banner_->makeNarrow();
@@ -112,9 +112,8 @@ std::vector<Phase> commonPhases(const AttemptTrack& a, const AttemptTrack& b) {
   return phases;
 }
 
-PairPage::PairPage(QWidget* parent)
-    : CohortPage(parent),
-      sides_{new PairSide("left"), new PairSide("right")},
+PairPage::PairPage()
+    : sides_{new PairSide("left"), new PairSide("right")},
       traces_(new TraceChart("pair-traces", "Both attempts: left solid, right dashed")),
       trace_(parts::choice("pair-trace", 10)),
       from_(parts::choice("align", 13)),

@@ -19,7 +19,7 @@ class PairSide : public RecordingView {
   Q_OBJECT
  public:
   /// @param name of the choice: "left" or "right"
-  explicit PairSide(const QString& name, QWidget* parent = nullptr);
+  explicit PairSide(const QString& name);
 
   /// Lists the document's attempts, the newest first, keeps the one that is chosen, and opens it.
   /// @pre not null
@@ -73,7 +73,7 @@ std::vector<Phase> commonPhases(const AttemptTrack& a, const AttemptTrack& b);
 class PairPage : public CohortPage {
   Q_OBJECT
  public:
-  explicit PairPage(QWidget* parent = nullptr);
+  PairPage();
   /// Puts an attempt on one side: 0 left, 1 right.
   void setAttempt(std::size_t side, const std::string& uuid);
   /// If a side is still free: puts the newest attempts on both.

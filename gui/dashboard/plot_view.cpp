@@ -33,7 +33,7 @@ QColor onScreen(const QColor& colour) {
   return QColor::fromHslF(std::max(0.0F, hue), saturation, ground + (0.96F - ground) * (1.0F - lightness));
 }
 
-PlotView::PlotView(const char* name, const char* spokenName, QWidget* parent) : QWidget(parent) {
+PlotView::PlotView(const char* name, const char* spokenName) {
   setObjectName(name);
   setAccessibleName(spokenName);
   setFocusPolicy(Qt::StrongFocus);

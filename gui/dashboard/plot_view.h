@@ -18,7 +18,7 @@ class PlotView : public QWidget {
   Q_PROPERTY(bool watermark READ hasWatermark)
  public:
   using Draw = std::function<std::optional<analytics::Drawing>(const analytics::PlotFrame& frame)>;
-  PlotView(const char* name, const char* spokenName, QWidget* parent = nullptr);
+  PlotView(const char* name, const char* spokenName);
   /// @param draw called again when size or letters change; without a drawing, the title stands alone
   void show(const QString& title, Draw draw, bool synthetic = false);
   /// Title alone.

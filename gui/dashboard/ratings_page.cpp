@@ -103,9 +103,8 @@ QString scoreText(const analytics::RatingForm& form, int score) {
 
 }  // namespace
 
-RatingPage::RatingPage(QWidget* parent)
-    : CohortPage(parent),
-      choice_(parts::choice("form", 12)),
+RatingPage::RatingPage()
+    : choice_(parts::choice("form", 12)),
       source_(parts::plainLabel("form-source")),
       banner_(new AttemptBanner),
       raterLabel_(new QLabel("Rated b&y")),

@@ -19,8 +19,7 @@ namespace calot::gui {
 class RatingPage : public CohortPage {
   Q_OBJECT
  public:
-  explicit RatingPage(QWidget* parent = nullptr);
-  [[nodiscard]] quint64 replayShown() const { return replay_->picture().shown(); }  ///< pictures so far
+  RatingPage();
   /// True if the replay stands where it was sent to, or there is none.
   [[nodiscard]] bool settled() const { return replay_->settled(); }
   /// Offers the forms in `forms/` of these folders, best first (recorder::ProgramFiles).

@@ -18,9 +18,8 @@ auto stepsOf(LongWork::Control& control) {
 
 }  // namespace
 
-RecordingView::RecordingView(Parts with, QWidget* parent)
-    : QWidget(parent),
-      reads_(with.timeline),
+RecordingView::RecordingView(Parts with)
+    : reads_(with.timeline),
       picture_(new ScenePictureWidget),
       timeline_(new TimelineBar),
       replay_(std::make_unique<Replay>(

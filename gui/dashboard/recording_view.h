@@ -29,7 +29,7 @@ class RecordingView : public QWidget {
     bool transport = true, timeline = true;  ///< without a timeline nothing is read
   };
 
-  explicit RecordingView(Parts with, QWidget* parent = nullptr);
+  explicit RecordingView(Parts with);
   ~RecordingView() override;
 
   /// Finds the attempt's recording beside the cohort or in a folder that is known, and opens it.
@@ -41,7 +41,6 @@ class RecordingView : public QWidget {
 
   [[nodiscard]] Replay& replay() const { return *replay_; }
   [[nodiscard]] bool isOpen() const { return replay_->isOpen(); }
-  [[nodiscard]] const ScenePictureWidget& picture() const { return *picture_; }
   [[nodiscard]] TimelineBar& timeline() const { return *timeline_; }
   [[nodiscard]] const std::filesystem::path& file() const { return file_; }          ///< that was opened last, or empty
   [[nodiscard]] const std::optional<AttemptTrack>& track() const { return track_; }  ///< once it was read

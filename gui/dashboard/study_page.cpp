@@ -112,9 +112,8 @@ struct StudyPage::Computed {
   WindowsText text;
 };
 
-StudyPage::StudyPage(QWidget* parent)
-    : CohortPage(parent),
-      fields_{parts::choice("study-group-by", 8),
+StudyPage::StudyPage()
+    : fields_{parts::choice("study-group-by", 8),
               parts::choice("study-first", 6),
               parts::choice("study-second", 6),
               parts::choice("study-key", 6),

@@ -16,7 +16,7 @@ class PlotView;
 class StudyPage : public CohortPage {
   Q_OBJECT
  public:
-  explicit StudyPage(QWidget* parent = nullptr);
+  StudyPage();
   /// Writes what is shown, on another thread: as HTML, or CSV into a folder; what is there is replaced.
   void write(const QString& target, bool html);
   [[nodiscard]] bool busy() const { return work_.busy(); }  ///< computing, or writing

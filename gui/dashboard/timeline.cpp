@@ -65,7 +65,7 @@ double timeInterval(double seconds) {
 
 }  // namespace
 
-TimelineBar::TimelineBar(QWidget* parent) : QWidget(parent) {
+TimelineBar::TimelineBar() {
   setObjectName("timeline");
   setAccessibleName("Timeline of phases and events");
   setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
@@ -204,8 +204,7 @@ double axisTop(double largest) {
   return 10.0 * power;
 }
 
-TraceChart::TraceChart(const QString& name, QString title, QWidget* parent)
-    : QWidget(parent), title_(std::move(title)) {
+TraceChart::TraceChart(const QString& name, QString title) : title_(std::move(title)) {
   setObjectName(name);
   setAccessibleName(title_);
   setAttribute(Qt::WA_OpaquePaintEvent);

@@ -35,7 +35,7 @@ struct TimeScale {
 class TimelineBar : public QWidget {
   Q_OBJECT
  public:
-  explicit TimelineBar(QWidget* parent = nullptr);
+  TimelineBar();
   void setTrack(AttemptTrack track);
   /// Text shown without a track.
   void setText(const QString& text);
@@ -72,7 +72,7 @@ class TimelineBar : public QWidget {
 class TraceChart : public QWidget {
   Q_OBJECT
  public:
-  TraceChart(const QString& name, QString title, QWidget* parent = nullptr);
+  TraceChart(const QString& name, QString title);
   /// @param values per hand, in bins of `bin` seconds; in the displayed unit
   void setTraces(double seconds, double bin, std::array<std::vector<double>, handCount> values);
   void clear() { setTraces(0.0, 1.0, {}); }

@@ -25,7 +25,6 @@
 #include "gui/dashboard/pair_page.h"
 #include "gui/dashboard/ratings_page.h"
 #include "gui/dashboard/study_page.h"
-#include "recorder/base/errors.h"
 
 namespace calot::gui {
 namespace {
@@ -130,12 +129,6 @@ void waitFor(const std::function<bool()>& condition) {
     else if (since < 0)
       since = clock.elapsed();
   }
-}
-
-void savePicture(QWidget& page, const QString& file) {
-  QCoreApplication::processEvents();
-  if (!page.grab().save(file, "PNG"))
-    throw Error(ErrorKind::failure, Where{file.toStdString()}, "cannot write the picture; does the folder exist?");
 }
 
 }  // namespace
@@ -244,10 +237,7 @@ void DashboardWindow::askForTag(bool add) {
                                             words, 0, add, &agreed)
                           .trimmed();
   if (!agreed || tag.isEmpty()) return;
-  if (const QString fault = faultOf([&] { analytics::checkTag(tag.toStdString()); }); !fault.isEmpty()) {
-    showProblem(fault);
-    return;
-  }
+  if (!tryTo([&] { analytics::checkTag(tag.toStdString()); })) return;
   settings::setPerson(by);
   tagSelected(tag, add, by);
 }
@@ -265,7 +255,7 @@ void DashboardWindow::savePictures(const QString& folder) {
   const auto save = [&](QWidget* page, const char* name, const std::function<bool()>& ready) {
     if (page != nullptr) tabs_->setCurrentWidget(page);
     waitFor(ready);
-    savePicture(*this, folder + '/' + name);
+    parts::savePicture(*this, folder + '/' + name);
   };
   const auto atOnce = [] { return true; };
   if (stack_->currentWidget() == greeting_) {
@@ -293,7 +283,7 @@ void DashboardWindow::savePictures(const QString& folder) {
   const auto saveDialog = [&](QDialog& dialog, const char* name) {
     dialog.show();
     waitFor(atOnce);
-    savePicture(dialog, folder + '/' + name);
+    parts::savePicture(dialog, folder + '/' + name);
     dialog.hide();
   };
   NormDialog norm(document_, {}, this);

@@ -189,9 +189,8 @@ using parts::button;
 using parts::say;
 using parts::selectableLabel;
 
-EndPage::EndPage(Setup setup, QWidget* parent)
-    : QWidget(parent),
-      setup_(std::move(setup)),
+EndPage::EndPage(Setup setup)
+    : setup_(std::move(setup)),
       title_(selectableLabel("endTitle")),
       syntheticMark_(selectableLabel("endSynthetic")),
       outcome_(selectableLabel("endOutcome")),
@@ -308,20 +307,17 @@ void EndPage::replayMoment() {
 void EndPage::read() {
   if (setup_.mode != recorder::Mode::practice) return;
   reading_ = true;
-  background_.run([this, file = file_, cohort = setup_.cohort, earlier = earlier_]() -> Background::Completion {
-    try {
-      AttemptFacts facts = readFacts(file, cohort);
-      std::optional<AttemptFacts> before = previousInCohort(facts, cohort);
-      const bool comparable = earlier && earlier->attempt.comparabilityKey == facts.attempt.comparabilityKey &&
-                              earlier->attempt.synthetic == facts.attempt.synthetic;
-      if (comparable && (!before || before->attempt.startUtc < earlier->attempt.startUtc)) before = earlier;
-      return [this, report = reportOf(std::move(facts), before, normsOf(cohort))] { showReport(report); };
-    } catch (const std::exception& error) {
-      return [this, text = QString::fromStdString(problemText(error))] {
-        reading_ = false;
-        say(norm_, "No figures: " + text);
-      };
-    }
+  const auto job = [this, file = file_, cohort = setup_.cohort, earlier = earlier_] {
+    AttemptFacts facts = readFacts(file, cohort);
+    std::optional<AttemptFacts> before = previousInCohort(facts, cohort);
+    const bool comparable = earlier && earlier->attempt.comparabilityKey == facts.attempt.comparabilityKey &&
+                            earlier->attempt.synthetic == facts.attempt.synthetic;
+    if (comparable && (!before || before->attempt.startUtc < earlier->attempt.startUtc)) before = earlier;
+    return [this, report = reportOf(std::move(facts), before, normsOf(cohort))] { showReport(report); };
+  };
+  background_.run(job, [this](const QString& reason) {
+    reading_ = false;
+    say(norm_, "No figures: " + reason);
   });
 }
 

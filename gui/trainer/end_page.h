@@ -74,7 +74,7 @@ class EndPage : public QWidget {
     std::filesystem::path cohort;  ///< may not exist yet; empty: none
     unsigned threads = 1;          ///< of the verification
   };
-  explicit EndPage(Setup setup, QWidget* parent = nullptr);
+  explicit EndPage(Setup setup);
   ~EndPage() override;
 
   /// @param status of an attempt that has ended @param result what the panel says of it @param next there is a task

@@ -137,9 +137,8 @@ QPointF PointerTrack::moved(QPointF now) {
 
 using recorder::MouseControl;
 
-OperationView::OperationView(std::shared_ptr<recorder::MouseInput> mouse, std::shared_ptr<recorder::ScopeInput> scope,
-                             QWidget* parent)
-    : ScenePictureWidget(parent, drawersAtOnce, wantedRate),
+OperationView::OperationView(std::shared_ptr<recorder::MouseInput> mouse, std::shared_ptr<recorder::ScopeInput> scope)
+    : ScenePictureWidget(drawersAtOnce, wantedRate),
       mouse_(std::move(mouse)),
       scope_(std::move(scope)),
       over_(parts::plainLabel("over", false)) {

@@ -76,7 +76,7 @@ class OperationView : public ScenePictureWidget {
   /// @param mouse null: another device drives; keys still exchange instruments and hold the run
   /// @param scope null: the endoscope is fixed, or held by another
   explicit OperationView(std::shared_ptr<recorder::MouseInput> mouse,
-                         std::shared_ptr<recorder::ScopeInput> scope = nullptr, QWidget* parent = nullptr);
+                         std::shared_ptr<recorder::ScopeInput> scope = nullptr);
   ~OperationView() override;
 
   /// True if a run accepts input.

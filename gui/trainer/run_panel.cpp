@@ -73,9 +73,8 @@ std::optional<double> chosenBranch(const QListWidget& list) {
   return item == nullptr ? std::nullopt : std::optional(item->data(Qt::UserRole).toDouble());
 }
 
-RunPanel::RunPanel(recorder::Mode mode, bool mouse, bool scope, QWidget* parent)
-    : QWidget(parent),
-      mode_(mode),
+RunPanel::RunPanel(recorder::Mode mode, bool mouse, bool scope)
+    : mode_(mode),
       stage_(plainLabel("stage", false)),
       modeLabel_(plainLabel("mode", false)),
       time_(plainLabel("time", false)),

@@ -33,7 +33,7 @@ class RunPanel : public QWidget {
   Q_OBJECT
  public:
   /// @param mouse both hands are driven by mouse and keyboard @param scope keys move the endoscope
-  RunPanel(recorder::Mode mode, bool mouse, bool scope, QWidget* parent = nullptr);
+  RunPanel(recorder::Mode mode, bool mouse, bool scope);
 
   void show(const TrainingStatus& status, const PanelText& text, double stepSeconds);
 

@@ -77,9 +77,8 @@ QString titleOf(const SceneChoice& scene, std::size_t number) {
 
 }  // namespace
 
-ScenesPage::ScenesPage(bool practice, bool demonstrates, QWidget* parent)
-    : QWidget(parent),
-      list_(parts::named("scenes", new QListWidget)),
+ScenesPage::ScenesPage(bool practice, bool demonstrates)
+    : list_(parts::named("scenes", new QListWidget)),
       past_(parts::named("past", new QListWidget)),
       pastTitle_(parts::plainLabel("pastTitle")),
       pastSide_(parts::boxed(parts::column({pastTitle_, {past_, 1}}))),

@@ -53,7 +53,7 @@ class ScenesPage : public QWidget {
   Q_OBJECT
  public:
   /// @param practice the controls can be learnt @param demonstrates a performer can be watched
-  ScenesPage(bool practice, bool demonstrates, QWidget* parent = nullptr);
+  ScenesPage(bool practice, bool demonstrates);
   void setScenes(const std::vector<SceneChoice>& scenes);
   /// @param history none: nobody's is known
   void setHistory(std::optional<std::vector<PastAttempt>> history);

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <chrono>
 #include <iterator>
-#include <QCoreApplication>
 #include <QEvent>
 #include <QLabel>
 #include <QMenuBar>
@@ -26,9 +25,8 @@ constexpr int refreshPeriod = 50;  // ms
 constexpr int faultShown = 10000;  // ms, of what stops no attempt
 }  // namespace
 
-TrainerWindow::TrainerWindow(TrainerSetup setup, QWidget* parent)
-    : QMainWindow(parent),
-      setup_(std::move(setup)),
+TrainerWindow::TrainerWindow(TrainerSetup setup)
+    : setup_(std::move(setup)),
       problem_(parts::selectableLabel("problem")),
       stack_(new QStackedWidget),
       scenes_(
@@ -193,13 +191,11 @@ void TrainerWindow::nextTask() {
 void TrainerWindow::readHistory() {
   const std::string& participant = setup_.settings.attempt.participant;
   if (setup_.cohort.empty() || participant.empty()) return;
-  background_.run([this, cohort = setup_.cohort, participant]() -> Background::Completion {
-    try {
-      return [this, history = historyIn(cohort, participant)]() mutable { scenes_->setHistory(std::move(history)); };
-    } catch (const std::exception& error) {
-      return [this, text = QString::fromStdString(problemText(error))] { showProblem(text); };
-    }
-  });
+  background_.run(
+      [this, cohort = setup_.cohort, participant] {
+        return [this, history = historyIn(cohort, participant)] { scenes_->setHistory(history); };
+      },
+      [this](const QString& reason) { showProblem(reason); });
 }
 
 void TrainerWindow::togglePause() {
@@ -240,10 +236,7 @@ void TrainerWindow::mount(InstrumentKind instrument, bool otherHand) {
   session_->mount(otherHand ? (own == Hand::right ? Hand::left : Hand::right) : own, instrument);
 }
 
-void TrainerWindow::showProblem(const QString& message) {
-  problem_->setText(message);
-  problem_->setVisible(!message.isEmpty());
-}
+void TrainerWindow::showProblem(const QString& message) { parts::say(problem_, message); }
 
 void TrainerWindow::setAloud(bool on) {
   const auto fail = [this](const QString& why) {
@@ -284,10 +277,8 @@ void TrainerWindow::refresh() {
   }
   panel_->show(status, text, tickLength * scene.ticksPerStep);
   if (status.stage == Stage::ended && status.attempt != ended_) showEnd(status, text.result);
-  if (status.problem != "" || !end_->isVisible()) {
-    const QString problem = status.problem.empty() ? voiceFault_ : QString::fromStdString(status.problem);
-    if (problem != problem_->text() || problem.isEmpty() == problem_->isVisible()) showProblem(problem);
-  }
+  if (!status.problem.empty() || !end_->isVisible())
+    showProblem(status.problem.empty() ? voiceFault_ : QString::fromStdString(status.problem));
 }
 
 void TrainerWindow::showEnd(const TrainingStatus& status, const QString& result) {
@@ -295,12 +286,6 @@ void TrainerWindow::showEnd(const TrainingStatus& status, const QString& result)
   if (status.figures.ticks == 0) return;
   stack_->setCurrentWidget(end_);
   end_->showAttempt(status, result, tickLength * session_->scene().ticksPerStep, taskAfterThis().has_value());
-}
-
-void TrainerWindow::savePicture(const QString& file) {
-  QCoreApplication::processEvents();
-  if (!grab().save(file, "PNG"))
-    throw Error(ErrorKind::failure, Where{file.toStdString()}, "cannot write the picture; does the folder exist?");
 }
 
 void TrainerWindow::buildMenus() {

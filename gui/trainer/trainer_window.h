@@ -44,7 +44,7 @@ struct TrainerSetup {
 class TrainerWindow : public QMainWindow {
   Q_OBJECT
  public:
-  explicit TrainerWindow(TrainerSetup setup, QWidget* parent = nullptr);
+  explicit TrainerWindow(TrainerSetup setup);
   /// Ends what runs; its recording is whole.
   ~TrainerWindow() override;
 
@@ -65,9 +65,6 @@ class TrainerWindow : public QMainWindow {
 
   /// Sets whether announcements are read aloud. A failure is shown on the window.
   void setAloud(bool on);
-
-  /// Writes a PNG of what is seen. @throws calot::Error (failure)
-  void savePicture(const QString& file);
 
  public slots:
   void refresh();

@@ -161,7 +161,7 @@ void PictureLoop::run() {
   }
 }
 
-ScenePictureWidget::ScenePictureWidget(QWidget* parent, std::size_t drawers, double rate) : QWidget(parent) {
+ScenePictureWidget::ScenePictureWidget(std::size_t drawers, double rate) {
   setObjectName("scene");
   setAccessibleName("Picture of the scene");
   setAttribute(Qt::WA_OpaquePaintEvent);

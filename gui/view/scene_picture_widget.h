@@ -122,7 +122,7 @@ class ScenePictureWidget : public QWidget {
  public:
   /// @param drawers how many views are drawn at a time. @param rate pictures a second that are worth a smaller size,
   /// which is scaled up on the screen; 0: none (PictureLoop)
-  explicit ScenePictureWidget(QWidget* parent = nullptr, std::size_t drawers = 1, double rate = 0.0);
+  explicit ScenePictureWidget(std::size_t drawers = 1, double rate = 0.0);
   ~ScenePictureWidget() override;
 
   /// Any thread; returns at once. @pre not null, changed by nobody any more

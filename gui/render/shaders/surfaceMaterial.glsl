@@ -29,7 +29,7 @@ float vessels(vec3 p, vec4 net, float width) {
   return net.w * (1.0 - smoothstep(0.35 * w, w, away));
 }
 
-// Branching veins (procedural_textures.h), from three sides; p in textures. Trunks run along y.
+// Branching veins (scene_resources.h), from three sides; p in textures. Trunks run along y.
 uniform sampler2D veinMap;
 float veins(vec3 p, vec3 normal) {
   vec3 side = normal * normal;

@@ -319,7 +319,8 @@ TEST_F(Instructor, RatesBlindedBesideTheReplayKeepsADraftAndGoesOnByKey) {
     EXPECT_FALSE(child<QLabel>(page, "identity")->isVisible()) << "blinded";
     child<QCheckBox>(page, "reveal")->click();
     EXPECT_TRUE(child<QLabel>(page, "identity")->isVisible()) << "unless asked otherwise";
-    ASSERT_TRUE(QTest::qWaitFor([&] { return page.replayShown() > 0; }, patience)) << "beside the replay";
+    ASSERT_TRUE(QTest::qWaitFor([&] { return page.findChild<ScenePictureWidget*>()->shown() > 0; }, patience))
+        << "beside the replay";
     child<QRadioButton>(page, "efficiency=3")->click();
   }
   const auto window = opened();

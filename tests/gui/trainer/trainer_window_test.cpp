@@ -14,6 +14,7 @@
 #include <QTest>
 
 #include "analytics/cohort/cohort_database.h"
+#include "gui/attempt/widget_parts.h"
 #include "gui/trainer/end_page.h"
 #include "gui/trainer/operation_view.h"
 #include "gui/trainer/run_panel.h"
@@ -587,9 +588,9 @@ TEST_F(Trainer, AnAssessmentSaysThatTheHandsAreLetGo) {
 
 TEST_F(Trainer, ThePictureIsSavedOrTheFolderNamed) {
   TrainerWindow& window = open();
-  window.savePicture(QString::fromStdString((folder_ / "a.png").string()));
+  parts::savePicture(window, QString::fromStdString((folder_ / "a.png").string()));
   EXPECT_FALSE(QImage(QString::fromStdString((folder_ / "a.png").string())).isNull());
-  expectFault(ErrorKind::failure, "", {"/nowhere/a.png"}, [&] { window.savePicture("/nowhere/a.png"); });
+  expectFault(ErrorKind::failure, "", {"/nowhere/a.png"}, [&] { parts::savePicture(window, "/nowhere/a.png"); });
 }
 
 }  // namespace
