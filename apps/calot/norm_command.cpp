@@ -51,7 +51,7 @@ void judgeByAngoff(const AngoffOptions& o) {
     printTable(
         tableOf(
             "Probability that a borderline trainee passes", items,
-            {{"=item", "item", plain}, {"mean", "mean", share2}, {"least", "least", share2}, {"most", "most", share2}}),
+            {{"=item", "/item", plain}, {"mean", "/mean", share2}, {"least", "/least", share2}, {"most", "/most", share2}}),
         out);
     printWrapped(
         fmt::format(

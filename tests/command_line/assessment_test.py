@@ -169,6 +169,20 @@ class Ratings(Assessment):
         self.assertEqual(len(json.loads(self.well("rate", "--forms", "--json").out)["forms"]), 4)
 
 
+class Angoff(program.ProgramTest):
+    def test_the_mark_of_two_judges(self):
+        table = self.path("judges.csv")
+        table.write_text("judge,a,b,c\nx,.5,.6,.7\ny,.4,.8,.9\n")
+        answer = json.loads(self.well("norm", "angoff", table, "--json").out)
+        self.assertEqual([round(item["mean"], 12) for item in answer["items"]], [0.45, 0.7, 0.8])
+        self.assertAlmostEqual(answer["cut"], 1.95)
+        rows = [line.split() for line in self.well("norm", "angoff", table).out.splitlines()]
+        self.assertIn(["b", "0.70", "0.60", "0.80"], rows)
+        self.assertIn("at-least:2.", rows[-1])
+        table.write_text("judge,a\nx,1.5\n")
+        self.refused(4, "norm", "angoff", table, names=(table, "1.5"))
+
+
 class Grades(Assessment):
     def make(self, *more):
         return ("norm", "create", self.database, "pipeline", "--by", "test", "--group-by", "performer", "--include-synthetic", "--rule",

@@ -12,6 +12,7 @@
 #include <atomic>
 #include <future>
 #include <thread>
+#include <utility>
 
 #include "recorder/sources/devices/device_source.h"
 #include "recorder/sources/devices/openigtlink_device.h"
@@ -139,10 +140,11 @@ TEST(OpenIgtLinkServer, FeedsTheLibrarysClientAndOurSource) {
   settings.speed = 3.0;
   std::atomic<bool> stop{false};
   std::vector<std::string> told;
+  bool first = true;  // line: the address
   std::promise<int> listening;
   std::thread thread([&] {
     serveOpenIgtLink(motion, settings, stop, [&](const std::string& line) {
-      if (line.starts_with("listening on 127.0.0.1:")) {
+      if (std::exchange(first, false)) {
         listening.set_value(std::stoi(line.substr(line.rfind(':') + 1)));
       } else {
         told.push_back(line);
