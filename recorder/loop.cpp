@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <mutex>
 #include <optional>
 #include <utility>
 
@@ -79,6 +80,34 @@ AttemptHeader makeHeader(const Model& model, std::vector<Asset> assets, const Pr
 }
 
 namespace {
+
+/// A source with a watcher in a live run: one thread requests ticks, another reports steps. Sources are not
+/// thread-safe; this serialises the two.
+class GuardedSource final : public WrappedSource, private Observer {
+ public:
+  /// @param source outlives this; it has a watcher
+  explicit GuardedSource(SampleSource& source) : WrappedSource(source), watcher_(*source.watcher()) {}
+
+  bool next(std::uint64_t tick, TickSamples& out) override {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return source_.next(tick, out);
+  }
+  void rest() override {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    source_.rest();
+  }
+  [[nodiscard]] Observer* watcher() override { return this; }
+
+ private:
+  void onStep(const StepRecord& record) override {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    watcher_.onStep(record);
+  }
+  void onEnd(Outcome outcome) override { watcher_.onEnd(outcome); }
+
+  Observer& watcher_;
+  std::mutex mutex_;
+};
 
 double seconds(Nanoseconds t) { return std::chrono::duration<double>(t).count(); }
 

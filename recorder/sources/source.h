@@ -5,7 +5,6 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
-#include <mutex>
 #include <optional>
 #include <string>
 
@@ -147,34 +146,6 @@ class ControlledSource final : public WrappedSource {
   std::atomic<Outcome> finished_{Outcome::running};
   std::atomic<std::uint32_t> more_{0}, less_{0};  ///< requests that are still to be pressed
   bool pressed_ = false;                          ///< in the last tick; a new press follows a release
-};
-
-/// A source with a watcher in a live run: one thread requests ticks, another reports steps. Sources are not
-/// thread-safe; this serialises the two.
-class GuardedSource final : public WrappedSource, private Observer {
- public:
-  /// @param source outlives this; it has a watcher
-  explicit GuardedSource(SampleSource& source) : WrappedSource(source), watcher_(*source.watcher()) {}
-
-  bool next(std::uint64_t tick, TickSamples& out) override {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    return source_.next(tick, out);
-  }
-  void rest() override {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    source_.rest();
-  }
-  [[nodiscard]] Observer* watcher() override { return this; }
-
- private:
-  void onStep(const StepRecord& record) override {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    watcher_.onStep(record);
-  }
-  void onEnd(Outcome outcome) override { watcher_.onEnd(outcome); }
-
-  Observer& watcher_;
-  std::mutex mutex_;
 };
 
 /// Another source from its tick 0 on, whose hands and camera set out from where a recording left them: for `blendTime`
