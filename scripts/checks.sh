@@ -89,7 +89,7 @@ for stage in "${stages[@]}"; do
       configure release "${whole[@]}" -DBUILD_TESTING=ON
       build release calot
       configure clang "-DCALOT_OTHER=$root/build/release/bin/calot"
-      build clang calot calot-dashboard calot-trainer calot-matrix
+      build clang calot calot_modules calot-dashboard calot-trainer calot-matrix
       ctest --test-dir "$root/build/clang" --tests-regex '^command_line\.builds$' --output-on-failure --no-tests=error
       ;;
     asan-ubsan)

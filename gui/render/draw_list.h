@@ -86,7 +86,7 @@ struct SurfaceForm {
   void update(const SurfaceView& surface);
 };
 
-/// Appearances known to the shader. Their numbers are in shader_material.cpp.
+/// Appearances known to the shader. Their numbers are LOOK in shaders/surfaceMaterial.glsl.
 enum class Appearance : int {
   tissue = 0,
   liver = 1,

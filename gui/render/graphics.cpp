@@ -115,9 +115,10 @@ class EglContext final : public GraphicsContext {
 template <class Function>
 Function* osmesa(const char* name) {
   static void* const library = dlopen("libOSMesa.so.8", RTLD_NOW | RTLD_LOCAL);
-  if (library == nullptr)
+  void* const symbol = library != nullptr ? dlsym(library, name) : nullptr;
+  if (symbol == nullptr)
     throw Error(ErrorKind::failure, "rendering: libOSMesa.so.8 cannot be loaded; install libosmesa6");
-  return reinterpret_cast<Function*>(dlsym(library, name));
+  return reinterpret_cast<Function*>(symbol);
 }
 
 class OsmesaContext final : public GraphicsContext {
