@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What two threads pass values through without a lock.
+// Queues of two threads without a lock: of the newest value, and of all values.
 #pragma once
 
 #include <array>

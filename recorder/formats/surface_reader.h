@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the readers of surface files share; parseSurface() chooses one by the file's name.
+// The base of the readers of surface files; parseSurface() chooses one by the file's name.
 #pragma once
 
 #include <fmt/format.h>

@@ -128,7 +128,7 @@ class CostHistogram {
   std::uint64_t count_ = 0, sum_ = 0, largest_ = 0;
 };
 
-/// A run, as who makes its ticks sees it.
+/// The part of a run's report that comes from the thread that makes its ticks.
 struct HapticReport : TickReport {
   Outcome outcome = Outcome::completed;
   SourcePauses pauses;

@@ -44,8 +44,7 @@ class SampleSource {
   /// Queried before the first tick of every step, by the thread that calls next(). The loop must react as follows:
   /// - ok: go on.
   /// - paused: ask for no tick and advance nothing; ask again every few milliseconds, and ask `stop` as well, until it
-  /// is
-  ///   something else. Then go on with the next tick's number; a paced clock is moved by the time that was waited,
+  ///   is something else. Then go on with the next tick's number; a paced clock is moved by the time that was waited,
   ///   which counts neither as lateness nor as stretching. Pauses and their length are counted in the report.
   /// - failed: end the attempt with Outcome::technicalFailure; the steps so far are whole and stay.
   /// A device that disconnects in mid-step does not stop it: next() then hands out invalid samples (the last pose held)

@@ -77,7 +77,7 @@ CALOT_INLINE double gap2(double low, double high) {
 /// times the greatest column sum.
 CALOT_LANE_KERNEL void reaches(const NodeLanes& n, double reach, double* out) {
   for (int i = 0; i < laneCount; ++i) {
-    double row = -1.0;  // below all of them: a comparison with 0 would lose which zero it gives (bounds.h)
+    double row = -1.0;  // below all of them: a comparison with 0 would lose which zero it gives (linear.h)
     double column = -1.0;
     for (int k = 0; k < 3; ++k) {
       row = maximum(row, magnitude(n.gradient[3 * k][i]) + magnitude(n.gradient[3 * k + 1][i]) +

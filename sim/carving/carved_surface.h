@@ -116,7 +116,7 @@ struct SurfacePatch {
   [[nodiscard]] std::uint32_t vertexOf(std::size_t t, std::size_t k) const { return vertex[corner[t][k]]; }
 };
 
-/// Marching cubes over all cells (cube_table.h), updated with the field: after a stroke, only blocks with a sign change
+/// Marching cubes over all cells (CubeTable), updated with the field: after a stroke, only blocks with a sign change
 /// at a corner of a cell are rebuilt, and the result equals that of rebuild(), bit for bit. Positions are not stored;
 /// they follow from the field (surface_vertex).
 ///

@@ -2,7 +2,7 @@
 // Connective tissue between two organs: fibrous strands from points of one to points of the other, and
 // sheets between neighbouring strands.
 //
-// A strand is a cohesive spring (cohesive_law.h) and a damper between point a of the first organ and point b of the
+// A strand is a cohesive spring (CohesiveLaw) and a damper between point a of the first organ and point b of the
 // second, over its area A of the bed:
 //   T = alpha A t(w),   w = l - l0 (tension positive),   f_a = -T e + alpha (1 - d) R f_0,   e = (x_a - x_b) / l.
 // f_0 is what it carries of the weight where the scene is drawn (sim/scene/weight_system.h), mostly shear; R turns it

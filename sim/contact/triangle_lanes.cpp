@@ -33,7 +33,7 @@ CALOT_INLINE double fromSegment(const V& p, const V& a, const V& b) {
   const V ab = b - a;
   const double length2 = dot(ab, ab);
   const double u = dot(ab, p - a) / length2;
-  const double low = u >= 0.0 ? u : 0.0;  // bounds.h
+  const double low = u >= 0.0 ? u : 0.0;  // linear.h
   const double clamped = low > 1.0 ? 1.0 : low;
   const double used = length2 > 0.0 ? clamped : 0.0;
   return square(p - (a + used * ab));

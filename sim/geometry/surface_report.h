@@ -101,7 +101,7 @@ struct HoleFilling {
 /// and within, is the flattest; of equally flat ones the one of least area (Liepa, "Filling Holes in Meshes", 2003).
 /// If each of them would need an edge that exists already, a vertex in the loop's centre is joined to all of
 /// its edges. A filling is oriented like its surroundings; whether it crosses other parts of the surface is not
-/// looked at (self_crossing.h does).
+/// looked at (findSelfCrossing() does).
 [[nodiscard]] HoleFilling fillHoles(const TriangleMesh& mesh);
 
 }  // namespace calot

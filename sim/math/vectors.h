@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Explicit vector types for kernels (lanes.h) that the compiler does not vectorise by itself: nested loops or long
+// Explicit vector types for kernels that the compiler does not vectorise by itself: nested loops or long
 // bodies. Operators act elementwise, so that the bits equal those of a scalar loop. Vectors are passed by reference: by
 // value, the calling convention would depend on the register width of the target.
 #pragma once

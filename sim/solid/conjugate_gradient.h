@@ -108,7 +108,7 @@ class ConjugateGradient {
   void backward(const Part& part, float beta);
   [[nodiscard]] double forward(const Part& part);
   [[nodiscard]] double update(const Part& part, float alpha);
-  // The same with a lattice: lattice_gradient.cpp.
+  // The same with a lattice: coarse_lattice.cpp.
   void beginPairs(const Part& part, bool goesOn);
   void backwardPairs(const Part& part, float beta);
   [[nodiscard]] double forwardPairs(const Part& part);
@@ -125,7 +125,7 @@ class ConjugateGradient {
   std::vector<ExtraBlock> extra_;
   std::vector<float> r_, z_, p_, t_, s_, left_;
   std::vector<float> u_, sRows_;            ///< by rows: u, and for a single right-hand side a copy of s
-  std::vector<float> q_, y_, c_, uw_, pq_;  ///< with a lattice: lattice_gradient.cpp
+  std::vector<float> q_, y_, c_, uw_, pq_;  ///< with a lattice: coarse_lattice.cpp
   bool pairs_ = false;                      ///< does the present solve have a lattice?
 };
 

@@ -43,7 +43,7 @@ void update(const Slices& matrix, float alpha, const float* t, const float* s, f
 void updateMany(const Slices& matrix, const float* alpha, const float* t, const float* s, float* x, float* r, float* z,
                 double* dot);
 
-/// With a lattice (lattice_gradient.cpp): from the last row to the first t = inverse (z - u),  p = t + c + beta p, and
+/// With a lattice (coarse_lattice.cpp): from the last row to the first t = inverse (z - u),  p = t + c + beta p, and
 /// u += block^T t, w += block^T p at the blocks' columns.
 /// @param uw u and w, pairs of rows @param pq p in the first of pairs of rows
 void backwardPairs(const Slices& matrix, const float* z, const float* c, float beta, float* p, float* uw, float* pq);

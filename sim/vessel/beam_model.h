@@ -5,7 +5,7 @@
 // elements with one integration point. The strains of an element are measured in its middle frame R_m, the geodesic
 // mean of its nodes' orientations:
 //   gamma = d / L - R_m a      d = x_b - x_a, L the rest length, a the rest axis in the middle frame (where the
-//                              element is loaded at rest, `slack`: sim/vessel/beam_preload.h)
+//                              element is loaded at rest, `slack`: preload())
 //   kappa = 4 / L (P - P_0)    P = tan(theta/4) n: relative rotation of the nodes by theta about n, in the middle frame
 // and the energy is L/2 (E A |gamma|^2 + kappa . D kappa) with D = diag(EI, EI, GJ) about the axis. Both strains are
 // invariant under rigid motions of any size and defined for every state, including collapsed and inverted elements,
@@ -109,7 +109,7 @@ class BeamModel {
   /// Reference orientation of each node: z along the centre line, x and y transported along it without twist.
   [[nodiscard]] const std::vector<Quat>& restOrientation() const { return restOrientation_; }
   [[nodiscard]] const std::vector<BeamElement>& elements() const { return element_; }
-  /// @pre the same elements, otherwise loaded (sim/vessel/beam_preload.h)
+  /// @pre the same elements, otherwise loaded (preload())
   void setElements(std::vector<BeamElement> elements) { element_ = std::move(elements); }
   [[nodiscard]] const std::vector<Branch>& branches() const { return branch_; }
   /// Stations of all branches together.
@@ -148,7 +148,7 @@ class BeamModel {
 // Loads of vessels in the reference configuration: their stiffness in the reference configuration, and the loads of
 // their elements there.
 
-/// Adds the stiffness of sim/vessel/beam_model.h in the reference configuration.
+/// Adds the stiffness of all elements (stiffnessOf(), sim/vessel/beam_state.h) in the reference configuration.
 /// @param factor of all of it
 /// @param row per node: the row of its place (N/m), followed by that of its rotation about W's axes (N m); -1: fixed
 void addStiffness(const BeamModel& model, double factor, std::span<const int> row, SymmetricBlocks& matrix);

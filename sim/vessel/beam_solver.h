@@ -128,7 +128,7 @@ struct BeamReport {
 };
 
 /// With h = dt, u the velocities and angular velocities of all nodes and K the Gauss-Newton stiffness of
-/// sim/vessel/beam_model.h, K_g that of chords in tension, k and c those of the attachments:
+/// sim/vessel/beam_state.h, K_g that of chords in tension, k and c those of the attachments:
 ///   [(1 + alpha h) M + (h^2 + beta h) K + h^2 (K_g + k) + h c] du
 ///     = h (f_external + f(x) - (h + beta) K u - h K_g u - alpha M u + attachments at x + h u),
 ///   u += du,  x += h v,  q = rotated(q, h w).

@@ -33,7 +33,7 @@ struct DeviceScript {
   std::vector<Phase> phases;
 };
 
-/// Reads a script: JSON where the text begins with "{", else two-handed kinematics (kinematics_file.h), row
+/// Reads a script: JSON where the text begins with "{", else two-handed kinematics (readKinematics()), row
 /// i at i/30 s.
 /// @throws Error (damaged) with file and place.
 DeviceScript readDeviceScript(const std::filesystem::path& file);

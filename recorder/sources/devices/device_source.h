@@ -21,7 +21,7 @@ namespace calot::recorder {
 
 /// Polls a device in real time on a thread of its own, so that samples carry the time of their arrival and the loop
 /// never waits for a device. Lock-free between the two threads; its queues allocate only where they grow. A device on
-/// the tick clock is polled by who asks. Closes the device at its end.
+/// the tick clock is polled by drain() itself. Closes the device at its end.
 class DevicePump {
  public:
   DevicePump(Device& device, bool realTime);

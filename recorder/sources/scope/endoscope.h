@@ -13,7 +13,7 @@
 namespace calot::recorder {
 
 /// Radius of the endoscope's round field in wide pictures, in halves of their height, as trainer, films and dashboard
-/// show it (gui/render/sight.h); the picture cuts it above and below.
+/// show it (gui/render/draw_list.h); the picture cuts it above and below.
 inline constexpr double fieldRadius = 1.12;
 
 /// The picture of an endoscope that stands at the scene's camera: what is level there is the horizon.

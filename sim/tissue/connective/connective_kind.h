@@ -15,7 +15,7 @@
 
 namespace calot {
 
-/// Connective tissue over the bed where one organ lies on another (sim/connective/connective_bed.h).
+/// Connective tissue over the bed where one organ lies on another (sim/connective/connective_tissue.h).
 struct ConnectiveDescription {
   std::string name;
   StructureRole role = StructureRole::other;

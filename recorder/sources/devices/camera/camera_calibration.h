@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Steps of a camera's calibration: lenses and places of the cameras from films of the board, then what every device's
-// calibration has (calibration_fit.h), then the trocars and the latency.
+// calibration has (calibration.h), then the trocars and the latency.
 #pragma once
 
 #include <chrono>

@@ -22,12 +22,14 @@ constexpr double leastMargin = 20.0;  // grey levels
 
 TagDetector makeTagDetector() {
   const std::shared_ptr<apriltag_family> family(tag36h11_create(), tag36h11_destroy);
-  const std::shared_ptr<apriltag_detector> detector(apriltag_detector_create(), apriltag_detector_destroy);
+  // Its end frees what it added to the family: the family ends after it.
+  const std::shared_ptr<apriltag_detector> detector(apriltag_detector_create(),
+                                                    [family](apriltag_detector* d) { apriltag_detector_destroy(d); });
   apriltag_detector_add_family_bits(detector.get(), family.get(), mostCorrected);
   detector->nthreads = 1;
   detector->quad_decimate = 2.0F;  // edges are refined in the full picture
   detector->refine_edges = true;
-  return [family, detector](const GreyImage& image) {
+  return [detector](const GreyImage& image) {
     assert(image.pixels.size() == static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
     // The library reads alone.
     image_u8_t view{image.width, image.height, image.width, const_cast<std::uint8_t*>(image.pixels.data())};
