@@ -48,11 +48,12 @@ void judgeByAngoff(const AngoffOptions& o) {
                  {"needed", a.needed}};
   printResult(o.json, "norm-angoff", all, [&](std::ostream& out) {
     using namespace analytics;
-    printTable(
-        tableOf(
-            "Probability that a borderline trainee passes", items,
-            {{"=item", "/item", plain}, {"mean", "/mean", share2}, {"least", "/least", share2}, {"most", "/most", share2}}),
-        out);
+    printTable(tableOf("Probability that a borderline trainee passes", items,
+                       {{"=item", "/item", plain},
+                        {"mean", "/mean", share2},
+                        {"least", "/least", share2},
+                        {"most", "/most", share2}}),
+               out);
     printWrapped(
         fmt::format(
             "Angoff's mark by {} judges: {} of {} items, 95 % [{}, {}] by Student's t over the judges. The rule of "
