@@ -158,8 +158,7 @@ using NormProgress = std::function<void(double share, const char* doing)>;
 /// Makes a norm of a cohort's attempts, after the whole cohort was checked, and stores it as the next version of its
 /// name. A protocol gets the participants' recorded experience.
 /// @param only uuids of the attempts that it may be made of; empty: all that the request allows
-/// @return as it is stored @throws Error as refuseUnsound(), makeNorm(), CohortDatabase::storeNorm() and
-/// CohortDatabase
+/// @return as it is stored @throws Error as refuseUnsound(), makeNorm() and CohortDatabase
 Norm createNorm(const std::string& database, NormRequest request, const std::vector<std::string>& only = {},
                 const NormProgress& progress = {});
 

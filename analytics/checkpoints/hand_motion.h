@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Rows of figures of the hands' motion: how a figure of one motion becomes the values of both hands, or of each hand
-// and phase. Stretches of a motion by the speed of the tip: movements, and rest between them; both hands' speeds together.
+// and phase. Stretches of a motion by the speed of the tip: movements, and rest between them; both hands' speeds
+// together.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 

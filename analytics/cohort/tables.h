@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What CohortDatabase builds on. Opening a database: which file it is, its schema, migrations (connection.cpp).
+// CohortDatabase builds on this. Opening a database: which file it is, its schema, migrations (connection.cpp).
 // Single tables: tables and rows as SQLite describes them, for work that must reach every table, those of later
-// migrations too; and the statements that follow from a table's declaration. No function here begins a transaction.
-// The tables' declaration (declared_tables.cpp), each column declared once: name, SQLite's type, meaning, unit, values,
-// and the member of the struct that holds it. schemas/cohort/*.sql makes them; statements (tables.h), `cohort check`,
-// lists, codebook and exports follow from the declaration. A new column takes its line here, its member and a
+// migrations too; and the statements that follow from a table's declaration. Only CohortConnection::change() begins a
+// transaction. The tables' declaration (declared_tables.cpp), each column declared once: name, SQLite's type, meaning,
+// unit, values, and the member of the struct that holds it. schemas/cohort/*.sql makes them; statements, `cohort
+// check`, lists, codebook and exports follow from the declaration. A new column takes its line there, its member and a
 // migration.
 #pragma once
 

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Manifests: tables that say, a row each, what is taken into a cohort. Of motion files with who made them (`calot
-// import
-// --manifest`), whose participants are registered without replacing what a cohort knows; of completed forms (`calot
-// rate --manifest`).
+// Manifests: tables that say, a row each, what is taken into a cohort. `calot import --manifest` takes motion files
+// with who made them, and registers these participants without replacing what the cohort knows; `calot rate --manifest`
+// takes completed forms.
 #pragma once
 
 #include <cstddef>

@@ -154,8 +154,8 @@ void listRegisters(const CohortOptions& o) {
 
 struct NameOptions {
   const CLI::App* command = nullptr;
-  void (*name)(const NameOptions&) = nullptr;
-  std::string who, cohort, site, note, key;
+  void (*store)(const NameOptions&) = nullptr;
+  std::string name, cohort, site, note, key;
   std::vector<std::string> add, remove;
 
   [[nodiscard]] std::optional<std::string> noteGiven() const { return givenOf(*command, "--note", note); }
@@ -164,12 +164,12 @@ struct NameOptions {
 void nameStation(const NameOptions& o) {
   std::optional<analytics::PublicKey> key;
   if (!o.key.empty()) key = keyOf(o.key, "--public-key");
-  analytics::setStation(o.cohort, o.who, givenOf(*o.command, "--site", o.site), key, o.noteGiven());
+  analytics::setStation(o.cohort, o.name, givenOf(*o.command, "--site", o.site), key, o.noteGiven());
 }
 
 void enterName(const NameOptions& o) {
-  o.name(o);
-  fmt::print("{}: {} {}\n", o.cohort, o.command->get_name(), o.who);
+  o.store(o);
+  fmt::print("{}: {} {}\n", o.cohort, o.command->get_name(), o.name);
 }
 
 }  // namespace
@@ -205,16 +205,16 @@ void addCohort(CLI::App& app, Run& run) {
   const auto addName = [&](const CommandText& text, void (*work)(const NameOptions&)) {
     const auto [command, o] = addCommand(cohort, run, text, enterName);
     o->command = command;
-    o->name = work;
-    command->add_option("name", o->who, "Its name")->required();
+    o->store = work;
+    command->add_option("name", o->name, "Its name")->required();
     command->add_option("--cohort", o->cohort, "Cohort database; made where there is none")->required();
     command->add_option("--note", o->note, "A word on it; never about a person");
     return std::pair{command, o};
   };
   addName({"site", "Name a site", "calot cohort site north --cohort c.db"},
-          [](const NameOptions& o) { analytics::setNamed(o.cohort, "site", o.who, o.noteGiven()); });
+          [](const NameOptions& o) { analytics::setNamed(o.cohort, "site", o.name, o.noteGiven()); });
   addName({"arm", "Name a study arm", "calot cohort arm simulator-first --cohort c.db"},
-          [](const NameOptions& o) { analytics::setNamed(o.cohort, "arm", o.who, o.noteGiven()); });
+          [](const NameOptions& o) { analytics::setNamed(o.cohort, "arm", o.name, o.noteGiven()); });
   const auto [station, s] = addName({"station", "Name a station, and the key that it signs with",
                                      "calot cohort station trainer-1 --cohort c.db --site north"},
                                     nameStation);
@@ -222,7 +222,7 @@ void addCohort(CLI::App& app, Run& run) {
   station->add_option("--public-key", s->key, "64 hexadecimal digits, as `calot station show` prints them");
   const auto [name, n] = addName(
       {"name", "Name a cohort of participants", "calot cohort name second-years --cohort c.db --add P1 --add P2"},
-      [](const NameOptions& o) { analytics::setCohort(o.cohort, o.who, o.noteGiven(), o.add, o.remove); });
+      [](const NameOptions& o) { analytics::setCohort(o.cohort, o.name, o.noteGiven(), o.add, o.remove); });
   name->add_option("--add", n->add, "Participant who belongs to it; may be repeated")->allow_extra_args(false);
   name->add_option("--remove", n->remove, "Participant who does not any more")->allow_extra_args(false);
 

@@ -263,7 +263,7 @@ GoldenReplay perform(const GoldenEntry& entry, const std::filesystem::path& reco
       {"samples", digests.samples.lines},
       {"steps", digests.steps.lines}};
   made.values = goldenValues(collector.values());
-  made.report.complete = true;
+  made.report.complete = made.report.chainIntact = true;
   made.report.steps = report.steps;
   made.report.seconds = static_cast<double>(report.steps) * model.stepSeconds();
   made.report.wallSeconds = report.wallSeconds;
@@ -300,6 +300,7 @@ void judge(GoldenReplay& run, const std::filesystem::path& file) {
                                *samples, wasAndIs("performer"));
   } else {
     report.verdict = recorder::ReplayVerdict::exact;
+    report.finding = recorder::ReplayFinding::compared;
   }
 }
 
@@ -447,6 +448,11 @@ void updateGolden(const GoldenOptions& o) {
   stopOnSignals();
   const std::filesystem::path folder = folderOf(o);
   GoldenList list = readGoldenList(folder / listName);
+  if (list.simulationVersion > simulationVersion) {
+    throw Error(ErrorKind::invalid, fmt::format("golden: the goldens are of simulation version {}, this build has {}: "
+                                                "only a newer build makes them again",
+                                                list.simulationVersion, simulationVersion));
+  }
   refuseChanges(folder);
   const bool all = list.simulationVersion < simulationVersion;
   std::list<recorder::NewFile> fresh;

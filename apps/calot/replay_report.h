@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What commands share: reports of replays, of stored and shown values, of values that were computed again; motion files
+// Shared by commands: reports of replays, of stored and shown values, of values that were computed again; motion files
 // and users' own metrics.
 #pragma once
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "apps/modules/module.h"
 
-extern "C" const calot::apps::FilmModule* calotModule() {
+extern "C" const calot::apps::Module* calotModule() {
   static constexpr calot::apps::FilmModule table{{CALOT_MODULE_BUILD}, calot::gui::openFilm, calot::gui::copyCleanFilm};
   return &table;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the command line loads when a command first needs it, so that it starts fast and is built and installed without
-// the libraries of modules. NAME_module.cpp is a module's side of its table, NAME_late.cpp the command line's.
+// Modules are loaded when a command first needs them, so that the command line starts fast and is built and installed
+// without their libraries. NAME_module.cpp is a module's side of its table, NAME_late.cpp the command line's.
 #pragma once
 
 #include <string>

@@ -136,7 +136,7 @@ TEST(TimeSpans, agreeWithSetsOfTicks) {
     if (left > 0.0) {
       EXPECT_DOUBLE_EQ(*hand.share(), 1.0 - lost / left);
     }
-    const MotionCoverage part = within(hand, {{25.0, 60.0}}), joint = ofBoth(hand, {spans[1], {}});
+    const MotionCoverage part = coverageWithin(hand, {{25.0, 60.0}}), joint = ofBoth(hand, {spans[1], {}});
     EXPECT_EQ(lengthOf(part.lost), lengthOf(intersection(hand.lost, {{25.0, 60.0}})));
     EXPECT_EQ(lengthOf(joint.mounted), both);
     EXPECT_EQ(lengthOf(joint.lost), lengthOf(intersection(hand.lost, spans[1])));
