@@ -8,7 +8,6 @@
 #include <array>
 #include <cassert>
 #include <initializer_list>
-#include <map>
 #include <memory>
 #include <optional>
 #include <span>

@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <set>
-#include <utility>
 
 #include "analytics/assessment/grade.h"
 #include "analytics/assessment/norm.h"

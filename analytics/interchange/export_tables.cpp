@@ -3,7 +3,6 @@
 #include "analytics/interchange/export_tables.h"
 
 #include <fmt/format.h>
-#include <algorithm>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <optional>

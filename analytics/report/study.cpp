@@ -2,7 +2,6 @@
 
 #include "analytics/report/study.h"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
 #include <filesystem>

@@ -141,7 +141,8 @@ struct Import {
     ImportedFile result;
     try {
       result.motion = readMotion(file, map);
-      // Only now, so that files none of which can be read make no database.
+      result.external = analytics::externalOf(*result.motion, declaration, metrics);
+      // Only now, so that files none of which can be read, and metrics that cannot be run, make no database.
       if (!o.cohort.empty() && !database) database.emplace(o.cohort, analytics::CohortDatabase::Access::create);
       if (enrol) enrol();
       compute(declaration, result);
@@ -165,7 +166,6 @@ struct Import {
 
  private:
   void compute(const analytics::MotionDeclaration& declaration, ImportedFile& file) {
-    file.external = analytics::externalOf(*file.motion, declaration, metrics);
     if (database) {
       analytics::StoredMotion stored = analytics::storeMotion(*database, *file.motion, declaration);
       file.how = importedName(stored.imported);

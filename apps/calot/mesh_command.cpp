@@ -22,7 +22,7 @@ struct CoarseSurface {
 constexpr double goodEnough = 0.1, acceptable = 0.3;
 constexpr int searches = 8;
 
-/// A closed surface of about this number of triangles: the boundary of a tetrahedral mesh (mesh_to_count.h) of the same
+/// A closed surface of about this number of triangles: the boundary of a tetrahedral mesh (stuffToCount()) of the same
 /// volume within 1 %. Thin parts go as they do there.
 /// @param surface closed, outward, manifold
 CoarseSurface coarseSurface(const TriangleMesh& surface, int triangles) {

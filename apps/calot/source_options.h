@@ -6,7 +6,6 @@
 #pragma once
 
 #include <array>
-#include <atomic>
 #include <CLI/CLI.hpp>
 #include <cstdint>
 #include <memory>

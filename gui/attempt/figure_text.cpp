@@ -7,7 +7,6 @@
 #include <QBoxLayout>
 #include <QDateTime>
 #include <QLocale>
-#include <QTimeZone>
 
 #include "analytics/checkpoints/checkpoint.h"
 #include "analytics/report/report_document.h"

@@ -16,7 +16,6 @@
 #include "gui/attempt/widget_parts.h"
 #include "gui/trainer/run_panel.h"
 #include "gui/view/scene_picture_widget.h"
-#include "gui/words/problem_words.h"
 #include "recorder/base/errors.h"
 #include "recorder/recording/reader.h"
 

@@ -2,7 +2,6 @@
 // Phases, critical view of safety and mistakes of an attempt, as a WebAssembly module: the judge that all programs use,
 // over results of steps in the protocol's form (schemas/engine.md), and the words for events.
 #include <cstdint>
-#include <cstring>
 #include <memory>
 #include <string>
 #include <type_traits>
