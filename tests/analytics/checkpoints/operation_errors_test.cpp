@@ -34,7 +34,7 @@ TEST(ClipErrors, countClipsNotFaults) {
   o.step();
   o.end();
   EXPECT_EQ(*o.value("clip-errors").value, 4.0);
-  expectNames(o.value("clip-errors").note, {"5", "1"});
+  expectNames(o.value("clip-errors").note, {"5 set", "on 1", "clip 1", "near 1", "vessel 1", "dropped 1"});
 }
 
 TEST(Cautery, withoutContactIsDebouncedAndOfOneHand) {

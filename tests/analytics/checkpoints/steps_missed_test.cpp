@@ -22,7 +22,7 @@ TEST(StepsMissed, isTheShareOfSteps) {
   o.end();
   const CheckpointValue value = o.value("steps-missed");
   EXPECT_DOUBLE_EQ(*value.value, 3.0 / 8.0) << "a step counts once, whatever it missed";
-  expectNames(value.note, {"3", "8", "solver 2", "contact 1"});
+  expectNames(value.note, {"3", "8", "solver 2", "contact 1", "back 1"});
 }
 
 TEST(StepsMissed, saysNothingWhereNothingMissed) {

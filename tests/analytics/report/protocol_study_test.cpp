@@ -113,7 +113,7 @@ TEST_F(ProtocolStudy, isExploratoryUnlessRegisteredBeforeTheFirstAttempt) {
   database_.excludeAttempts({early.uuid}, "device failed", "me");
   const Study late = study(document());
   EXPECT_EQ(late.heading, "exploratory");
-  expectNames(late.protocol->whyExploratory, {"2026-01-"});
+  expectNames(late.protocol->whyExploratory, {early.startUtc});
   EXPECT_TRUE(late.protocol->deviations.empty()) << "the protocol names this reason";
   database_.excludeAttempts({early.uuid}, "looked odd", "me");
   ASSERT_EQ(study(document()).protocol->deviations.size(), 1U);
@@ -135,10 +135,10 @@ TEST_F(ProtocolStudy, versionsAreKeptAndChangesListed) {
   const RegisteredProtocol again = put(document());
   EXPECT_EQ(again.version, 1U);
   changed["level"] = 0.01;
-  expectFault(ErrorKind::refused, "", {}, [&] { put(changed); });
+  expectFault(ErrorKind::refused, path_, {"times version 1"}, [&] { put(changed); });
   changed["version"] = 2;
   put(changed);
-  expectFault(ErrorKind::refused, "", {}, [&] {
+  expectFault(ErrorKind::refused, path_, {"times version 2"}, [&] {
     json between = changed;
     between["title"] = "other";
     put(between);
