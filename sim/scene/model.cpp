@@ -48,9 +48,7 @@ std::size_t Model::bodies() const {
   return count;
 }
 
-std::size_t Model::structureNamed(const std::string& name) const {
-  return indexNamed(structure_, name);
-}
+std::size_t Model::structureNamed(const std::string& name) const { return indexNamed(structure_, name); }
 
 // A Model's procedure and retractions.
 
