@@ -54,12 +54,11 @@ def faults_of(root, path):
             yield number, "marked unfinished"
         if MACHINE_PATH.search(line):
             yield number, "names a path of one machine"
-        if path.suffix == ".md":
-            for target in LINK.findall(line):
-                if re.match(r"[a-z]+:|#", target):
-                    continue
-                if not (root / path.parent / target.split("#")[0]).exists():
-                    yield number, f"link leads nowhere: {target}"
+    if path.suffix == ".md":
+        for link in LINK.finditer(text):  # its words may stand on two lines
+            target = link[1]
+            if not re.match(r"[a-z]+:|#", target) and not (root / path.parent / target.split("#")[0]).exists():
+                yield text.count("\n", 0, link.start(1)) + 1, f"link leads nowhere: {target}"
 
 
 def check(root):
@@ -76,7 +75,7 @@ def self_test():
     head = "// SPDX-License-" "Identifier: GPL-3.0-or-later\n"
     cases = (
         ("a.cpp", head + "int x;\n", 0), ("b.cpp", "int x;\n", 1), ("c.h", head + "\n" * LONGEST, 1),
-        ("d.cpp", head + "// TO" + "DO later\n", 1), ("e.md", "see /wo" + "rk/x\n", 1), ("f.md", "[a](missing.md) [b](a.cpp)\n", 1),
+        ("d.cpp", head + "// TO" + "DO later\n", 1), ("e.md", "see /wo" + "rk/x\n", 1), ("f.md", "[a](missing.md) [b\nc](missing.cpp) [b](a.cpp)\n", 2),
         ("g.py", "#!/usr/bin/env python3\n# SPDX-License-" "Identifier: GPL-3.0-or-later\n", 0),
         ("rank_test.cpp", head, 1), ("sim/math/a.cpp", head, 0), ("tests/sim/math/a_test.cpp", head, 0), ("tests/sim/core/a_test.cpp", head, 1),
         ("tests/accuracy/a_test.cpp", head, 0),
