@@ -127,7 +127,7 @@ Json fileJson(const std::string& file, const ImportedFile& result) {
   return row;
 }
 
-/// What the files of a run share.
+/// Shared by the files of a run.
 struct Import {
   explicit Import(const ImportOptions& options) : o(options), metrics(readMetrics(o.metrics)) {
     checkMetrics(metrics, o.cohort);
