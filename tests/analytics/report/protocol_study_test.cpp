@@ -135,10 +135,10 @@ TEST_F(ProtocolStudy, versionsAreKeptAndChangesListed) {
   const RegisteredProtocol again = put(document());
   EXPECT_EQ(again.version, 1U);
   changed["level"] = 0.01;
-  expectFault(ErrorKind::refused, "", {}, [&] { put(changed); });
+  expectFault(ErrorKind::refused, path_, {"times version 1"}, [&] { put(changed); });
   changed["version"] = 2;
   put(changed);
-  expectFault(ErrorKind::refused, "", {}, [&] {
+  expectFault(ErrorKind::refused, path_, {"times version 2"}, [&] {
     json between = changed;
     between["title"] = "other";
     put(between);
