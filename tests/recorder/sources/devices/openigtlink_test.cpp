@@ -12,6 +12,7 @@
 #include <atomic>
 #include <future>
 #include <thread>
+#include <utility>
 
 #include "recorder/sources/devices/device_source.h"
 #include "recorder/sources/devices/openigtlink_device.h"
@@ -140,9 +141,10 @@ TEST(OpenIgtLinkServer, FeedsTheLibrarysClientAndOurSource) {
   std::atomic<bool> stop{false};
   std::vector<std::string> told;
   std::promise<int> listening;
+  bool first = true;
   std::thread thread([&] {
     serveOpenIgtLink(motion, settings, stop, [&](const std::string& line) {
-      if (line.starts_with("listening on 127.0.0.1:")) {
+      if (std::exchange(first, false)) {  // its address
         listening.set_value(std::stoi(line.substr(line.rfind(':') + 1)));
       } else {
         told.push_back(line);
