@@ -11,6 +11,7 @@
 #include "recorder/replay.h"
 #include "recorder/sources/source.h"
 #include "tests/recorder/support/small_scene.h"
+#include "tests/support/fault.h"
 
 namespace calot::recorder {
 namespace {
@@ -107,21 +108,17 @@ TEST(Branch, IsAWholeRecordingThatSharesItsParentsPast) {
 TEST(Branch, RefusesWhatCannotBeBranched) {
   const test::SmallScene scene = test::smallScene();
   const test::Folder folder;
-  const auto kindOf = [](auto&& act) -> std::optional<ErrorKind> {
-    try {
-      act();
-    } catch (const Error& e) {
-      return e.kind();
-    }
-    return std::nullopt;
-  };
   Recording assessed(parentOf(scene, folder / "assessed.h5", Mode::assessment));
-  EXPECT_EQ(kindOf([&] { refuseParent(assessed, {}); }), ErrorKind::refused);
+  expectFault(ErrorKind::refused, assessed.path().string(), {"assessment"}, [&] { refuseParent(assessed, {}); });
   Recording good(parentOf(scene, folder / "good.h5", Mode::practice));
-  EXPECT_EQ(kindOf([&] { refuseParent(good, {}); }), std::nullopt);
-  EXPECT_EQ(kindOf([&] { refuseParent(good, {false, 3, 50, 75, "changed"}); }), ErrorKind::refused);
+  EXPECT_NO_THROW(refuseParent(good, {}));
+  expectFault(ErrorKind::refused, good.path().string(), {"changed"}, [&] {
+    refuseParent(good, {false, 3, 50, 75, "changed"});
+  });
   for (const double at : {0.0, 0.009, -1.0, 1.52, 1e300, std::numeric_limits<double>::quiet_NaN()}) {
-    EXPECT_EQ(kindOf([&] { forkStepAt(good, at); }), ErrorKind::invalid) << at;
+    SCOPED_TRACE(at);
+    expectFault(ErrorKind::invalid, "", {good.path().string(), at > 1.0 ? "1.5 s" : "0.01 s"},
+                [&] { forkStepAt(good, at); }, {Remedy::moveFork});
   }
   EXPECT_EQ(forkStepAt(good, 0.01), 0U);
   EXPECT_EQ(forkStepAt(good, 0.07), 6U) << "0.07 / 0.01 is a little below 7";

@@ -85,7 +85,7 @@ TEST_F(BorderlineNorm, theFirstRatedAttemptOfAParticipantCounts) {
 
 TEST_F(BorderlineNorm, isRefusedWhereRatingsDoNotSay) {
   request_.borderline->mark = 6.0;
-  expectFault(ErrorKind::refused, "", {}, [&] { (void)made(); });
+  expectFault(ErrorKind::refused, "", {belowMarkGroup}, [&] { (void)made(); });
   request_.borderline = BorderlineMark{"another", 3.0};
   expectFault(ErrorKind::refused, "", {"another"}, [&] { (void)made(); });
 }

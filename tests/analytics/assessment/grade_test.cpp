@@ -113,10 +113,10 @@ TEST_F(Grades, theRuleIsDeclaredAndRefusedWhereItCannotBe) {
   expectFault(ErrorKind::refused, "", {"2", "1"}, [&] { made(); });
   request_.leastPassed = 0;
   request_.name = "a b";
-  expectFault(ErrorKind::invalid, "", {"norm"}, [&] { made(); });
+  expectFault(ErrorKind::invalid, "", {"norm", "1", "64"}, [&] { made(); });
   request_.name = "x";
   request_.who.attemptRule = AttemptRule::mean;
-  expectFault(ErrorKind::invalid, "", {"norm"}, [&] { made(); });
+  expectFault(ErrorKind::invalid, "", {"norm"}, [&] { made(); }, {Remedy::takeFirst});
 }
 
 TEST_F(Grades, figuresOfPhasesCountWhereTheyAreAskedFor) {
@@ -246,11 +246,11 @@ TEST_F(Grades, comparesOnlyWhatCompares) {
   AttemptRecord bad = humanAttempt(31, "T8");
   bad.verification.verdict = Verdict::diverged;
   cohort_.storeAttempt(bad, {});
-  expectFault(ErrorKind::refused, "", {uuidOf(31)}, [&] { graded(31, norm); });
+  expectFault(ErrorKind::refused, "", {uuidOf(31), "diverged"}, [&] { graded(31, norm); });
   AttemptRecord cut = humanAttempt(32, "T7");
   cut.complete = false;
   cohort_.storeAttempt(cut, {});
-  expectFault(ErrorKind::refused, "", {uuidOf(32)}, [&] { graded(32, norm); });
+  expectFault(ErrorKind::refused, "", {uuidOf(32), "incomplete"}, [&] { graded(32, norm); });
 }
 
 TEST(Percentile, saysNoMoreThanItsMembersTell) {

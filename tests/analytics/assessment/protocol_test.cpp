@@ -60,13 +60,15 @@ TEST(Protocol, everyFaultHasItsPlace) {
   fault("/level", {"0", "(0, 0.5]"}, [](json& p) { p["level"] = 0; });
   fault("/name", {}, [](json& p) { p["name"] = "../p"; });
   fault("/populations/1", {}, [](json& p) { p["populations"][1]["group"] = "expert"; });
-  fault("/populations/0/criteria/0", {}, [](json& p) { p["populations"][0]["criteria"][0]["equals"] = "yes"; });
+  fault("/populations/0/criteria/0", {"\"equals\""},
+        [](json& p) { p["populations"][0]["criteria"][0]["equals"] = "yes"; });
   fault("/populations/0/criteria/0", {"\"atLeast\""},
         [](json& p) { p["populations"][0]["criteria"][0]["atMost"] = 1; });
   fault("/exclusions/outcomes/0", {}, [](json& p) { p["exclusions"]["outcomes"][0] = "completed"; });
   fault("/", {"\"level\""}, [](json& p) { p.erase("level"); });
   fault("/title", {}, [](json& p) { p["title"] = "a\nb"; });
-  expectFault(ErrorKind::damaged, "p.json", {"1"}, [] { (void)parseProtocol(bytesOf("{\"format\": "), "p.json"); });
+  expectFault(ErrorKind::damaged, "p.json", {"JSON", "1"},
+              [] { (void)parseProtocol(bytesOf("{\"format\": "), "p.json"); });
 }
 
 TEST(Protocol, populationsAreCriteriaAndNotLabels) {

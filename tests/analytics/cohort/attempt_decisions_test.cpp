@@ -35,8 +35,9 @@ TEST(AttemptDecisions, exclusionsAreKeptWithReasonAndAuthorAndAudited) {
   EXPECT_FALSE(database.attempt(uuidOf(1))->excluded);
   expectFault(ErrorKind::refused, "", {uuidOf(9)}, [&] { database.excludeAttempts({uuidOf(9)}, "x", "y"); });
   expectFault(ErrorKind::refused, "", {uuidOf(1)}, [&] { database.includeAttempts({uuidOf(1)}, "x", "y"); });
-  expectFault(ErrorKind::invalid, "", {"exclusion"}, [&] { database.excludeAttempts({uuidOf(1)}, " ", "y"); });
-  expectFault(ErrorKind::invalid, "", {"exclusion"}, [&] { database.includeAttempts({uuidOf(1)}, "x", ""); });
+  expectFault(ErrorKind::invalid, "", {"exclusion", "reason"},
+              [&] { database.excludeAttempts({uuidOf(1)}, " ", "y"); });
+  expectFault(ErrorKind::invalid, "", {"exclusion", "who"}, [&] { database.includeAttempts({uuidOf(1)}, "x", ""); });
   SQLite::Database raw(path, SQLite::OPEN_READWRITE);
   EXPECT_EQ(raw.execAndGet("SELECT count(*) FROM audit WHERE action LIKE 'attempt-%'").getInt(), 3);
   EXPECT_THROW(raw.exec("DELETE FROM audit"), SQLite::Exception);
@@ -63,7 +64,7 @@ TEST(AttemptDecisions, tagsAreKeptOnceAndAudited) {
   for (const std::string& wrong :
        {std::string(), std::string("two words"), std::string("a,b"), std::string("a\nb"), longest + "a"})
     expectFault(ErrorKind::invalid, "", {"tag", "1", "40"}, [&] { database.tagAttempts({uuidOf(1)}, wrong, "me"); });
-  expectFault(ErrorKind::invalid, "", {"tag"}, [&] { database.tagAttempts({uuidOf(1)}, "x", " "); });
+  expectFault(ErrorKind::invalid, "", {"tag", "who"}, [&] { database.tagAttempts({uuidOf(1)}, "x", " "); });
   expectFault(ErrorKind::refused, "", {uuidOf(9)}, [&] { database.tagAttempts({uuidOf(1), uuidOf(9)}, "x", "me"); });
   EXPECT_EQ(database.attempt(uuidOf(1))->tags.size(), 2U) << "all or none";
   SQLite::Database raw(path, SQLite::OPEN_READWRITE);

@@ -105,7 +105,8 @@ TEST(CohortDatabase, olderSchemaIsBroughtUpToDate) {
         "INSERT INTO participant (pseudonym, study_group, created_utc) VALUES ('P01', 'expert', "
         "'2026-01-01T00:00:00Z')");
   }
-  expectFault(ErrorKind::failure, path, {}, [&] { CohortDatabase(path, Access::read); });
+  expectFault(ErrorKind::failure, path, {"1", std::to_string(cohortMigrations().size())},
+              [&] { CohortDatabase(path, Access::read); }, {Remedy::upgradeCohort});
   CohortDatabase database(path, Access::write);
   EXPECT_EQ(database.schemaVersion(), static_cast<int>(cohortMigrations().size()));
   EXPECT_EQ(support::findParticipant(database, "P01")->group, "expert");
@@ -144,8 +145,14 @@ TEST(CohortDatabase, refusesWhatIsNotItsOwn) {
   const std::string newer = folder.file("newer.db");
   { const CohortDatabase database(newer, Access::create); }
   { SQLite::Database(newer, SQLite::OPEN_READWRITE).exec("PRAGMA user_version = 99"); }
-  expectFault(ErrorKind::undecided, newer, {}, [&] { CohortDatabase(newer, Access::read); });
-  expectFault(ErrorKind::undecided, newer, {}, [&] { CohortDatabase(newer, Access::create); });
+  expectFault(ErrorKind::undecided, newer, {"99"}, [&] { CohortDatabase(newer, Access::read); });
+  expectFault(ErrorKind::undecided, newer, {"99"}, [&] { CohortDatabase(newer, Access::create); });
+  std::vector<std::string> faults;
+  for (const std::string& file : {folder.file("none.db"), folder.file("."), empty, words, other}) {
+    const auto error = caught([&] { CohortDatabase(file, Access::write); });
+    faults.push_back(error ? error->fault() : "");
+  }
+  expectDistinct(faults);
 }
 
 TEST(CohortDatabase, truncatedOrOverwrittenFilesAreReportedNotCrashedOn) {
@@ -312,7 +319,7 @@ TEST(CohortDatabase, refusesRecordsThatNoRecordingHas) {
   expectFault(ErrorKind::damaged, "", {"\"" + a.uuid + "\""}, [&] { database.storeAttempt(a, {}); });
   a = attemptOf(1, "skilled");
   a.steps = ~0ULL;
-  expectFault(ErrorKind::damaged, a.fileName, {}, [&] { database.storeAttempt(a, {}); });
+  expectFault(ErrorKind::damaged, a.fileName, {"steps"}, [&] { database.storeAttempt(a, {}); });
   EXPECT_TRUE(database.listAttempts().empty());
 }
 

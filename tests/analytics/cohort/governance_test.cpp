@@ -151,7 +151,7 @@ TEST(Withdrawal, reachesTablesThatItDoesNotKnow) {
   expectFault(ErrorKind::refused, "", {"withdrawn"}, [&] { database.storeAttempt(humanAttempt(1, "Gone-1"), {}); });
   AttemptRecord branch = attemptOf(3, "skilled");
   branch.parent = uuidOf(1);
-  expectFault(ErrorKind::refused, "", {"withdrawn"}, [&] { database.storeAttempt(branch, {}); });
+  expectFault(ErrorKind::refused, "", {"branches", "withdrawn"}, [&] { database.storeAttempt(branch, {}); });
 }
 
 TEST(Withdrawal, aPseudonymWithinALongerOneIsAnother) {

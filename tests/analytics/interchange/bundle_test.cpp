@@ -249,7 +249,7 @@ TEST_F(Bundles, areRefusedWhereTheyWouldTell) {
   BundleOptions teaching;
   teaching.scope = "filming";
   expectFault(ErrorKind::refused, "", {"16"}, [&] { write("out", teaching); });
-  expectFault(ErrorKind::invalid, "", {}, [&] { write(""); });
+  expectFault(ErrorKind::invalid, "", {"exists"}, [&] { write(""); });
   ParticipantChange change;
   change.arm = "with SITE-7302";
   database_.setParticipant("SITE-7301", change);

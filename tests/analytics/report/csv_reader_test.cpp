@@ -35,15 +35,15 @@ TEST(CsvTable, readsWhatRfc4180Allows) {
 
 TEST(CsvTable, namesWhereItIsWrong) {
   using enum ErrorKind;
-  expectRefused(damaged, "", ": line 1", {});
-  expectRefused(damaged, "\n\n", ": line 1", {});
-  expectRefused(damaged, "a,b\n", ": line 1", {});
-  expectRefused(damaged, "a\tb\n1\t2\n", ": line 1", {});
+  expectRefused(damaged, "", ": line 1", {"empty"});
+  expectRefused(damaged, "\n\n", ": line 1", {"empty"});
+  expectRefused(damaged, "a,b\n", ": line 1", {"header", "rows"});
+  expectRefused(damaged, "a\tb\n1\t2\n", ": line 1", {"column", "separator"});
   expectRefused(damaged, "a,b\n1,2\n1,2,3\n", ": line 3", {"3", "2"});
   expectRefused(damaged, "a,b\n1\n", ": line 2", {"1", "2"});
-  expectRefused(damaged, "a,b\n1,\"2\n", ": line 2", {});
-  expectRefused(damaged, "a,b\n\"1\"x,2\n", ": line 2: column 1", {});
-  expectRefused(damaged, std::string("a,b\n1,\0\n", 8), "", {});
+  expectRefused(damaged, "a,b\n1,\"2\n", ": line 2", {"quote"});
+  expectRefused(damaged, "a,b\n\"1\"x,2\n", ": line 2: column 1", {"quote"});
+  expectRefused(damaged, std::string("a,b\n1,\0\n", 8), "", {"text"});
   expectRefused(invalid, "b,c\n1,2\n", ": line 1", {"\"a\"", "b, c"});
   expectRefused(invalid, "a,a\n1,2\n", ": line 1", {"\"a\""});
 }

@@ -76,8 +76,8 @@ TEST(RatingForm, answersAreCheckedAgainstTheForm) {
   fault({"\"2\"", "0", "1"}, {{"competent", "2"}});
   fault({"\"0.5\"", "0", "1"}, {{"competent", "0.5"}});
   fault({"0", "1"}, {{"competent", "\n"}});
-  fault({"competent"}, {{"competent", "1"}, {"competent", "0"}});
-  fault({"competent"}, {});
+  fault({"competent", "twice"}, {{"competent", "1"}, {"competent", "0"}});
+  fault({"competent", "blank"}, {});
   fault({form.name}, {{"competent", "-"}});
 }
 
@@ -90,7 +90,8 @@ TEST(Ratings, areStoredOnceAndReplacedWhenAsked) {
   RatingForm form = shipped("competence");
   Rating rating{"", 1, uuidOf(1), "R1", "", {{"competent", 0}}, ""};
   database.storeRating(stored(form), rating, false);
-  expectFault(ErrorKind::refused, "", {"competence"}, [&] { database.storeRating(stored(form), rating, false); });
+  expectFault(ErrorKind::refused, "", {"competence"}, [&] { database.storeRating(stored(form), rating, false); },
+              {Remedy::replaceExisting});
   rating.answers["competent"] = 1;
   database.storeRating(stored(form), rating, true);
   ASSERT_EQ(database.ratings().size(), 1U);
@@ -102,7 +103,8 @@ TEST(Ratings, areStoredOnceAndReplacedWhenAsked) {
   expectFault(ErrorKind::invalid, "", {"pseudonym"}, [&] { database.storeRating(stored(form), rating, false); });
   rating.rater = "R2";
   form.sha256[0] = form.sha256[0] == '0' ? '1' : '0';
-  expectFault(ErrorKind::refused, "", {"competence"}, [&] { database.storeRating(stored(form), rating, false); });
+  expectFault(ErrorKind::refused, "", {"competence", "wording"},
+              [&] { database.storeRating(stored(form), rating, false); });
 }
 
 TEST(Ratings, agreementIsThatOfShroutAndFleiss) {

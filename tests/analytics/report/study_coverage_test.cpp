@@ -46,6 +46,7 @@ std::string notesOf(const Study& study) {
 TEST(StudyCoverage, ofCompleteSamplesIsOneSentence) {
   const Study study = studyWith({1.0, 1.0, 1.0, 1.0, 1.0});
   EXPECT_TRUE(coverageTable(study).rows.empty());
+  expectHolds(notesOf(study), {"Coverage: samples", "whole"});
   EXPECT_EQ(notesOf(study).find("Warning: coverage"), std::string::npos);
 }
 

@@ -272,7 +272,7 @@ TEST(TableStudy, whatAProtocolOfATableIsRefusedFor) {
   TableStudyOptions options = optionsFor("extra");
   options.outcomes.clear();
   options.protocol = protocolOf("\"outcome\": \"extra\"", "\"outcome\": \"other\"");
-  expectFault(ErrorKind::invalid, "", {}, [&] { (void)studyOf(sleep, options); });
+  expectFault(ErrorKind::invalid, "", {"protocol"}, [&] { (void)studyOf(sleep, options); }, {Remedy::nameOutcome});
   expectFault(ErrorKind::damaged, "", {"three", "two"},
               [] { (void)protocolOf("\"group\": \"one\"", "\"group\": \"three\""); });
   expectFault(ErrorKind::damaged, "", {"\"checkpoint\"", "\"external\""},
@@ -280,7 +280,7 @@ TEST(TableStudy, whatAProtocolOfATableIsRefusedFor) {
   expectFault(ErrorKind::damaged, "", {"\"checkpoint\"", "\"external\""}, [] {
     (void)protocolOf("\"outcome\": \"extra\"", "\"outcome\": \"extra\", \"checkpoint\": \"elapsed-time\"");
   });
-  expectFault(ErrorKind::damaged, "", {},
+  expectFault(ErrorKind::damaged, "", {"subject", "table"},
               [] { (void)protocolOf("\"outcome\": \"extra\"", "\"outcome\": \"extra\", \"subject\": \"left\""); });
 }
 

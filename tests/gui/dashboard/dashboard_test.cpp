@@ -240,7 +240,7 @@ TEST_F(Dashboard, ADamagedFileIsOneLineAndKeepsWhatWasOpen) {
     EXPECT_TRUE(problem->text().contains(name)) << problem->text().toStdString();
     EXPECT_FALSE(problem->text().contains('\n'));
     EXPECT_EQ(child<QTableView>(window, "attempts")->model()->rowCount(), 9);
-    expectFault(ErrorKind::damaged, "", {}, [&] { const CohortDocument document(file(name).toStdString()); });
+    expectFault(ErrorKind::damaged, "", {name}, [&] { const CohortDocument document(file(name).toStdString()); });
   }
   ASSERT_TRUE(window.openDatabase(file("cohort.db")));
   EXPECT_FALSE(shows(window, *child<QLabel>(window, "problem"))) << "gone with the next success";

@@ -118,7 +118,8 @@ TEST(Smoke, RefusesWhatIsNoPuff) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const Puff& puff :
        {Puff{Vec3(nan, 0.0, 0.0), 0.1, 0.5, 1}, Puff{Vec3::Zero(), nan, 0.5, 1}, Puff{Vec3::Zero(), 0.1, 1.5, 1}}) {
-    expectFault(ErrorKind::damaged, "", {}, [&] { (void)renderer.render(view, 32, 32, {}, std::vector<Puff>{puff}); });
+    expectFault(ErrorKind::damaged, "", {"puff 0"},
+                [&] { (void)renderer.render(view, 32, 32, {}, std::vector<Puff>{puff}); });
   }
 }
 

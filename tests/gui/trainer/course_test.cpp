@@ -8,6 +8,7 @@
 #include "recorder/base/errors.h"
 #include "tests/analytics/assessment/support/texts.h"
 #include "tests/recorder/support/small_scene.h"
+#include "tests/support/fault.h"
 
 namespace calot::gui {
 namespace {
@@ -45,23 +46,18 @@ TEST(Course, AnyOtherFolderOfAssetsHasNone) {
 
 TEST(Course, WhatIsWrongIsNamedWithItsPlace) {
   const recorder::test::Folder folder;
-  const auto faultOf = [&](const std::string& tasks) -> std::string {
+  const auto faultOf = [&](const std::string& tasks) {
     std::ofstream(folder / "c.json") << R"({"format": "calot-course", "formatVersion": 1, "name": "c", "title": "C", )"
                                      << R"("tasks": )" << tasks << "}";
-    try {
-      static_cast<void>(readCourse(folder / "c.json"));
-    } catch (const Error& error) {
-      EXPECT_EQ(error.kind(), ErrorKind::damaged);
-      return error.what();
-    }
-    return "no error";
+    return caught([&] { static_cast<void>(readCourse(folder / "c.json")); });
   };
   const std::string task = R"({"scene": "a", "title": "A", "goal": "Do."})";
-  EXPECT_EQ(faultOf("[" + task + "]"), "no error");
-  EXPECT_NE(faultOf("[]").find("/tasks"), std::string::npos);
-  EXPECT_NE(faultOf(R"([{"scene": "a", "title": "A"}])").find("goal"), std::string::npos);
-  EXPECT_NE(faultOf("[" + task + ", " + task + "]").find("/tasks/1/scene"), std::string::npos)
-      << "two tasks of one scene: which is next?";
+  EXPECT_FALSE(faultOf("[" + task + "]"));
+  const std::string file = (folder / "c.json").string();
+  expectFault(ErrorKind::damaged, file + ": /tasks", {"0"}, faultOf("[]"));
+  expectFault(ErrorKind::damaged, file + ": /tasks/0", {"\"goal\""}, faultOf(R"([{"scene": "a", "title": "A"}])"));
+  // Two tasks of one scene: which is next?
+  expectFault(ErrorKind::damaged, file + ": /tasks/1/scene", {}, faultOf("[" + task + ", " + task + "]"));
 }
 
 }  // namespace

@@ -75,12 +75,12 @@ TEST(Obj, RefusesWithTheLine) {
       {"f 1 2 99999999999", "t.obj: line 6", {"\"99999999999\""}},
       {"f 1 2 1.5", "t.obj: line 6", {"\"1.5\""}},
       {"curv 0 1 1 2", "t.obj: line 6", {"\"curv\""}},
-      {"f 1 2 \\", "t.obj: line 6", {}},
+      {"f 1 2 \\", "t.obj: line 6", {"\\"}},
       {"\x89PNG", "t.obj: line 6", {"\"?PNG\""}},
   };
   for (const auto& [line, where, values] : bad)
     expectFault(ErrorKind::damaged, where, values, refusal(ok + line + "\n"));
-  expectFault(ErrorKind::damaged, "t.obj: line 6", {}, refusal(ok + std::string(1, '\0')));
+  expectFault(ErrorKind::damaged, "t.obj: line 6", {"zero"}, refusal(ok + std::string(1, '\0')));
   expectFault(ErrorKind::damaged, "t.obj", {}, refusal(""));
   expectFault(ErrorKind::damaged, "t.obj", {}, refusal(square));
   EXPECT_NE(refusal("")->fault(), refusal(square)->fault());
@@ -153,7 +153,8 @@ TEST_F(ObjFile, OverwritesOnlyWhenTold) {
   const TriangleMesh mesh = parse(square + "f 1 2 3\n");
   const fs::path file = folder_ / "a.obj";
   std::ofstream(file) << "mine";
-  expectFault(ErrorKind::invalid, "", {}, [&] { writeText(file, formatObj(mesh, ""), false); });
+  expectFault(ErrorKind::invalid, file.string(), {}, [&] { writeText(file, formatObj(mesh, ""), false); },
+              {Remedy::replaceExisting});
   EXPECT_EQ(fs::file_size(file), 4U);
   writeText(file, formatObj(mesh, ""), true);
   EXPECT_EQ(readSurface(file, LengthUnit::metre).triangles(), 1);

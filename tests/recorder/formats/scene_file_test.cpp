@@ -203,10 +203,10 @@ TEST(SceneFile, pathsThatLeaveTheAssetsAreRefused) {
 }
 
 TEST(SceneFile, whatIsNotJsonIsNamedWithLineAndColumn) {
-  expectFault(ErrorKind::damaged, "scenes/small.json", {"2", "11"}, [] { load("{\n  \"name\": }"); });
+  expectFault(ErrorKind::damaged, "scenes/small.json", {"JSON", "2", "11"}, [] { load("{\n  \"name\": }"); });
   expectFault(ErrorKind::damaged, "scenes/small.json", {}, [] { load(""); });
   expectFault(ErrorKind::damaged, "scenes/small.json: /", {}, [] { load("[]"); });
-  expectFault(ErrorKind::damaged, "scenes/small.json", {}, [] { load("{\"gravity\": [NaN, 0, 0]}"); });
+  expectFault(ErrorKind::damaged, "scenes/small.json", {"JSON"}, [] { load("{\"gravity\": [NaN, 0, 0]}"); });
   expectFault(ErrorKind::damaged, "scenes/small.json", {}, [] { load("{\"timeLimit\": 1e999}"); });
   expectFault(ErrorKind::damaged, "scenes/small.json", {"\"name\""},
               [] { load("{\"name\": \"a\", \"name\": \"b\"}"); });
@@ -215,7 +215,7 @@ TEST(SceneFile, whatIsNotJsonIsNamedWithLineAndColumn) {
                   caught([] { load("["); })->fault()});
   const std::string whole = validScene().dump();
   for (std::size_t cut = 1; cut < whole.size(); cut += 7) {
-    expectFault(ErrorKind::damaged, "scenes/small.json", {}, [&] { load(whole.substr(0, cut)); });
+    expectFault(ErrorKind::damaged, "scenes/small.json", {"JSON"}, [&] { load(whole.substr(0, cut)); });
   }
 }
 

@@ -80,9 +80,10 @@ TEST(SceneProcedure, EveryFaultIsNamedWithItsPlace) {
               fault("/procedure/divide/1", "{\"vessel\": \"branch\"}"));
   expectFault(ErrorKind::damaged, "scenes/small.json: /procedure/divide/0/patient", {"-1", "[0, 10]"},
               fault("/procedure/divide/0/patient", "-1"));
-  expectFault(ErrorKind::damaged, "scenes/small.json: /procedure/spare/0", {},
+  expectFault(ErrorKind::damaged, "scenes/small.json: /procedure/spare/0", {"divided"},
               fault("/procedure/spare/0", "\"branch\""));
-  expectFault(ErrorKind::damaged, "scenes/small.json: /procedure/spare/0", {}, fault("/procedure/spare/0", "\"twig\""));
+  expectFault(ErrorKind::damaged, "scenes/small.json: /procedure/spare/0", {"name"},
+              fault("/procedure/spare/0", "\"twig\""));
   expectFault(ErrorKind::damaged, "scenes/small.json: /retraction/0/organ", {},
               fault("/retraction/0/organ", "\"pad\""));
   expectFault(ErrorKind::damaged, "scenes/small.json: /retraction/0/stage", {"1.5", "[0, 1]"},

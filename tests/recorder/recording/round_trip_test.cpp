@@ -176,7 +176,8 @@ TEST(Chain, SameContentSameChain) {
 TEST(Writer, RefusesToOverwriteWithoutForce) {
   const Folder folder;
   std::ofstream(folder / "r.h5") << "mine";
-  expectFault(ErrorKind::invalid, "", {"r.h5"}, [&] { const RecordingWriter writer(folder / "r.h5", makeHeader()); });
+  expectFault(ErrorKind::invalid, "", {"r.h5"}, [&] { const RecordingWriter writer(folder / "r.h5", makeHeader()); },
+              {Remedy::replaceExisting});
   std::string text;
   std::ifstream(folder / "r.h5") >> text;
   EXPECT_EQ(text, "mine");
@@ -187,8 +188,9 @@ TEST(Writer, RefusesToOverwriteWithoutForce) {
 
 TEST(Writer, NamesAFolderThatIsNotThere) {
   const Folder folder;
-  expectFault(ErrorKind::invalid, "", {},
-              [&] { const RecordingWriter writer(folder.path() / "no" / "r.h5", makeHeader()); });
+  const std::filesystem::path file = folder.path() / "no" / "r.h5";
+  expectFault(ErrorKind::invalid, file.string(), {file.parent_path().string()},
+              [&] { const RecordingWriter writer(file, makeHeader()); });
 }
 
 TEST(Writer, LeftWithoutAnEndStaysIncomplete) {

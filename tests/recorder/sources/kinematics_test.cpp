@@ -268,7 +268,7 @@ TEST(KinematicsSource, aHandThatStandsStillIsAllowed) {
 TEST(KinematicsSource, aSceneThatShowsNoOrganIsRefused) {
   SceneDescription scene = test::roundScene();
   scene.camera.position = Vec3(0.9, 0.9, -0.1);
-  expectFault(ErrorKind::invalid, "", {}, [&] { sourceOf(wave(5), scene); });
+  expectFault(ErrorKind::invalid, "", {"picture", "organ"}, [&] { sourceOf(wave(5), scene); });
 }
 
 TEST(KinematicsSource, overwrittenBytesNeverCrash) {

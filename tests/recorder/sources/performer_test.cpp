@@ -175,7 +175,7 @@ TEST(PerformerSource, aHandThatReachesNothingIsRefused) {
   scene.camera.orientation = Quat::Identity() * scene.camera.orientation;
   scene.camera.position = Vec3(0.0, 0.0, -0.9);
   scene.camera.orientation = quaternionOf((Mat3() << 1, 0, 0, 0, -1, 0, 0, 0, -1).finished());  // looks away
-  expectFault(ErrorKind::invalid, "", {}, [&] { PerformerSource(profileOf("skilled"), scene, 1); });
+  expectFault(ErrorKind::invalid, "", {"left hand"}, [&] { PerformerSource(profileOf("skilled"), scene, 1); });
 }
 
 TEST(TouchTargets, lieOnTheSurfaceInSightAndReachable) {

@@ -64,7 +64,8 @@ TEST(CombinedDevice, IsAskedForByName) {
   for (const char* name : {"left=null", "right=null", "left=null,left=null", "left=,right=null",
                            "left=null,right=", "left=null,right=joystick", "left=null,right=openigtlink",
                            "left=mouse,right=null", "left=left=null,right=null,right=null", "left=null,,right=null"}) {
-    expectFault(ErrorKind::invalid, "", {}, [&] { openDevice(name, combinedTools); });
+    SCOPED_TRACE(name);
+    expectFault(ErrorKind::invalid, "", {"device"}, [&] { openDevice(name, combinedTools); }, {Remedy::nameDevice});
   }
 }
 

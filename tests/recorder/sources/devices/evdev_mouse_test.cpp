@@ -123,8 +123,9 @@ TEST_F(PipedMouse, ComesBackAfterItWasUnplugged) {
 
 TEST_F(PipedMouse, IsAskedForByName) {
   EXPECT_EQ(openDevice("mouse:" + path_.string(), {}).device->info().name, "mouse");
-  for (const char* name : {"mouse:99", "mouse:there is no such mouse", "mouse:/nowhere/event0"}) {
-    expectFault(ErrorKind::failure, "", {}, [&] { openDevice(name, {}); });
+  for (const std::string which : {"99", "there is no such mouse", "/nowhere/event0"}) {
+    expectFault(ErrorKind::failure, "", {"\"" + which + "\""}, [&] { openDevice("mouse:" + which, {}); },
+                {Remedy::listDevices});
   }
 }
 

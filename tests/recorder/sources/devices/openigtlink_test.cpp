@@ -140,11 +140,11 @@ TEST(OpenIgtLinkServer, FeedsTheLibrarysClientAndOurSource) {
   settings.speed = 3.0;
   std::atomic<bool> stop{false};
   std::vector<std::string> told;
-  bool first = true;  // line: the address
   std::promise<int> listening;
+  bool first = true;
   std::thread thread([&] {
     serveOpenIgtLink(motion, settings, stop, [&](const std::string& line) {
-      if (std::exchange(first, false)) {
+      if (std::exchange(first, false)) {  // its address
         listening.set_value(std::stoi(line.substr(line.rfind(':') + 1)));
       } else {
         told.push_back(line);

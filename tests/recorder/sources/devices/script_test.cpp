@@ -112,12 +112,14 @@ TEST(OpenDevice, RefusesBadNamesWithOneLine) {
        {"", "joystick", "null:x", "gamepad:", "scripted",
         "scripted:", "openigtlink:", "openigtlink:h:", "openigtlink:h:0", "openigtlink:h:65536", "openigtlink:h:1x",
         "openigtlink::1", "openigtlink:h:1:2", "openigtlink:[::1", "openigtlink:a b:1", "openigtlink:[::1]:"}) {
-    expectFault(ErrorKind::invalid, "", {}, [&] { openDevice(name, tools); });
+    expectFault(ErrorKind::invalid, "", {std::string("\"") + name + "\""}, [&] { openDevice(name, tools); },
+                {Remedy::nameDevice});
   }
   EXPECT_THROW(openDevice("openigtlink", {"", ""}), Error);
   EXPECT_THROW(openDevice("openigtlink", {"a", "a"}), Error);
   EXPECT_THROW(openDevice("openigtlink", {"abcdefghijklmnopqrstu", "a"}), Error);
-  expectFault(ErrorKind::damaged, "", {}, [&] { openDevice("scripted:/nowhere/there-is-none.json", tools); });
+  expectFault(ErrorKind::damaged, "", {"there-is-none.json"},
+              [&] { openDevice("scripted:/nowhere/there-is-none.json", tools); });
   EXPECT_EQ(openDevice("openigtlink:[::1]:5", tools).device->info().name, "openigtlink");
   EXPECT_EQ(openDevice("openigtlink", {"", "Probe"}).device->info().capabilities.hands, 1);
 }

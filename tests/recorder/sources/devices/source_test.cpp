@@ -198,7 +198,7 @@ TEST(DeviceSource, WaitsForTheFirstSampleAndSaysWhatIsMissing) {
   DeviceScript script = movingScript(5, 1, {Hand::right});
   for (DeviceSample& s : script.samples) s.valid = false;
   Rig rig(script, emptyScene());
-  expectFault(ErrorKind::failure, "", {}, [&] { rig.source->waitForFirst(0.1); });
+  expectFault(ErrorKind::failure, "", {"sample", "hand"}, [&] { rig.source->waitForFirst(0.1); });
 }
 
 TEST(DeviceSource, SaysWhatItIs) {

@@ -96,7 +96,7 @@ TEST(SpaceMouse, DeflectionsAreSpeedsAndALossIsTold) {
 
 TEST(SpaceMouse, WithoutADaemonThatIsSaid) {
   setenv("SPNAV_SOCKET", "/nowhere/spnav", 1);
-  expectFault(ErrorKind::failure, "", {}, [&] { openDevice("spacenav", {}); });
+  expectFault(ErrorKind::failure, "", {"SpaceMouse"}, [&] { openDevice("spacenav", {}); }, {Remedy::listDevices});
   unsetenv("SPNAV_SOCKET");
 }
 

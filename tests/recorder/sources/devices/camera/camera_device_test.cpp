@@ -17,7 +17,7 @@
 #include "recorder/sources/devices/open_device.h"
 #include "tests/recorder/sources/devices/camera/support/film_of_scene.h"
 #include "tests/recorder/sources/devices/camera/support/marker_scene.h"
-#include "tests/support/message.h"
+#include "tests/support/fault.h"
 
 namespace calot::recorder {
 namespace {
@@ -205,22 +205,24 @@ TEST(CameraDevice, AFilmGivesTheSameSamplesEveryTime) {
     cut.device->poll(std::chrono::nanoseconds(0), rest);
   EXPECT_TRUE(cut.device->ended());
   EXPECT_LE(rest.samples.size(), 4U);
-  const auto kindOf = [&](const std::string& name, const Calibration* with) {
-    try {
-      openDevice(name, {"", ""}, with);
-    } catch (const Error& e) {
-      return std::optional(e.kind());
-    }
-    return std::optional<ErrorKind>();
+  const auto refused = [](ErrorKind kind, const std::string& value, const std::vector<Remedy>& remedies,
+                          const std::string& name, const Calibration* with) {
+    SCOPED_TRACE(name);
+    expectFault(
+        kind, "", {value},
+        [&] {
+          openDevice(name, {"", ""}, with);
+        },
+        remedies);
   };
-  EXPECT_EQ(kindOf("camera:" + file, nullptr), ErrorKind::invalid);
-  EXPECT_EQ(kindOf("camera:" + file + ",other.y4m", &calibration), ErrorKind::invalid);
-  EXPECT_EQ(kindOf("camera:/nowhere.y4m", &calibration), ErrorKind::damaged);
-  EXPECT_EQ(kindOf("camera", &calibration), ErrorKind::invalid);
-  EXPECT_EQ(kindOf("camera:0," + file, &calibration), ErrorKind::invalid);
-  EXPECT_EQ(kindOf("camera:/dev/video987", &calibration), ErrorKind::failure);
+  refused(ErrorKind::invalid, "device", {Remedy::measureCalibration}, "camera:" + file, nullptr);
+  refused(ErrorKind::invalid, "2 cameras", {Remedy::nameDevice}, "camera:" + file + ",other.y4m", &calibration);
+  refused(ErrorKind::damaged, "nowhere.y4m", {}, "camera:/nowhere.y4m", &calibration);
+  refused(ErrorKind::invalid, "\"camera\"", {Remedy::nameDevice}, "camera", &calibration);
+  refused(ErrorKind::invalid, "device", {Remedy::nameDevice}, "camera:0," + file, &calibration);
+  refused(ErrorKind::failure, "/dev/video987", {}, "camera:/dev/video987", &calibration);
   std::filesystem::resize_file(file, 40);
-  EXPECT_EQ(kindOf("camera:" + file, &calibration), ErrorKind::damaged);
+  refused(ErrorKind::damaged, "hands.y4m", {}, "camera:" + file, &calibration);
   calibration.camera->cameras[0].lens.width = 640;
   std::filesystem::remove_all(folder);
 }

@@ -102,11 +102,13 @@ TEST(ForceDevice, WhatIsNotThereOrAnotherProtocolIsSaid) {
     const TcpListener listener(0);
     free = listener.port();
   }
-  expectFault(ErrorKind::failure, "", {}, [&] { ForceDevice device(at(free)); });
+  expectFault(ErrorKind::failure, "", {std::to_string(free)}, [&] { ForceDevice device(at(free)); },
+              {Remedy::listDevices});
   const ServerThread right;  // has no left hand
   EXPECT_THROW(openDevice("force:127.0.0.1:" + std::to_string(right.port()), {}, nullptr, Hand::left), Error);
   for (const char* name : {"force:h:", "force:h:0", "force:h:x", "force::1", "force:a b:1"}) {
-    expectFault(ErrorKind::invalid, "", {}, [&] { openDevice(name, {}); });
+    expectFault(ErrorKind::invalid, "", {std::string("\"") + name + "\""}, [&] { openDevice(name, {}); },
+                {Remedy::nameDevice});
   }
 }
 

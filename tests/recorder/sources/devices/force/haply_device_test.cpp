@@ -102,7 +102,8 @@ TEST(HaplyDevice, TwoDevicesDriveTwoHandsAndALossIsTold) {
 TEST(HaplyDevice, NoServiceAndNoDeviceAreSaid) {
   EXPECT_THROW(openDevice("haply:127.0.0.1:1", {}), Error);
   HaplyService service({});
-  expectFault(ErrorKind::failure, "", {}, [&] { HaplyDevice device(serviceAt(service.port())); });
+  expectFault(ErrorKind::failure, "", {"Inverse3"}, [&] { HaplyDevice device(serviceAt(service.port())); },
+              {Remedy::listDevices});
 }
 
 }  // namespace
