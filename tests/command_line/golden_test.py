@@ -117,6 +117,13 @@ class Golden(program.ProgramTest):
         self.assertEqual(answer.code, 3, answer)
         self.assertEqual(self.listed(), before, "values of another simulation were taken over")
 
+    def test_goldens_of_a_newer_version_stay(self):
+        self.write([ENTRY], version=99999)
+        self.commit()
+        self.refused(2, "golden", "update", "--folder", self.golden, "--reason", "x", names=["99999"])
+        self.assertEqual(self.listed()["simulation_version"], 99999)
+        self.assertEqual([p.name for p in self.golden.iterdir()], ["golden.json"])
+
     def made_long(self):
         """A golden of digests, as it was made."""
         self.write([LONG])
@@ -157,6 +164,7 @@ class Golden(program.ProgramTest):
         for chain in ("samples", "steps"):  # 200 steps, and how the run ended
             self.assertEqual([len(line) for line in made[chain]], [99 * 4 + 16, 99 * 4 + 16, 16])
         self.assertRegex(self.check(made).out, r"long\.json: bit-exact, 2\.00 s \(200 steps\)")
+        self.assertEqual(json.loads(self.check(made, "--json").out)["recordings"][0]["message"], "bit-exact")
 
         # A step and the performer have verdicts of their own, each with the first step that differs.
         for fault, verdict in (({"steps": 120}, ("step", 120)), ({"steps": 99}, ("step", 99)), ({"samples": 57}, ("performer", 57)),
