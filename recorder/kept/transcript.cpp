@@ -86,7 +86,6 @@ Transcript makeTranscript(const std::vector<std::string>& command, Recording& re
   ask(wire::Hello{});
   ask(scene);
   ask(wire::Start{recording.header().seed});
-  ask(wire::AskView{});
   const std::uint64_t half = steps / 2;
   wire::Keyframe keyframe;
   for (std::uint64_t n = 0; n < steps; ++n) {
@@ -102,6 +101,7 @@ Transcript makeTranscript(const std::vector<std::string>& command, Recording& re
   ask(wire::Restore{broken, 0, {}});
   ask(wire::Restore{keyframe, 0, {}});
   for (std::uint64_t n = half + 1; n < steps; ++n) ask(stepOf(recording.step(n), 0));
+  ask(wire::AskView{});
   ask(wire::Step{});  // without its ticks: a fault, and the end
   return transcript;
 }
