@@ -247,11 +247,11 @@ inline constexpr Access keyGroup = {
     .type = Access::Type::record, .get = [](void* object) { return object; }, .record = &recordOf<S, Rows>};
 
 /// One field of what a step reports. Each part of StepResult lists its fields once, by pointers to its members:
-///
+/// @code
 ///   template <class Visit> static void fields(Visit&& visit) {
 ///     visit(ResultField{"volume", "m^3", "", 1, "of the deformed tetrahedra"}, &OrganResult::volume);
 ///   }
-///
+/// @endcode
 /// The recording's columns, schemas/observables.md, comparison, equality and tests all run over that list.
 struct ResultField {
   const char* name;     ///< of the data set; stored, never reused
