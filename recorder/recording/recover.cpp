@@ -138,7 +138,7 @@ Recovered rewrite(const std::filesystem::path& in, const std::filesystem::path& 
   try {
     source = std::make_unique<Salvage>(in, scratch);
   } catch (const Error& e) {
-    throw Error(e.kind(), fmt::format("nothing can be saved: {}", e.what()));
+    throw Error(e.kind(), Where{in.string(), e.where().place}, fmt::format("nothing can be saved: {}", e.fault()));
   }
   const StatusRow first = createRecordingFile(temporary, source->header(), source->layout(),
                                               source->signature() ? &source->signature()->publicKey : nullptr);
@@ -154,7 +154,7 @@ Recovered rewrite(const std::filesystem::path& in, const std::filesystem::path& 
   result.ticks = out.last().ticks;
   result.complete = out.last().completed;
   if (result.steps == 0 && !result.lost.empty()) {
-    throw Error(ErrorKind::damaged, fmt::format("nothing can be saved: {}", result.lost));
+    throw Error(ErrorKind::damaged, Where{in.string()}, fmt::format("nothing can be saved: {}", result.lost));
   }
   return result;
 }
