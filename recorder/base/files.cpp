@@ -213,6 +213,7 @@ fs::path findJsonFile(const std::string& name, const std::vector<fs::path>& root
   const std::map<std::string, fs::path> files = jsonFilesIn(roots, folder);
   if (const auto found = files.find(name); found != files.end()) return found->second;
   std::vector<std::string> known;
+  known.reserve(files.size());
   for (const auto& [each, path] : files) known.push_back(each);
   throw Error(ErrorKind::invalid,
               fmt::format("there is no {} \"{}\"{}; {}", what, name, didYouMean(name, known),
