@@ -172,6 +172,7 @@ std::vector<ListedMouse> listMice() {
     if (isMouse(opened.get())) found.emplace(number, ListedMouse{entry.path(), nameOf(opened.get())});
   }
   std::vector<ListedMouse> out;
+  out.reserve(found.size());
   for (auto& [number, mouse] : found) out.push_back(std::move(mouse));
   return out;
 }
