@@ -70,7 +70,7 @@ struct PackAnswers {
   RatingForm form;
   std::string rater;
   std::vector<Rating> ratings;
-  std::size_t notJudged = 0;  ///< films of which the rater could judge no item
+  std::size_t notJudged = 0;  ///< films without an item that the rater could judge
   std::size_t withdrawn = 0;  ///< films of attempts that were withdrawn since
 };
 

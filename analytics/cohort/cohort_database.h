@@ -309,7 +309,7 @@ class CohortDatabase {
   /// nobody makes it.
   std::uint32_t storeNorm(const Norm& norm);
   [[nodiscard]] std::vector<Norm> norms() const;  ///< by name, version; whole
-  /// The newest version where none is given. @throws Error (refused) where there is none.
+  /// The newest version unless one is given. @throws Error (refused) where there is none.
   [[nodiscard]] Norm norm(const std::string& name, std::uint32_t version = 0) const;
   /// @throws Error (refused) where there is no such norm; Error (invalid) where the statement or who attaches it is
   /// empty.
@@ -344,7 +344,7 @@ void refuseUnsound(const std::string& path);
 
 struct CohortMerge {
   std::uint64_t participants = 0, attempts = 0;  ///< taken in
-  std::uint64_t extended = 0;                    ///< attempts of which the other database had more, or had judged
+  std::uint64_t extended = 0;                    ///< attempts that the other database had longer, or judged
   std::uint64_t rows = 0;                        ///< of all other tables, taken in
   std::uint64_t audit = 0;                       ///< rows of the audit trail, which carry no new content
   std::uint64_t filled = 0;                      ///< entries that were empty here
@@ -354,7 +354,7 @@ struct CohortMerge {
   [[nodiscard]] bool changed() const { return participants + attempts + extended + rows + filled > 0; }
 };
 
-/// Takes everything of one database into another, which is made where there is none, in one transaction. Rows are the
+/// Takes everything of one database into another, made if it is missing, in one transaction. Rows are the
 /// same where their keys are: a pseudonym, a uuid, a name; never the numbers of rows. Of an attempt in both, the longer
 /// recording counts and the values that are there stay. Doing it again changes nothing. Where both say different things
 /// of one row, that is a conflict, every one is reported, and nothing is merged.
