@@ -5,9 +5,14 @@ import sqlite3
 from contextlib import closing
 
 
+def opened(path):
+    """A database that must be there. Not read-only: a program that was killed may have left a journal, which SQLite rolls back first."""
+    return closing(sqlite3.connect(f"file:{path}?mode=rw", uri=True))
+
+
 def content(path):
     """Every row of every table, without the moments at which they were written."""
-    with closing(sqlite3.connect(f"file:{path}?mode=ro", uri=True)) as database:
+    with opened(path) as database:
         tables = [row[0] for row in database.execute("SELECT name FROM sqlite_master WHERE type = 'table' ORDER BY name")]
         out = {}
         for table in tables:
@@ -17,7 +22,7 @@ def content(path):
 
 
 def query(path, sql):
-    with closing(sqlite3.connect(f"file:{path}?mode=ro", uri=True)) as database:
+    with opened(path) as database:
         return database.execute(sql).fetchall()
 
 
