@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <memory>
-#include <optional>
 
 #include "analytics/checkpoints/replay_words.h"
 #include "python/bindings.h"
