@@ -81,7 +81,7 @@ JudgedRecording assessRecording(const std::string& file, const AssessSettings& w
   }
   // An engine whose results are of an earlier version proves what is recorded; the values are of that.
   const bool ofRecord = exact && !collector;
-  if (ofRecord || (report.verdict == recorder::ReplayVerdict::undecided && report.chainIntact)) {
+  if (ofRecord || (report.verdict == recorder::ReplayVerdict::undecided && report.chainIntact())) {
     if (hasMetrics)
       input = std::make_unique<MetricInput>(header, recorder::sceneFromAssets(header.assets).description,
                                             Origin::observables);
@@ -120,7 +120,7 @@ AttemptRecord recordOf(const recorder::AttemptHeader& h, const recorder::ReplayR
   a.steps = report.steps;
   a.stepSeconds = h.tickSeconds * static_cast<double>(h.ticksPerStep);
   a.chainHead = report.chainHead;
-  if (report.chainIntact && report.signature && report.signature->value) {
+  if (report.chainIntact() && report.signature && report.signature->value) {
     RecordingSignature& s = a.signature.emplace();
     const auto key = std::as_bytes(std::span(report.signature->publicKey));
     const auto value = std::as_bytes(std::span(*report.signature->value));

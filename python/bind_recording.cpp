@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 
+#include "analytics/checkpoints/replay_words.h"
 #include "python/bindings.h"
 #include "recorder/recording/layout.h"
 #include "recorder/recording/probe.h"
@@ -87,8 +88,8 @@ void bindRecording(py::module_& m) {
       .def_property_readonly("outcome",
                              [](const OpenedRecording& o) { return recorder::wordFor(o.recording.outcome()); })
       .def_property_readonly("keyframe_steps", [](const OpenedRecording& o) { return o.recording.keyframeSteps(); })
-      .def_property_readonly("chain_intact", [](const OpenedRecording& o) { return o.chain.intact; })
-      .def_property_readonly("chain_fault", [](const OpenedRecording& o) { return o.chain.what; })
+      .def_property_readonly("chain_intact", [](const OpenedRecording& o) { return o.chain.intact(); })
+      .def_property_readonly("chain_fault", [](const OpenedRecording& o) { return analytics::wordsFor(o.chain); })
       .def_property_readonly("chain_head",
                              [](const OpenedRecording& o) {
                                const auto& head = o.recording.status().back().chain;

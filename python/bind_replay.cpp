@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <memory>
-#include <optional>
 
 #include "analytics/checkpoints/replay_words.h"
 #include "python/bindings.h"
@@ -22,7 +21,7 @@ namespace {
 struct SteppedReplay {
   explicit SteppedReplay(const std::filesystem::path& file)
       : path(file),
-        chainIntact(recorder::probe(file).intact),
+        chainIntact(recorder::probe(file).intact()),
         recording(file),
         choice(recording, {}),
         scene(recorder::sceneOf(recording)),
@@ -84,7 +83,7 @@ py::dict reportOf(const recorder::ReplayReport& r) {
   return py::dict("file"_a = r.path.string(), "verdict"_a = recorder::wordFor(r.verdict), "attempt"_a = r.attempt,
                   "complete"_a = r.complete, "steps"_a = r.steps, "seconds"_a = r.seconds,
                   "wall_seconds"_a = r.wallSeconds, "simulation_version"_a = r.simulationVersion,
-                  "chain_intact"_a = r.chainIntact, "missed_tolerance"_a = r.misses.any,
+                  "chain_intact"_a = r.chainIntact(), "missed_tolerance"_a = r.misses.any,
                   "message"_a = analytics::wordsFor(r));
 }
 

@@ -306,15 +306,14 @@ void runOpenLoop(const Model& model, const AttemptInputs& inputs, std::span<Obse
   session.end(inputs.outcome);
 }
 
-void refuseParent(const Recording& parent, const ChainVerdict& chain) {
+void refuseParent(const Recording& parent) {
   const AttemptHeader& header = parent.header();
   const std::string name = parent.path().string();
-  if (chain.intact && header.simulationVersion != simulationVersion) {
+  if (header.simulationVersion != simulationVersion) {
     throw Error(ErrorKind::undecided, Where{name},
                 fmt::format("recorded with simulation version {}, this build has {}: it cannot be branched here",
                             header.simulationVersion, simulationVersion));
   }
-  if (!chain.intact) throw Error(ErrorKind::refused, Where{name}, fmt::format("content chain broken: {}", chain.what));
   if (header.mode == Mode::assessment) {
     throw Error(ErrorKind::refused, Where{name}, "made in assessment mode, which has no branches");
   }

@@ -141,9 +141,9 @@ AttemptInputs inputsOf(Recording& recording);
 void runOpenLoop(const Model& model, const AttemptInputs& inputs, std::span<Observer* const> observers,
                  Executor& executor);
 
-/// Is this a recording that can be branched here? @throws Error: refused for a broken chain or one made in assessment
-/// mode; undecided (5) for another simulation version.
-void refuseParent(const Recording& parent, const ChainVerdict& chain);
+/// Is this a recording that can be branched here? @throws Error: refused for one made in assessment mode; undecided (5)
+/// for another simulation version. @pre its content chain is intact
+void refuseParent(const Recording& parent);
 
 /// The last step that a branch shares with its parent: the one that is over at `time`.
 /// @param time of the parent's attempt (s) @throws Error (invalid) where that is not a number, before the end of the

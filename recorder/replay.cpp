@@ -129,19 +129,18 @@ void judge(Recording& recording, const ChainVerdict& chain, const ReplaySettings
   report.seconds = recording.seconds();
   report.simulationVersion = header.simulationVersion;
   for (std::size_t i = 0; i < 32; ++i) report.chainHead[i] = static_cast<std::byte>(recording.status().back().chain[i]);
-  report.chainIntact = chain.intact;
-  report.chainFault = chain.what;
+  report.chain = chain;
   report.signature = recording.signature();
   const bool otherVersion = header.simulationVersion != simulationVersion;
   // A damaged recording may be compared with any engine: none can prove it.
-  const bool foreign =
-      otherVersion && (settings.engine.anyway || (!chain.intact && commandOfEngine(header.simulationVersion).empty()));
+  const bool foreign = otherVersion && (settings.engine.anyway ||
+                                        (!chain.intact() && commandOfEngine(header.simulationVersion).empty()));
   EngineRequest request = settings.engine;
   request.anyway = foreign;
   const EngineChoice choice(recording, request);
   // Another version may have other components; digests of different layouts say nothing field by field.
   if (!choice.fits(header.layout)) {
-    report.verdict = foreign && chain.intact ? ReplayVerdict::undecided : ReplayVerdict::diverged;
+    report.verdict = foreign && chain.intact() ? ReplayVerdict::undecided : ReplayVerdict::diverged;
     report.finding = ReplayFinding::otherLayout;
     return;
   }
@@ -184,11 +183,11 @@ void judge(Recording& recording, const ChainVerdict& chain, const ReplaySettings
   report.finding = ReplayFinding::compared;
   if (settings.part)
     report.part = {{settings.part->first, settings.part->second}, {segments.front().first, segments.back().end - 1}};
-  const bool differs = report.divergence || !chain.intact;
-  report.verdict = foreign && chain.intact ? ReplayVerdict::undecided
-                   : differs               ? ReplayVerdict::diverged
-                   : settings.part         ? ReplayVerdict::consistent
-                                           : ReplayVerdict::exact;
+  const bool differs = report.divergence || !chain.intact();
+  report.verdict = foreign && chain.intact() ? ReplayVerdict::undecided
+                   : differs                 ? ReplayVerdict::diverged
+                   : settings.part           ? ReplayVerdict::consistent
+                                             : ReplayVerdict::exact;
 }
 
 }  // namespace

@@ -108,9 +108,8 @@ struct ReplayReport {
   double wallSeconds = 0.0;             ///< of the whole check
   std::uint32_t simulationVersion = 0;  ///< of the recording
   std::array<std::byte, 32> chainHead{};
-  StepMisses misses;  ///< of the steps that were computed again
-  bool chainIntact = false;
-  std::string chainFault;                      ///< one phrase, where it is broken
+  StepMisses misses;                           ///< of the steps that were computed again
+  std::optional<ChainVerdict> chain;           ///< none: it was not read
   std::optional<RecordedSignature> signature;  ///< as recorded; it fits where the chain is intact
   std::optional<Divergence> divergence;
   std::optional<bool> reproducible;  ///< a second run differed at the same place in the same way
@@ -119,6 +118,7 @@ struct ReplayReport {
   std::string error;             ///< does not name the recording
   std::vector<Remedy> remedies;  ///< of what stands in the way
 
+  [[nodiscard]] bool chainIntact() const { return chain && chain->intact(); }
   /// Kind of error of a verdict other than exact.
   [[nodiscard]] std::optional<ErrorKind> fault() const;
 };

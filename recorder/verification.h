@@ -5,9 +5,7 @@
 // from its start gives follows by induction (docs/explanation/determinism.md, "In segments").
 #pragma once
 
-#include <array>
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <vector>
 

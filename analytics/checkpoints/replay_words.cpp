@@ -7,6 +7,7 @@
 
 namespace calot::analytics {
 
+using recorder::ChainFault;
 using recorder::ReplayFinding;
 
 std::string wordsFor(const recorder::StepMisses& misses) {
@@ -30,11 +31,33 @@ std::string wordsFor(const recorder::Divergence& divergence) {
   return text;
 }
 
+std::string wordsFor(const recorder::ChainVerdict& chain) {
+  switch (chain.fault) {
+    case ChainFault::none:
+      return {};
+    case ChainFault::start:
+      return "the content chain is broken at its start: root attributes, scene or names were changed";
+    case ChainFault::flush:
+      return fmt::format(
+          "the content chain is broken at flush {} (steps {} to {}, from {:.3f} s on): what was recorded there was "
+          "changed",
+          chain.flush, chain.firstStep, chain.endStep - 1, chain.seconds);
+    case ChainFault::signature:
+      return "the signature does not fit the content: one of both was changed after it was signed";
+  }
+  return {};
+}
+
+void refuseBrokenParent(const std::filesystem::path& parent, const recorder::ChainVerdict& chain) {
+  if (chain.intact()) return;
+  throw Error(ErrorKind::refused, Where{parent.string()}, "content chain broken: " + wordsFor(chain));
+}
+
 std::string wordsFor(const recorder::ReplayReport& report) {
   if (report.finding == ReplayFinding::unread) return report.error;
   if (report.finding == ReplayFinding::otherLayout)
     return "the recorded digests have other components than this build's State: nothing to compare";
-  const std::string broken = report.chainIntact ? "" : "content chain broken: " + report.chainFault;
+  const std::string broken = report.chainIntact() ? "" : "content chain broken: " + wordsFor(*report.chain);
   std::string text = "bit-exact";
   if (report.finding == ReplayFinding::otherNames) {
     text = report.error;

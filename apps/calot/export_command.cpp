@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 #include "analytics/checkpoints/collector.h"
+#include "analytics/checkpoints/replay_words.h"
 #include "analytics/cohort/withdraw.h"
 #include "analytics/interchange/export_tables.h"
 #include "apps/calot/command.h"
@@ -55,7 +56,7 @@ void exportRecording(const ExportOptions& o) {
   if (!o.motion.empty()) printFiles(analytics::writeMotionTables(analytics::motionOf(recording), o.motion, o.force));
   if (!recording.complete()) fmt::print("incomplete\n");
   // The export is complete; the exit code reports that the recording was changed.
-  if (!chain.intact) throw Error(ErrorKind::refused, fmt::format("{}: {}", o.file, chain.what));
+  if (!chain.intact()) throw Error(ErrorKind::refused, fmt::format("{}: {}", o.file, analytics::wordsFor(chain)));
 }
 
 void exportFile(const ExportOptions& o) {

@@ -263,7 +263,8 @@ GoldenReplay perform(const GoldenEntry& entry, const std::filesystem::path& reco
       {"samples", digests.samples.lines},
       {"steps", digests.steps.lines}};
   made.values = goldenValues(collector.values());
-  made.report.complete = made.report.chainIntact = true;
+  made.report.complete = true;
+  made.report.chain.emplace();
   made.report.steps = report.steps;
   made.report.seconds = static_cast<double>(report.steps) * model.stepSeconds();
   made.report.wallSeconds = report.wallSeconds;

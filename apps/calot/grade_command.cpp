@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "analytics/assessment/grade.h"
+#include "analytics/checkpoints/replay_words.h"
 #include "analytics/cohort/cohort_database.h"
 #include "analytics/report/grade_sheet.h"
 #include "apps/calot/command.h"
@@ -68,8 +69,9 @@ void lookAtRecording(analytics::Grade& grade, const fs::path& file, const GradeO
         fmt::format("the recording {} is not beside the database (--recording)", grade.attempt.fileName);
     return;
   }
-  if (const recorder::ChainVerdict chain = recorder::probe(file); !chain.intact)
-    throw Error(ErrorKind::refused, Where{file.string()}, fmt::format("its content chain is broken ({})", chain.what));
+  if (const recorder::ChainVerdict chain = recorder::probe(file); !chain.intact())
+    throw Error(ErrorKind::refused, Where{file.string()},
+                fmt::format("its content chain is broken ({})", analytics::wordsFor(chain)));
   recorder::Recording recording(file);
   if (recording.header().attempt != grade.attempt.uuid)
     throw Error(ErrorKind::refused, Where{file.string()},

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <map>
 
+#include "analytics/checkpoints/replay_words.h"
 #include "apps/calot/command.h"
 #include "recorder/base/files.h"
 #include "recorder/recording/layout.h"
@@ -74,8 +75,8 @@ Json describe(recorder::Recording& recording, const recorder::ChainVerdict& chai
   describeSteps(recording, out);
   if (header.deviceSamples) out["device_samples"] = describeDevice(recording);
   out["flushes"] = recording.status().size() - 1;
-  out["chain"] = chain.intact ? "intact" : "broken";
-  if (!chain.intact) out["chain_broken_at_flush"] = chain.flush;
+  out["chain"] = chain.intact() ? "intact" : "broken";
+  if (!chain.intact()) out["chain_broken_at_flush"] = chain.flush;
   const std::string head = recorder::hexOf(recording.status().back().chain);
   out["chain_head"] = head;
   const std::optional<recorder::RecordedSignature>& signature = recording.signature();
@@ -195,7 +196,7 @@ void inspect(const InspectOptions& o) {
   const Json d = describe(recording, chain);
   printResult(o.json, "inspect", d, inspectText(d));
   const std::string wanted = o.key.empty() ? "" : recorder::hexOf(keyOf(o.key, "--public-key"));
-  if (!chain.intact) throw Error(ErrorKind::refused, fmt::format("{}: {}", o.file, chain.what));
+  if (!chain.intact()) throw Error(ErrorKind::refused, fmt::format("{}: {}", o.file, analytics::wordsFor(chain)));
   const auto& signature = recording.signature();
   if (!wanted.empty() && (!signature || !signature->value || recorder::hexOf(signature->publicKey) != wanted))
     throw Error(ErrorKind::refused, fmt::format("{}: not signed by that key", o.file));

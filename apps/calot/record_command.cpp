@@ -185,7 +185,8 @@ void branch(const BranchOptions& o) {
   recorder::NewFile file(o.output, o.force, ".branch");
   const recorder::ChainVerdict chain = recorder::probe(o.parent);
   recorder::Recording parent(o.parent);
-  recorder::refuseParent(parent, chain);
+  analytics::refuseBrokenParent(parent.path(), chain);
+  recorder::refuseParent(parent);
   const std::uint64_t forkStep = recorder::forkStepAt(parent, at);
   const std::shared_ptr<recorder::PreparedScene> scene = recorder::sceneOf(parent);
   const Model& model = scene->model();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+#include "analytics/checkpoints/replay_words.h"
 #include "analytics/cohort/withdraw.h"
 #include "apps/calot/command.h"
 #include "gui/film/film.h"
@@ -58,8 +59,8 @@ void render(const RenderOptions& o) {
   std::vector<std::string> files{o.recording};
   if (o.beside) files.push_back(*o.beside);
   for (const std::string& file : files) {
-    if (const recorder::ChainVerdict chain = recorder::probe(file); !chain.intact) {
-      if (!o.anyway) throw Error(ErrorKind::refused, Where{file}, chain.what, {Remedy::replayAnyway});
+    if (const recorder::ChainVerdict chain = recorder::probe(file); !chain.intact()) {
+      if (!o.anyway) throw Error(ErrorKind::refused, Where{file}, analytics::wordsFor(chain), {Remedy::replayAnyway});
       settings.doubt = "NOT AS RECORDED: content was changed";
     }
     if (!o.cohort.empty()) attempts.push_back(recorder::Recording(file).header().attempt);

@@ -84,7 +84,7 @@ nlohmann::json reportJson(const recorder::ReplayReport& r) {
                       {"wall_seconds", r.wallSeconds},
                       {"missed_tolerance", missesJson(r.misses)},
                       {"simulation_version", r.simulationVersion},
-                      {"chain_intact", r.chainIntact},
+                      {"chain_intact", r.chainIntact()},
                       {"message", analytics::wordsFor(r)},
                       {"exit_code", static_cast<int>(codeOf(r.fault()))}};
   if (!r.remedies.empty()) json["advice"] = advice(r.remedies);

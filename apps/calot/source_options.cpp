@@ -58,7 +58,15 @@ void printDevice(recorder::SampleSource& source) {
   fmt::print("{}: {} samples, {} invalid, gone {} times\n", device->provenance().device, counts.samples, counts.invalid,
              counts.losses);
   for (const std::string& line : counts.told) fmt::print("  {}\n", line);
-  for (const std::string& line : device->deviceReport()) fmt::print("  {}\n", line);
+  const std::array<recorder::ForceStatistics, handCount> forces = device->forceStatistics();
+  for (std::size_t h = 0; h < handCount; ++h) {
+    const recorder::ForceStatistics& s = forces[h];
+    if (s.sent == 0) continue;
+    fmt::print(
+        "  force on the {} hand: {} wrenches, at most {:.2f} N, changes of at most {:.3f} N, {} softened to stay "
+        "passive, round trip at most {:.1f} ms\n",
+        handNames[h], s.sent, s.maxForce, s.maxChange, s.softened, 1e-6 * static_cast<double>(s.maxRoundTrip));
+  }
 }
 
 namespace {

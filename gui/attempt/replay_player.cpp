@@ -7,6 +7,7 @@
 #include <cmath>
 #include <exception>
 
+#include "analytics/checkpoints/replay_words.h"
 #include "gui/view/thread_rank.h"
 #include "gui/words/problem_words.h"
 #include "recorder/base/errors.h"
@@ -355,8 +356,9 @@ recorder::Recording openRecording(const fs::path& file, const std::string& attem
   if (!attempt.empty() && found != attempt)
     throw Error(ErrorKind::refused, Where{name},
                 fmt::format("is the recording of attempt {}, not of {}", found, attempt));
-  if (!chain.intact)
-    throw Error(ErrorKind::refused, Where{name}, fmt::format("its content chain is broken ({})", chain.what));
+  if (!chain.intact())
+    throw Error(ErrorKind::refused, Where{name},
+                fmt::format("its content chain is broken ({})", analytics::wordsFor(chain)));
   if (recording.stepCount() == 0) throw Error(ErrorKind::damaged, Where{name}, "holds no step to show");
   const std::uint32_t version = recording.header().simulationVersion;
   if (version != simulationVersion && recorder::commandOfEngine(version).empty())

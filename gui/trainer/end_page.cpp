@@ -111,7 +111,7 @@ AttemptFacts readFacts(const std::filesystem::path& file, const std::filesystem:
     }
   }
   const recorder::ChainVerdict chain = recording.verifyChain();
-  if (!chain.intact)
+  if (!chain.intact())
     throw Error(ErrorKind::refused, Where{file.string()}, "its content does not agree with its chain: no figures");
   recorder::ReplayReport own;
   own.outcome = recording.outcome();

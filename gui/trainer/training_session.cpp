@@ -211,7 +211,8 @@ void TrainingSession::attempt(std::optional<double> back) {
   std::uint64_t fork = 0;
   if (back) {
     parent.emplace(parentFile);
-    recorder::refuseParent(*parent, parent->verifyChain());
+    analytics::refuseBrokenParent(parentFile, parent->verifyChain());
+    recorder::refuseParent(*parent);
     fork = recorder::forkStepAt(*parent, *back);
   }
   const recorder::AttemptHeader header =

@@ -163,10 +163,7 @@ const std::optional<RecordedSignature>& Recording::signature() const { return im
 
 ChainVerdict Recording::verifyChain() {
   Impl& impl = *impl_;
-  ChainVerdict verdict;
-  if (chainStart(impl.header) != impl.status.front().chain) {
-    return {false, 0, 0, 0, "the content chain is broken at its start: root attributes, scene or names were changed"};
-  }
+  if (chainStart(impl.header) != impl.status.front().chain) return {ChainFault::start};
   Block block(*impl.layout);
   for (std::size_t row = 1; row < impl.status.size(); ++row) {
     const StatusRow& before = impl.status[row - 1];
@@ -176,19 +173,15 @@ ChainVerdict Recording::verifyChain() {
       impl.columns->readBlock(before, after, true, block);
     }
     if (chainNext(*impl.layout, before, block, after) != after.chain) {
-      return {false, row, before.steps, after.steps,
-              fmt::format(
-                  "the content chain is broken at flush {} (steps {} to {}, from {:.3f} s on): what was recorded there "
-                  "was changed",
-                  row, before.steps, after.steps - 1, static_cast<double>(before.ticks) * impl.header.tickSeconds)};
+      return {ChainFault::flush, row, before.steps, after.steps,
+              static_cast<double>(before.ticks) * impl.header.tickSeconds};
     }
   }
   if (impl.signature && impl.signature->value && !impl.signature->fits(impl.status.back().chain)) {
     const std::size_t last = impl.status.size() - 1;
-    return {false, last, last > 0 ? impl.status[last - 1].steps : 0, impl.status[last].steps,
-            "the signature does not fit the content: one of both was changed after it was signed"};
+    return {ChainFault::signature, last, last > 0 ? impl.status[last - 1].steps : 0, impl.status[last].steps};
   }
-  return verdict;
+  return {};
 }
 
 }  // namespace calot::recorder

@@ -51,20 +51,32 @@ struct RecordedStep {
   RecordedProcedure procedure;  ///< version 3 of StepResult: the judgement of its time
 };
 
+/// The first part of a recording that does not agree with its content chain.
+enum class ChainFault : std::uint8_t {
+  none,
+  start,      ///< root attributes, scene or names
+  flush,      ///< the content of one flush
+  signature,  ///< the signature of the chain's head
+};
+
 /// Does the content chain, recomputed from the file's content, agree with its /status?
+/// analytics/checkpoints/replay_words.h makes a sentence of it.
 struct ChainVerdict {
-  bool intact = true;
+  ChainFault fault = ChainFault::none;
   std::uint64_t flush = 0;      ///< first row of /status that disagrees; 0: header or scene
   std::uint64_t firstStep = 0;  ///< steps [firstStep, endStep) belong to that flush
   std::uint64_t endStep = 0;
-  std::string what;  ///< one phrase for a message; empty if intact
+  double seconds = 0.0;  ///< of the attempt, at the beginning of that flush
+
+  [[nodiscard]] bool intact() const { return fault == ChainFault::none; }
+  bool operator==(const ChainVerdict&) const = default;
 
   static void fields(auto& self, auto& visit) {
-    visit("intact", self.intact);
+    visit("fault", self.fault);
     visit("flush", self.flush);
     visit("first_step", self.firstStep);
     visit("end_step", self.endStep);
-    visit("what", self.what);
+    visit("seconds", self.seconds);
   }
 };
 

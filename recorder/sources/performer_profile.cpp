@@ -3,8 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <set>
-
 #include "recorder/base/errors.h"
 #include "recorder/base/files.h"
 #include "recorder/base/record_json.h"

@@ -6,7 +6,6 @@
 #include <charconv>
 #include <cmath>
 #include <string_view>
-#include <utility>
 
 #include "recorder/base/csv.h"
 #include "recorder/base/errors.h"

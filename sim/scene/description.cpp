@@ -3,7 +3,6 @@
 
 #include <cmath>
 #include <type_traits>
-#include <utility>
 
 #include "sim/instruments/instrument_shape.h"
 #include "sim/instruments/instruments.h"

@@ -2,7 +2,6 @@
 #include "sim/step/tissue_contacts.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "sim/step/body.h"

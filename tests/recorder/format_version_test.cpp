@@ -22,8 +22,8 @@ TEST(FormatVersion1, IsRead) {
   EXPECT_EQ(r.header().formatVersion, 1U);
   ASSERT_EQ(r.stepCount(), 260U);
   EXPECT_EQ(r.outcome(), Outcome::stopped);
-  EXPECT_TRUE(r.verifyChain().intact);
-  EXPECT_TRUE(probe(old).intact);
+  EXPECT_TRUE(r.verifyChain().intact());
+  EXPECT_TRUE(probe(old).intact());
   const RecordedStep& step = r.step(255);
   EXPECT_EQ(step.digest.component.size(), r.header().layout.components.size());
   EXPECT_EQ(step.digest.field.size(), r.header().layout.fields.size());
@@ -47,7 +47,7 @@ TEST(FormatVersion1, IsRecoveredAsItIs) {
   EXPECT_EQ(b.header().formatVersion, 1U);
   ASSERT_EQ(a.status().size(), b.status().size());
   EXPECT_EQ(a.status().back().chain, b.status().back().chain);
-  EXPECT_TRUE(b.verifyChain().intact);
+  EXPECT_TRUE(b.verifyChain().intact());
   EXPECT_EQ(a.keyframe(1).state, b.keyframe(1).state);
 }
 

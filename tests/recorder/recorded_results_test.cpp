@@ -30,7 +30,7 @@ TEST(VersionThree, IsReadWithTheJudgementOfItsTime) {
   Recording recording(ofVersion3);
   EXPECT_EQ(recording.header().stepResultVersion, 3U);
   EXPECT_EQ(recording.header().simulationVersion, 12U);
-  EXPECT_TRUE(recording.verifyChain().intact);
+  EXPECT_TRUE(recording.verifyChain().intact());
   const RecordedProcedure first = recording.step(0).procedure;
   EXPECT_EQ(first.phase, Phase::clipping);
   EXPECT_FALSE(first.criticalViewFrozen);

@@ -60,7 +60,7 @@ TEST_F(Replay, SaysWhatIsWrongWithADamagedRecordingAndWhatSavesIt) {
 TEST_F(Replay, NamesStepTickComponentAndBothValues) {
   const ReplayReport force = replayRecording(record("f.h5", test::Lie{test::Lie::About::force, 150}), {});
   ASSERT_EQ(force.verdict, ReplayVerdict::diverged) << force.error;
-  EXPECT_TRUE(force.chainIntact);
+  EXPECT_TRUE(force.chainIntact());
   ASSERT_TRUE(force.divergence);
   EXPECT_EQ(force.divergence->step, 150U);
   EXPECT_EQ(force.divergence->tick, 1504U);

@@ -71,6 +71,16 @@ struct Wrench {
   Vec3 torque = Vec3::Zero();  ///< N m
 };
 
+/// Forces that a device was sent for one hand.
+struct ForceStatistics {
+  double maxForce = 0.0;          ///< N
+  double maxChange = 0.0;         ///< N, from one wrench to the next
+  double lowestEnergy = 0.0;      ///< J, of the tank
+  std::uint64_t sent = 0;         ///< wrenches
+  std::uint64_t softened = 0;     ///< of them, weaker than asked for, so that the port stays passive
+  std::int64_t maxRoundTrip = 0;  ///< ns, from a wrench's sending until a pose said that it is shown
+};
+
 /// Host's monotonic clock in nanoseconds; tests and devices without real time bring their own.
 using DeviceClock = std::function<std::int64_t()>;
 std::int64_t monotonicNanoseconds();
@@ -100,8 +110,8 @@ class Device {
   /// device without motors ignores it.
   virtual void setWrench(Hand, const Wrench&) {}
 
-  /// Lines for people about what it did, for the end of a run. Any thread.
-  [[nodiscard]] virtual std::vector<std::string> report() const { return {}; }
+  /// Forces so far, left and right. Any thread.
+  [[nodiscard]] virtual std::array<ForceStatistics, handCount> forceStatistics() const { return {}; }
 
   /// Closes the device; further polls return nothing.
   virtual void close() = 0;

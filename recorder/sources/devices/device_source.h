@@ -141,7 +141,7 @@ class DeviceSource final : public SampleSource {
 
   [[nodiscard]] const DeviceCounts& counts() const { return counts_; }
   [[nodiscard]] const DeviceInfo& deviceInfo() const { return device_->info(); }
-  [[nodiscard]] std::vector<std::string> deviceReport() const { return device_->report(); }
+  [[nodiscard]] std::array<ForceStatistics, handCount> forceStatistics() const { return device_->forceStatistics(); }
 
  private:
   struct HandState {

@@ -267,11 +267,8 @@ void CombinedDevice::close() {
   for (OpenedDevice& one : device_) one.device->close();
 }
 
-std::vector<std::string> CombinedDevice::report() const {
-  std::vector<std::string> out = device_[0].device->report();
-  const std::vector<std::string> more = device_[1].device->report();
-  out.insert(out.end(), more.begin(), more.end());
-  return out;
+std::array<ForceStatistics, handCount> CombinedDevice::forceStatistics() const {
+  return {device_[0].device->forceStatistics()[0], device_[1].device->forceStatistics()[1]};
 }
 
 bool isCombination(const std::string& name) { return name.starts_with("left=") || name.starts_with("right="); }

@@ -68,7 +68,7 @@ class CombinedDevice final : public Device {
   [[nodiscard]] bool ended() const override;
   void setWrench(Hand hand, const Wrench& wrench) override;
   void close() override;
-  [[nodiscard]] std::vector<std::string> report() const override;
+  [[nodiscard]] std::array<ForceStatistics, handCount> forceStatistics() const override;
 
  private:
   bool pollOne(std::size_t hand, DeviceInput& out);

@@ -16,7 +16,7 @@ ReplayReport compared(ReplayVerdict verdict) {
   ReplayReport report;
   report.finding = ReplayFinding::compared;
   report.verdict = verdict;
-  report.chainIntact = true;
+  report.chain.emplace();
   return report;
 }
 
@@ -29,16 +29,18 @@ TEST(ReplayWords, SayWhatWasFound) {
             "diverged at step 13, tick 137: hand.right realPosition (index 0: recorded 1, here 2); reproducible: a "
             "second run differs in the same way");
   report.reproducible = false;
-  report.chainIntact = false;
-  report.chainFault = "changed";
+  report.chain = recorder::ChainVerdict{recorder::ChainFault::flush, 3, 50, 75, 0.5};
+  const std::string broken =
+      "the content chain is broken at flush 3 (steps 50 to 74, from 0.500 s on): what was recorded there was changed";
   EXPECT_EQ(wordsFor(report),
             "diverged at step 13, tick 137: hand.right realPosition (index 0: recorded 1, here 2); not deterministic "
-            "here: a second run behaves differently; content chain broken: changed");
+            "here: a second run behaves differently; content chain broken: " +
+                broken);
   report.divergence.reset();
-  EXPECT_EQ(wordsFor(report), "content chain broken: changed (the re-simulation agrees)");
+  EXPECT_EQ(wordsFor(report), "content chain broken: " + broken + " (the re-simulation agrees)");
   report.finding = ReplayFinding::otherNames;
   report.error = "structure 0 is called a, and by its scene b";
-  EXPECT_EQ(wordsFor(report), "structure 0 is called a, and by its scene b; content chain broken: changed");
+  EXPECT_EQ(wordsFor(report), "structure 0 is called a, and by its scene b; content chain broken: " + broken);
   report.finding = ReplayFinding::unread;
   EXPECT_EQ(wordsFor(report), "structure 0 is called a, and by its scene b");
   report.finding = ReplayFinding::otherLayout;

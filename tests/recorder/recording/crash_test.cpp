@@ -113,7 +113,7 @@ void killAndOpen(int rounds, std::uint64_t seed, std::chrono::microseconds rest)
       const std::filesystem::path path = folder / fmt::format("r{}.h5", i);
       ASSERT_TRUE(WIFSIGNALED(status));
       const ChainVerdict verdict = probe(path);
-      EXPECT_TRUE(verdict.intact) << verdict.what;
+      EXPECT_TRUE(verdict.intact()) << verdict.flush;
       Recording r(path);
       EXPECT_FALSE(r.complete());
       const double lost = 0.01 * static_cast<double>((*done[i]).load() - r.stepCount());
@@ -154,7 +154,7 @@ TEST(Live, AReaderSeesWholeFlushesWhileTheyAreWritten) {
     EXPECT_GE(r.stepCount(), seen);
     grew += r.stepCount() > seen ? 1 : 0;
     seen = r.stepCount();
-    EXPECT_TRUE(r.verifyChain().intact);
+    EXPECT_TRUE(r.verifyChain().intact());
     if (seen > 0) {
       EXPECT_EQ(r.step(seen - 1).forces, forceDigest(test::randomStep(header, seen - 1, 1).ticks));
     }
@@ -202,7 +202,7 @@ TEST(DiskFull, TheLoopGoesOnAndWhatWasFlushedStays) {
     ASSERT_TRUE(WIFEXITED(status)) << "signal " << WTERMSIG(status);
     EXPECT_EQ(WEXITSTATUS(status), 0);
     const ChainVerdict verdict = probe(path);
-    EXPECT_TRUE(verdict.intact) << verdict.what;
+    EXPECT_TRUE(verdict.intact()) << verdict.flush;
     Recording r(path);
     EXPECT_FALSE(r.complete());
     EXPECT_GE(r.stepCount(), 25U);
@@ -268,7 +268,7 @@ TEST(Swmr, NothingIsCreatedAfterItHasBegun) {
   int status = 0;
   ASSERT_EQ(::waitpid(child, &status, 0), child);
   const std::vector<std::string> first = objects(folder / "first.h5", true);
-  EXPECT_TRUE(probe(folder / "first.h5").intact);
+  EXPECT_TRUE(probe(folder / "first.h5").intact());
   EXPECT_GT(first.size(), 60U);
   test::writeRecording(folder / "r.h5", header, 310);
   EXPECT_EQ(objects(folder / "r.h5", false), first);

@@ -46,7 +46,7 @@ struct Judgement {
 Judgement judge(const std::filesystem::path& path) {
   try {
     const ChainVerdict verdict = probe(path);
-    return {verdict.intact ? std::nullopt : std::optional(ErrorKind::refused), verdict.what};
+    return {verdict.intact() ? std::nullopt : std::optional(ErrorKind::refused), ""};
   } catch (const Error& e) {
     return {e.kind(), e.what()};
   }
@@ -59,7 +59,7 @@ void expectAgrees(const std::filesystem::path& whole, const std::filesystem::pat
   for (std::size_t i = 0; i < b.status().size(); ++i)
     EXPECT_EQ(a.status()[i].chain, b.status()[i].chain) << "flush " << i;
   EXPECT_EQ(a.header().attempt, b.header().attempt);
-  EXPECT_TRUE(b.verifyChain().intact);
+  EXPECT_TRUE(b.verifyChain().intact());
 }
 
 TEST(Cut, AClosedFileCutInHalfIsSavedInPart) {
@@ -208,7 +208,7 @@ TEST(Changed, AValueBreaksTheChainAndItsFlushIsNamed) {
     std::filesystem::copy_file(folder / "r.h5", folder / "c.h5", std::filesystem::copy_options::overwrite_existing);
     change(folder / "c.h5", c.dataset, c.type, c.row, 1, 0.123);
     const ChainVerdict v = probe(folder / "c.h5");
-    EXPECT_FALSE(v.intact) << c.dataset;
+    EXPECT_FALSE(v.intact()) << c.dataset;
     EXPECT_EQ(v.flush, c.flush) << c.dataset;
     EXPECT_EQ(v.firstStep, 25 * (c.flush - 1));
     // What stood before the change can be had.
@@ -233,7 +233,7 @@ TEST(Changed, AttributesAndSceneAreUnderTheChain) {
   H5Aclose(a);
   H5Fclose(file);
   const ChainVerdict v = probe(folder / "r.h5");
-  EXPECT_FALSE(v.intact);
+  EXPECT_FALSE(v.intact());
   EXPECT_EQ(v.flush, 0U);
 
   test::writeRecording(folder / "s.h5", makeHeader(), 30);
@@ -301,7 +301,7 @@ TEST(Fuzz, OverwrittenBytesNeverCrashHangOrPass) {
               Recording r(folder / "f.h5");
               for (std::uint64_t n = 0; n < r.stepCount(); ++n) r.step(n);
               for (std::size_t k = 0; k < r.keyframeSteps().size(); ++k) static_cast<void>(r.keyframe(k));
-              if (!r.verifyChain().intact) return "broken";
+              if (!r.verifyChain().intact()) return "broken";
               return r.status().back().chain == head && r.complete() ? "same" : "SILENT";
             },
             GuardLimits{std::chrono::seconds(20)});

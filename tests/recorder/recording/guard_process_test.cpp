@@ -106,7 +106,7 @@ TEST(ProbeProcesses, SayOfARecordingWhatProbeSays) {
   std::filesystem::resize_file(folder / "cut.h5", std::filesystem::file_size(folder / "whole.h5") / 2);
   const auto said = [&](const std::string& name) -> std::string {
     try {
-      return probe(folder / name).intact ? "intact" : "broken";
+      return probe(folder / name).intact() ? "intact" : "broken";
     } catch (const Error& e) {
       return e.what();
     }
@@ -126,7 +126,7 @@ TEST(ProbeProcesses, AreNotMadeWhileARecordingIsOpen) {
   test::writeRecording(folder / "r.h5", test::makeHeader(), 60);
   const Recording open(folder / "r.h5");
   const ProbeProcesses probes(1);
-  EXPECT_TRUE(probe(folder / "r.h5").intact);
+  EXPECT_TRUE(probe(folder / "r.h5").intact());
 }
 
 }  // namespace

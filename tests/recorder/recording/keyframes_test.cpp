@@ -156,7 +156,7 @@ TEST(Keyframes, ThatLieAreDamage) {
     const auto fault = caught([&] { static_cast<void>(r.keyframe(1)); });
     expectFault(ErrorKind::damaged, "", {std::to_string(r.keyframeSteps()[1])}, fault);
     EXPECT_TRUE(fault && fault->where().place == "/keyframes/bytes");
-    EXPECT_FALSE(r.verifyChain().intact);
+    EXPECT_FALSE(r.verifyChain().intact());
   }
 }
 

@@ -132,7 +132,7 @@ TEST(RawSamples, EveryBitComesBack) {
   write(folder / "r.h5", feed, 301);
   EXPECT_TRUE(feed.waiting.empty());
   const ChainVerdict verdict = probe(folder / "r.h5");
-  EXPECT_TRUE(verdict.intact) << verdict.what;
+  EXPECT_TRUE(verdict.intact()) << verdict.flush;
   Recording r(folder / "r.h5");
   EXPECT_TRUE(r.header().deviceSamples);
   expectSame(made, r);
@@ -155,7 +155,7 @@ TEST(RawSamples, OfABranchBeginAtTheFork) {
   Feed feed;
   const auto made = feed.waiting = randomSamples(200, 5, 3);
   write(folder / "r.h5", feed, 80, 600);
-  EXPECT_TRUE(probe(folder / "r.h5").intact);
+  EXPECT_TRUE(probe(folder / "r.h5").intact());
   Recording r(folder / "r.h5");
   const std::vector<RawSample> right = all(r, Hand::right);
   ASSERT_EQ(right.size(), 40U);
@@ -254,7 +254,7 @@ TEST(RawSamples, OfAKilledWriterAreThereUpToTheLastFlush) {
   int status = 0;
   ASSERT_EQ(::waitpid(child, &status, 0), child);
   ASSERT_TRUE(WIFSIGNALED(status));
-  EXPECT_TRUE(probe(path).intact);
+  EXPECT_TRUE(probe(path).intact());
   Recording r(path);
   EXPECT_FALSE(r.complete());
   ASSERT_GE(r.stepCount(), 125U);
@@ -333,7 +333,7 @@ TEST_F(RawSamplesChanged, WhatNoWriterMakesIsNamedWithItsRow) {
     const Recovered saved = recover(path, folder / "saved.h5", true);
     EXPECT_EQ(saved.steps, 100U) << statement << saved.lost;
     EXPECT_TRUE(saved.complete);
-    EXPECT_TRUE(probe(folder / "saved.h5").intact);
+    EXPECT_TRUE(probe(folder / "saved.h5").intact());
     Recording r(folder / "saved.h5");
     if (r.header().deviceSamples) {
       EXPECT_LE(r.rawSampleCount(Hand::left), 200U);

@@ -137,7 +137,7 @@ TEST_P(RoundTrip, KeepsEveryBit) {
     EXPECT_EQ(made.state, read.state);
     EXPECT_EQ(made.haptics, read.haptics);
   }
-  EXPECT_TRUE(r.verifyChain().intact);
+  EXPECT_TRUE(r.verifyChain().intact());
   if (shape.steps > 0) expectSame(randomStep(header, 0, 1), r.step(0));  // backwards
 }
 
@@ -154,7 +154,7 @@ TEST(EarlierVersion, OfStepResultIsRead) {
   header.stepResultVersion = 1;
   test::writeRecording(folder / "r.h5", header, 60);
   Recording r(folder / "r.h5");
-  EXPECT_TRUE(r.verifyChain().intact);
+  EXPECT_TRUE(r.verifyChain().intact());
   const Step made = randomStep(header, 59, 1);
   EXPECT_EQ(r.step(59).result.contact.rows, made.result.contact.rows);
   EXPECT_EQ(r.step(59).result.hand[1].structureForce, made.result.hand[1].structureForce);
@@ -205,7 +205,7 @@ TEST(Writer, LeftWithoutAnEndStaysIncomplete) {
   EXPECT_FALSE(r.complete());
   EXPECT_EQ(r.outcome(), Outcome::running);
   EXPECT_EQ(r.stepCount(), 30U);
-  EXPECT_TRUE(r.verifyChain().intact);
+  EXPECT_TRUE(r.verifyChain().intact());
 }
 
 TEST(Recover, OfAWholeFileIsTheSameAttempt) {

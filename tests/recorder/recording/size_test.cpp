@@ -44,7 +44,7 @@ TEST(Size, TenMinutesAgainstRepacked) {
     // Repacking makes no second attempt: same content, same chain.
     if (*format != '\0') {
       Recording p(out);
-      EXPECT_TRUE(p.verifyChain().intact);
+      EXPECT_TRUE(p.verifyChain().intact());
       EXPECT_EQ(p.header().attempt, header.attempt);
     }
   }

@@ -92,13 +92,6 @@ Vec3 rotationBetween(const Quat& from, const Quat& to) {
 
 }  // namespace
 
-std::string forceReport(const char* hand, const ForceStatistics& s) {
-  return fmt::format(
-      "force on the {} hand: {} wrenches, at most {:.2f} N, changes of at most {:.3f} N, {} softened to stay passive, "
-      "round trip at most {:.1f} ms",
-      hand, s.sent, s.maxForce, s.maxChange, s.softened, 1e-6 * static_cast<double>(s.maxRoundTrip));
-}
-
 ForceOutput::ForceOutput(const HandleModel& model) : model_(model), force_(model.force), torque_(model.torque) {}
 
 void ForceOutput::command(const Wrench& wrench, std::int64_t now) {
@@ -181,13 +174,9 @@ Wrench ForceFeedbackDevice::measured(std::size_t hand, const HandleMeasurement& 
   return wrench;
 }
 
-std::vector<std::string> ForceFeedbackDevice::report() const {
+std::array<ForceStatistics, handCount> ForceFeedbackDevice::forceStatistics() const {
   const std::lock_guard<std::mutex> lock(mutex_);
-  std::vector<std::string> out;
-  for (std::size_t h = 0; h < handCount; ++h) {
-    if (statistics_[h].sent > 0) out.push_back(forceReport(handNames[h], statistics_[h]));
-  }
-  return out;
+  return statistics_;
 }
 
 void ForceFeedbackDevice::lose(const std::string& why, DeviceInput& out) {

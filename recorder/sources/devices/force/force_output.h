@@ -97,18 +97,6 @@ struct HandleMeasurement {
 /// Shortened to that length, keeping its direction; zero where it is not finite.
 Vec3 limited(const Vec3& v, double longest);
 
-struct ForceStatistics {
-  double maxForce = 0.0;          ///< N, of what was sent
-  double maxChange = 0.0;         ///< N, from one wrench to the next
-  double lowestEnergy = 0.0;      ///< J, of the tank
-  std::uint64_t sent = 0;         ///< wrenches
-  std::uint64_t softened = 0;     ///< of them, weaker than asked for, so that the port stays passive
-  std::int64_t maxRoundTrip = 0;  ///< ns, from a wrench's sending until a pose said that it is shown
-};
-
-/// A line for people: "force on the left hand: ...".
-std::string forceReport(const char* hand, const ForceStatistics& statistics);
-
 /// Between the simulation's force and a device's motors, for one hand. What is sent
 ///   - never exceeds the device's limits, and is finite;
 ///   - is passive (EnergyTank), whatever stiffness, delay and jitter there is;
@@ -166,8 +154,7 @@ class ForceFeedbackDevice : public ReopeningDevice {
   void setWrench(Hand hand, const Wrench& wrench) final;
   /// Lets the force fall to zero first, for at most a fifth of a second.
   void close() final;
-  /// A line for each hand that was sent a wrench.
-  [[nodiscard]] std::vector<std::string> report() const final;
+  [[nodiscard]] std::array<ForceStatistics, handCount> forceStatistics() const final;
 
  protected:
   using ReopeningDevice::ReopeningDevice;
@@ -180,7 +167,7 @@ class ForceFeedbackDevice : public ReopeningDevice {
   std::array<std::optional<ForceOutput>, handCount> output_;
 
  private:
-  mutable std::mutex mutex_;  ///< report() may come from another thread
+  mutable std::mutex mutex_;  ///< forceStatistics() may come from another thread
   std::array<ForceStatistics, handCount> statistics_;
   bool closed_ = false;
 };
