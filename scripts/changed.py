@@ -1,13 +1,14 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Changed C++ files, since the branch left origin/main (or the commit before) and uncommitted; or with --tests, the test programs of their folders.
+"""changed.py [--tests | --since COMMIT]: changed C++ files, since the branch left origin/main (or the commit before) and uncommitted.
 
+With --tests, the test programs of their folders instead; with --since, what changed since that commit, all files where a clone lacks it.
 A test program of tests/CMakeLists.txt tests the folders of the same names in the modules.
 """
+import argparse
 import pathlib
 import re
 import subprocess
-import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 
@@ -16,11 +17,15 @@ def git(*words):
     return subprocess.run(["git", "-C", str(ROOT), *words], capture_output=True, text=True, check=False).stdout.split()
 
 
-def changed():
-    base = git("merge-base", "HEAD", "origin/main")[:1]
-    if not base or base == git("rev-parse", "HEAD"):
+def changed(since=None):
+    base = git("merge-base", "HEAD", since or "origin/main")[:1]
+    if since and not base:
+        base = git("hash-object", "-t", "tree", "/dev/null")
+    elif not base or (not since and base == git("rev-parse", "HEAD")):
         base = ["HEAD~1"]
     files = set(git("diff", "--name-only", "--diff-filter=d", base[0])) | set(git("ls-files", "--others", "--exclude-standard"))
+    if ".clang-tidy" in files:
+        files |= set(git("ls-files"))
     return sorted(f for f in files if f.endswith((".h", ".cpp")))
 
 
@@ -41,5 +46,9 @@ def programs(files):
 
 
 if __name__ == "__main__":
-    names = changed()
-    print("\n".join(programs(names) if sys.argv[1:] == ["--tests"] else names))
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--tests", action="store_true")
+    parser.add_argument("--since", metavar="COMMIT")
+    arguments = parser.parse_args()
+    names = changed(arguments.since)
+    print("\n".join(programs(names) if arguments.tests else names))

@@ -77,7 +77,7 @@ for stage in "${stages[@]}"; do
           --parallel "$((jobs + 1))" --output-on-failure --no-tests=error
       fi
       configure clang
-      "$python" -B "$root/scripts/changed.py" | "$python" -B "$root/scripts/tidy.py" "$root/build/clang" --jobs "$jobs" --only
+      "$python" -B "$root/scripts/changed.py" | sed -n '/\.cpp$/p' | "$python" -B "$root/scripts/tidy.py" "$root/build/clang" --jobs "$jobs" --only
       ;;
     guard)
       configure release "${whole[@]}" -DBUILD_TESTING=ON
@@ -102,9 +102,11 @@ for stage in "${stages[@]}"; do
       ;;
     tidy)
       configure clang
-      # What draws and parses options takes as long as these rooms together, of Qt's and the parser's headers: heavy.sh.
+      # What reads a file that changed since heavy.sh last found all clean. What draws and parses options takes as long as these rooms
+      # together, of Qt's and the parser's headers: heavy.sh.
       say "clang-tidy"
-      "$python" -B "$root/scripts/tidy.py" "$root/build/clang" --jobs "$jobs" --rooms sim recorder analytics
+      "$python" -B "$root/scripts/changed.py" --since "$(cat "$root/tests/tidy-clean.txt")" |
+        "$python" -B "$root/scripts/tidy.py" "$root/build/clang" --jobs "$jobs" --rooms sim recorder analytics --only
       ;;
     matrix)
       configure release "${whole[@]}" -DBUILD_TESTING=ON

@@ -13,7 +13,7 @@ build release
 configure clang "-DCALOT_OTHER=$root/build/release/bin/calot" -DCALOT_UNITY=OFF
 build clang
 say "clang-tidy"
-"$python" -B "$root/scripts/tidy.py" "$root/build/clang" --jobs "$jobs"
+"$python" -B "$root/scripts/tidy.py" "$root/build/clang" --jobs "$jobs" --note
 say "test clang"
 ctest --test-dir "$root/build/clang" --label-exclude 'heavy|determinism' --parallel "$jobs" --output-on-failure --no-tests=error
 say "all of the sanitizers' tests"

@@ -15,6 +15,8 @@ import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
+# The commit at which all sources were last found clean.
+CLEAN = ROOT / "tests/tidy-clean.txt"
 ROOMS = ("sim", "recorder", "analytics", "gui", "apps", "python")
 
 
@@ -26,12 +28,23 @@ def headers_digest():
     return digest
 
 
+def reads(file, seen):
+    """The project's files that a source reads, itself among them."""
+    if file not in seen:
+        seen.add(file)
+        for name in re.findall(r'^#include "([^"]+)"', file.read_text(), re.M):
+            if (ROOT / name).exists():
+                reads(ROOT / name, seen)
+    return seen
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("build", type=pathlib.Path, help="a configured build tree (compile_commands.json)")
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--rooms", nargs="+", choices=ROOMS, default=ROOMS, help="default: all")
-    parser.add_argument("--only", action="store_true", help="only what compiles the sources that standard input names")
+    parser.add_argument("--only", action="store_true", help="only what reads one of the files that standard input names")
+    parser.add_argument("--note", action="store_true", help="where all is clean, write the commit to tests/tidy-clean.txt")
     arguments = parser.parse_args()
     wanted = {line.strip() for line in sys.stdin} if arguments.only else None
 
@@ -44,8 +57,7 @@ def main():
         if file.is_relative_to(base) and file.relative_to(base).parts[0] in arguments.rooms:
             files.append(file)
     if wanted is not None:
-        files = [f for f in files if wanted & ({str(f.relative_to(ROOT))} | {str(pathlib.Path(s).relative_to(ROOT)) for s in
-                                               re.findall(r'^#include "(/.*\.cpp)"', f.read_text(), re.M)})]
+        files = [f for f in files if wanted & {str(read.relative_to(ROOT)) for read in reads(f, set())}]
     cache = arguments.build / "tidy"
     cache.mkdir(exist_ok=True)
     common = headers_digest()
@@ -72,6 +84,8 @@ def main():
                 bad += 1
                 print(f"--- {file.relative_to(ROOT)}\n{complaint}", flush=True)
     print(f"clang-tidy: {len(files)} sources, {bad} with complaints")
+    if arguments.note and not bad:
+        CLEAN.write_text(subprocess.run(["git", "-C", ROOT, "rev-parse", "HEAD"], capture_output=True, text=True, check=True).stdout)
     return 1 if bad else 0
 
 
