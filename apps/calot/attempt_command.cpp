@@ -28,6 +28,7 @@ std::string whoOf(const AttemptRow& a) { return a.participant.empty() ? a.profil
 /// Beginnings of the uuids, as long as it takes to distinguish all of the database: what other commands accept.
 std::size_t distinctLength(const std::vector<AttemptRow>& rows) {
   std::vector<std::string> uuids;
+  uuids.reserve(rows.size());
   for (const AttemptRow& a : rows) uuids.push_back(a.uuid);
   std::sort(uuids.begin(), uuids.end());
   std::size_t length = 8;

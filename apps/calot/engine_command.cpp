@@ -107,6 +107,7 @@ void build(const BuildOptions& o) {
   std::vector<std::string> command{"python3", script.string(), "build", std::to_string(o.version), "-o", o.output};
   if (o.module) command.emplace_back("--module");
   std::vector<char*> arguments;
+  arguments.reserve(command.size() + 1);
   for (std::string& argument : command) arguments.push_back(argument.data());
   arguments.push_back(nullptr);
   execvp(arguments.front(), arguments.data());

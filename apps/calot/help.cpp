@@ -67,6 +67,7 @@ bool takesWords(const CLI::App& command) {
 
 std::vector<std::string> namesOf(const std::vector<const CLI::App*>& commands) {
   std::vector<std::string> names;
+  names.reserve(commands.size());
   for (const CLI::App* each : commands) names.push_back(each->get_name());
   return names;
 }

@@ -65,6 +65,7 @@ void addCheckpoint(PlannedStudy& planned, const std::string& text, bool lognorma
   const std::size_t colon = text.rfind(':');
   const std::vector<std::string> words = split(colon == std::string::npos ? text : text.substr(colon + 1), ',');
   std::vector<double> numbers;
+  numbers.reserve(words.size());
   std::string fault;
   for (const std::string& word : words) numbers.push_back(recorder::readFiniteNumber(word, fault));
   if (colon == std::string::npos || colon == 0 || !fault.empty() || numbers.size() != 4)

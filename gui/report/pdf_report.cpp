@@ -177,9 +177,10 @@ constexpr double dotsPerMillimetre = sheetDotsPerInch / 25.4;
 QPainterPath shapeOf(const recorder::SheetTag& tag, const std::array<bool, 100>& cells) {
   const double cell = tag.side / 8.0;
   QPainterPath out;
+  std::size_t cellIndex = 0;
   for (int row = 0; row < 10; ++row) {
     for (int column = 0; column < 10; ++column) {
-      if (!cells[static_cast<std::size_t>(10 * row + column)]) continue;
+      if (!cells[cellIndex++]) continue;
       out.addRect(QRectF(tag.left + (column - 1) * cell, tag.top + (row - 1) * cell, cell, cell));
     }
   }
