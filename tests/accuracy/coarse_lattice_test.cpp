@@ -13,7 +13,7 @@
 #include "tests/determinism/large_solid.h"
 #include "tests/determinism/thread_executor.h"
 
-namespace calot {
+namespace calot::coarse_lattice_test {
 namespace {
 
 constexpr double gravity = -9.81;
@@ -169,4 +169,4 @@ TEST(CoarseLattice, ThreadsChangeNoBit) {
 }
 
 }  // namespace
-}  // namespace calot
+}  // namespace calot::coarse_lattice_test

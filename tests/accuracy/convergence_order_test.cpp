@@ -16,7 +16,7 @@
 #include "tests/accuracy/support/settle.h"
 #include "tests/bench/growth_exponent.h"
 
-namespace calot {
+namespace calot::convergence_order_test {
 namespace {
 
 // ---- Mesh: a manufactured solution --------------------------------------------------------------------------------
@@ -211,4 +211,4 @@ TEST(ConvergenceOrder, Step) {
 }
 
 }  // namespace
-}  // namespace calot
+}  // namespace calot::convergence_order_test

@@ -16,7 +16,7 @@
 #include "sim/solid/solid.h"
 #include "tests/accuracy/support/kuhn_box.h"
 
-namespace calot {
+namespace calot::hertz_test {
 namespace {
 
 constexpr double young = 10e3;  // Pa
@@ -164,4 +164,4 @@ TEST(Hertz, ForceGrowsWithThePowerOfThreeHalves) {
 }
 
 }  // namespace
-}  // namespace calot
+}  // namespace calot::hertz_test

@@ -13,7 +13,7 @@
 #include "tests/accuracy/support/settle.h"
 #include "tests/bench/growth_exponent.h"
 
-namespace calot {
+namespace calot::solid_elastica_test {
 namespace {
 
 constexpr double length = 0.2;  // m
@@ -79,4 +79,4 @@ TEST(SolidElastica, TipForce) {
 }
 
 }  // namespace
-}  // namespace calot
+}  // namespace calot::solid_elastica_test

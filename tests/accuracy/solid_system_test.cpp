@@ -9,7 +9,7 @@
 #include "sim/solid/solid.h"
 #include "tests/accuracy/support/cube_box.h"
 
-namespace calot {
+namespace calot::solid_system_test {
 namespace {
 
 using test::CubeBox;
@@ -139,4 +139,4 @@ TEST(SolidSystem, NoBitDependsOnWhatWasThereBefore) {
 }
 
 }  // namespace
-}  // namespace calot
+}  // namespace calot::solid_system_test

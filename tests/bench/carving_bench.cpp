@@ -19,7 +19,7 @@
 #include "tests/bench/repeated.h"
 #include "tests/bench/thread_clock.h"
 
-namespace calot::bench {
+namespace calot::bench::carving_bench {
 
 namespace {
 
@@ -265,11 +265,12 @@ void growth(benchmark::State& bench) {
 }
 
 }  // namespace
+}  // namespace calot::bench::carving_bench
 
-void registerCarving() {
+void calot::bench::registerCarving() {
+  using namespace carving_bench;
+
   repeated(benchmark::RegisterBenchmark("carving/transform/20k_128", transform), 9);
   repeated(benchmark::RegisterBenchmark("carving/stroke", stroke)->Arg(64)->Arg(128), 5);
   repeated(benchmark::RegisterBenchmark("carving/growth", growth), 3);
 }
-
-}  // namespace calot::bench

@@ -17,7 +17,7 @@
 #include "tests/bench/repeated.h"
 #include "tests/bench/thread_clock.h"
 
-namespace calot::bench {
+namespace calot::bench::checkpoints_bench {
 
 namespace {
 
@@ -122,7 +122,9 @@ void motion(benchmark::State& bench) {
 }
 
 }  // namespace
+}  // namespace calot::bench::checkpoints_bench
 
-void registerCheckpoints() { repeated(benchmark::RegisterBenchmark("checkpoints/motion/10min", motion), 9); }
-
-}  // namespace calot::bench
+void calot::bench::registerCheckpoints() {
+  using namespace checkpoints_bench;
+  repeated(benchmark::RegisterBenchmark("checkpoints/motion/10min", motion), 9);
+}

@@ -20,7 +20,7 @@
 #include "tests/bench/repeated.h"
 #include "tests/bench/thread_clock.h"
 
-namespace calot::bench {
+namespace calot::bench::cohort_bench {
 
 namespace {
 
@@ -226,8 +226,11 @@ void list(benchmark::State& bench) {
 }
 
 }  // namespace
+}  // namespace calot::bench::cohort_bench
 
-void registerCohort() {
+void calot::bench::registerCohort() {
+  using namespace cohort_bench;
+
   repeated(benchmark::RegisterBenchmark("cohort/import/10k", import), 9)->Unit(benchmark::kMillisecond);
   repeated(benchmark::RegisterBenchmark("cohort/study/10k", study, cohort, "cohort.study"), 3)
       ->Unit(benchmark::kMillisecond);
@@ -235,5 +238,3 @@ void registerCohort() {
       ->Unit(benchmark::kMillisecond);
   repeated(benchmark::RegisterBenchmark("cohort/list/10k", list), 9)->Unit(benchmark::kMillisecond);
 }
-
-}  // namespace calot::bench

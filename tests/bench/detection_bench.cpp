@@ -22,7 +22,7 @@
 #include "sim/bullet/bullet_tree.h"
 #endif
 
-namespace calot::bench {
+namespace calot::bench::detection_bench {
 
 namespace {
 
@@ -154,13 +154,14 @@ void broad(benchmark::State& bench, BroadWork work) {
 }
 
 }  // namespace
+}  // namespace calot::bench::detection_bench
 
-void registerDetection() {
+void calot::bench::registerDetection() {
+  using namespace detection_bench;
+
   repeated(benchmark::RegisterBenchmark("contact/narrow/segment", narrow, false), 5);
   repeated(benchmark::RegisterBenchmark("contact/narrow/point", narrow, true), 5);
   repeated(benchmark::RegisterBenchmark("contact/broad/update", broad, BroadWork::update), 5);
   repeated(benchmark::RegisterBenchmark("contact/broad/refit_tenth", broad, BroadWork::refitTenth), 5);
   repeated(benchmark::RegisterBenchmark("contact/broad/query", broad, BroadWork::query), 5);
 }
-
-}  // namespace calot::bench

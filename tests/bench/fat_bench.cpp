@@ -19,7 +19,7 @@
 #include "tests/bench/repeated.h"
 #include "tests/bench/thread_clock.h"
 
-namespace calot::bench {
+namespace calot::bench::fat_bench {
 
 namespace {
 
@@ -202,10 +202,11 @@ void steps(benchmark::State& bench, bool strokes) {
 }
 
 }  // namespace
+}  // namespace calot::bench::fat_bench
 
-void registerFat() {
+void calot::bench::registerFat() {
+  using namespace fat_bench;
+
   repeated(benchmark::RegisterBenchmark("fat/step", [](benchmark::State& b) { steps(b, false); })->Arg(0)->Arg(1), 3);
   repeated(benchmark::RegisterBenchmark("fat/stroke", [](benchmark::State& b) { steps(b, true); })->Arg(0)->Arg(1), 3);
 }
-
-}  // namespace calot::bench

@@ -28,7 +28,7 @@
 #include "tests/bench/repeated.h"
 #include "tests/bench/thread_clock.h"
 
-namespace calot::bench {
+namespace calot::bench::recording_bench {
 
 namespace {
 
@@ -199,8 +199,11 @@ void seek(benchmark::State& bench) {
 }
 
 }  // namespace
+}  // namespace calot::bench::recording_bench
 
-void registerRecordings() {
+void calot::bench::registerRecordings() {
+  using namespace recording_bench;
+
   for (const std::string scene : {"touch-liver", "cholecystectomy"}) {
     repeated(benchmark::RegisterBenchmark(("recording/overhead/" + scene).c_str(), overhead, scene), 2);
   }
@@ -208,5 +211,3 @@ void registerRecordings() {
   repeated(benchmark::RegisterBenchmark("recording/segments", segments), 1);
   repeated(benchmark::RegisterBenchmark("recording/seek", seek), 2);
 }
-
-}  // namespace calot::bench

@@ -21,7 +21,7 @@
 #include "tests/bench/repeated.h"
 #include "tests/bench/thread_clock.h"
 
-namespace calot::bench {
+namespace calot::bench::roofline_bench {
 
 namespace {
 
@@ -183,11 +183,12 @@ void roofline(benchmark::State& bench, const BoxSize& size) {
 }
 
 }  // namespace
+}  // namespace calot::bench::roofline_bench
 
-void registerRoofline() {
+void calot::bench::registerRoofline() {
+  using namespace roofline_bench;
+
   for (const BoxSize& size : boxSizes) {
     repeated(benchmark::RegisterBenchmark(("roofline/" + std::to_string(size.tetrahedra)).c_str(), roofline, size), 3);
   }
 }
-
-}  // namespace calot::bench

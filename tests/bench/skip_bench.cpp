@@ -18,7 +18,7 @@
 #include "tests/bench/thread_clock.h"
 #include "tests/bench/touch_motion.h"
 
-namespace calot::bench {
+namespace calot::bench::skip_bench {
 
 namespace {
 
@@ -112,8 +112,11 @@ void skip(benchmark::State& bench, const std::string& scene, Hands hands, const 
 }
 
 }  // namespace
+}  // namespace calot::bench::skip_bench
 
-void registerSkipping() {
+void calot::bench::registerSkipping() {
+  using namespace skip_bench;
+
   for (const std::string scene : {"touch-liver", "cholecystectomy"}) {
     for (const auto& [name, hands] :
          {std::pair("rest", Hands::none), std::pair("one", Hands::one), std::pair("both", Hands::both)}) {
@@ -123,5 +126,3 @@ void registerSkipping() {
     }
   }
 }
-
-}  // namespace calot::bench

@@ -13,7 +13,7 @@
 #include "tests/accuracy/support/settle.h"
 #include "tests/stability/support/solid_checks.h"
 
-namespace calot {
+namespace calot::slivers_test {
 namespace {
 
 constexpr double cell = 0.01;  // m
@@ -129,4 +129,4 @@ TEST(Slivers, ShakenAndThrownComeBack) {
 }
 
 }  // namespace
-}  // namespace calot
+}  // namespace calot::slivers_test

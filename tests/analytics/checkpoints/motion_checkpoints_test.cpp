@@ -14,7 +14,7 @@
 #include "tests/analytics/checkpoints/support/steps.h"
 #include "tests/support/message.h"
 
-namespace calot::analytics {
+namespace calot::analytics::motion_checkpoints_test {
 namespace {
 
 using recorder::TickOutcome;
@@ -367,4 +367,4 @@ TEST(MotionCheckpoints, bitsAreThoseOfEveryCompilerAndMachine) {
 }
 
 }  // namespace
-}  // namespace calot::analytics
+}  // namespace calot::analytics::motion_checkpoints_test

@@ -11,7 +11,7 @@
 
 #include "tests/analytics/checkpoints/support/steps.h"
 
-namespace calot::analytics {
+namespace calot::analytics::motion_test {
 namespace {
 
 using support::feed;
@@ -211,4 +211,4 @@ TEST(Noise, ofAFifthOfAMillimetreAt100HzIsFilteredAway) {
 }
 
 }  // namespace
-}  // namespace calot::analytics
+}  // namespace calot::analytics::motion_test

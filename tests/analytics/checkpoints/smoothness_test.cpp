@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-namespace calot::analytics {
+namespace calot::analytics::smoothness_test {
 namespace {
 
 const double pi = std::acos(-1.0);
@@ -101,4 +101,4 @@ TEST(Spectrum, isTheDiscreteFourierTransform) {
 }
 
 }  // namespace
-}  // namespace calot::analytics
+}  // namespace calot::analytics::smoothness_test

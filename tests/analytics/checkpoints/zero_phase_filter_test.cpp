@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-namespace calot::analytics {
+namespace calot::analytics::zero_phase_filter_test {
 namespace {
 
 const double pi = std::acos(-1.0);
@@ -66,4 +66,4 @@ TEST(ZeroPhaseFilter, isLinearAndNearlySymmetricInTime) {
 }
 
 }  // namespace
-}  // namespace calot::analytics
+}  // namespace calot::analytics::zero_phase_filter_test

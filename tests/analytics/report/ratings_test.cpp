@@ -9,7 +9,7 @@
 #include "tests/analytics/cohort/support/cohort_support.h"
 #include "tests/support/fault.h"
 
-namespace calot::analytics {
+namespace calot::analytics::ratings_test {
 namespace {
 
 using Access = CohortDatabase::Access;
@@ -271,4 +271,4 @@ TEST(Ratings, barsAreAsWideAsTheSharesOfTheScores) {
 }
 
 }  // namespace
-}  // namespace calot::analytics
+}  // namespace calot::analytics::ratings_test

@@ -8,7 +8,7 @@
 #include "gui/dashboard/pair_page.h"
 #include "tests/support/message.h"
 
-namespace calot::gui {
+namespace calot::gui::trainee_history_test {
 namespace {
 
 using analytics::AttemptRow;
@@ -155,4 +155,4 @@ TEST(PairAlignment, ByPhasesThatBothHave) {
 }
 
 }  // namespace
-}  // namespace calot::gui
+}  // namespace calot::gui::trainee_history_test

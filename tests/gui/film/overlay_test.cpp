@@ -8,7 +8,7 @@
 #include <vector>
 #include "tests/support/fault.h"
 
-namespace calot::gui {
+namespace calot::gui::overlay_test {
 namespace {
 
 constexpr int width = 320, height = 180;
@@ -148,4 +148,4 @@ TEST(Overlays, MakeRoomForCaptions) {
 }
 
 }  // namespace
-}  // namespace calot::gui
+}  // namespace calot::gui::overlay_test

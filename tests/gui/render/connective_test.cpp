@@ -15,7 +15,7 @@
 #include "gui/render/translucent.h"
 #include "recorder/base/errors.h"
 
-namespace calot::gui {
+namespace calot::gui::connective_test {
 namespace {
 
 constexpr int width = 320, height = 240;
@@ -291,4 +291,4 @@ TEST(FibreTexture, RepeatsWithoutASeamAndHasFibresAndGaps) {
 }
 
 }  // namespace
-}  // namespace calot::gui
+}  // namespace calot::gui::connective_test

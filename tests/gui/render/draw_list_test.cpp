@@ -12,7 +12,7 @@
 #include "sim/math/random.h"
 #include "tests/gui/render/support/shapes.h"
 
-namespace calot::gui {
+namespace calot::gui::draw_list_test {
 namespace {
 
 using test::sphere;
@@ -136,4 +136,4 @@ TEST(DrawListMaker, LeavesOutOnlyTheCavityBesideThePicture) {
 }
 
 }  // namespace
-}  // namespace calot::gui
+}  // namespace calot::gui::draw_list_test

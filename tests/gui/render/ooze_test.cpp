@@ -13,7 +13,7 @@
 #include "sim/math/random.h"
 #include "tests/gui/render/support/shapes.h"
 
-namespace calot::gui {
+namespace calot::gui::ooze_test {
 namespace {
 
 constexpr std::uint64_t seed = 23;
@@ -184,4 +184,4 @@ TEST_F(OozePicture, TheSameViewGivesTheSameBytesAndAnotherTimeAnotherDrop) {
 }
 
 }  // namespace
-}  // namespace calot::gui
+}  // namespace calot::gui::ooze_test

@@ -13,7 +13,7 @@
 #include "tests/gui/render/support/shapes.h"
 #include "tests/support/fault.h"
 
-namespace calot::gui {
+namespace calot::gui::operation_test {
 namespace {
 
 constexpr int width = 240, height = 180;
@@ -188,4 +188,4 @@ TEST(Operation, RefusesWhatCannotBeDrawn) {
 }
 
 }  // namespace
-}  // namespace calot::gui
+}  // namespace calot::gui::operation_test

@@ -19,7 +19,7 @@
 #include "sim/instruments/instruments.h"
 #include "tests/gui/render/support/shapes.h"
 
-namespace calot::gui {
+namespace calot::gui::renderer_test {
 namespace {
 
 constexpr int width = 320, height = 240;
@@ -338,4 +338,4 @@ TEST_F(PngFile, NothingIsLeftBehindWhenItCannotBeWritten) {
 }
 
 }  // namespace
-}  // namespace calot::gui
+}  // namespace calot::gui::renderer_test

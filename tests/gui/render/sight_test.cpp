@@ -13,7 +13,7 @@
 #include "sim/math/random.h"
 #include "tests/gui/render/support/shapes.h"
 
-namespace calot::gui {
+namespace calot::gui::sight_test {
 namespace {
 
 constexpr std::uint64_t seed = 41;
@@ -115,4 +115,4 @@ TEST(Meshes, TurnTheirTrianglesOutwards) {
 }
 
 }  // namespace
-}  // namespace calot::gui
+}  // namespace calot::gui::sight_test

@@ -10,7 +10,7 @@
 #include "gui/render/renderer.h"
 #include "tests/support/fault.h"
 
-namespace calot::gui {
+namespace calot::gui::smoke_test {
 namespace {
 
 constexpr int width = 200, height = 150;
@@ -124,4 +124,4 @@ TEST(Smoke, RefusesWhatIsNoPuff) {
 }
 
 }  // namespace
-}  // namespace calot::gui
+}  // namespace calot::gui::smoke_test

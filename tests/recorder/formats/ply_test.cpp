@@ -13,7 +13,7 @@
 #include "sim/math/random.h"
 #include "tests/support/fault.h"
 
-namespace calot::recorder {
+namespace calot::recorder::ply_test {
 namespace {
 
 TriangleMesh parse(const std::string& bytes, LengthUnit unit = LengthUnit::metre, const SurfaceLimits& limits = {}) {
@@ -201,4 +201,4 @@ TEST(SurfaceFile, TheNameSaysTheFormat) {
 }
 
 }  // namespace
-}  // namespace calot::recorder
+}  // namespace calot::recorder::ply_test

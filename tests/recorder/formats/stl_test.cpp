@@ -12,7 +12,7 @@
 #include "sim/math/random.h"
 #include "tests/support/fault.h"
 
-namespace calot::recorder {
+namespace calot::recorder::stl_test {
 namespace {
 
 TriangleMesh parse(const std::string& bytes, LengthUnit unit = LengthUnit::metre, const SurfaceLimits& limits = {}) {
@@ -157,4 +157,4 @@ TEST(Stl, DamagedBytesAreReadOrRefusedButNeverMore) {
 }
 
 }  // namespace
-}  // namespace calot::recorder
+}  // namespace calot::recorder::stl_test

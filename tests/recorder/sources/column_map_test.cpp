@@ -13,7 +13,7 @@
 #include "sim/math/random.h"
 #include "tests/support/fault.h"
 
-namespace calot::recorder {
+namespace calot::recorder::column_map_test {
 namespace {
 
 using nlohmann::json;
@@ -208,4 +208,4 @@ TEST(ColumnMap, everyFaultIsNamedWithItsPlace) {
 }
 
 }  // namespace
-}  // namespace calot::recorder
+}  // namespace calot::recorder::column_map_test

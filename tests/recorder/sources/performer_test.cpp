@@ -12,7 +12,7 @@
 #include "tests/recorder/sources/support/test_scene.h"
 #include "tests/support/fault.h"
 
-namespace calot::recorder {
+namespace calot::recorder::performer_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -239,4 +239,4 @@ TEST(FindPerformer, byNameOrPath) {
 }
 
 }  // namespace
-}  // namespace calot::recorder
+}  // namespace calot::recorder::performer_test

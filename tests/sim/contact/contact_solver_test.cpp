@@ -9,7 +9,7 @@
 
 #include "tests/sim/contact/support/contact_reference.h"
 
-namespace calot {
+namespace calot::contact_solver_test {
 namespace {
 
 using test::OwnedProblem;
@@ -297,4 +297,4 @@ TEST(ContactSolver, MakesForcesAdmissible) {
 }
 
 }  // namespace
-}  // namespace calot
+}  // namespace calot::contact_solver_test

@@ -8,7 +8,7 @@
 #include "sim/solid/solid.h"
 #include "tests/sim/fat/support/fat_bodies.h"
 
-namespace calot {
+namespace calot::fat_motion_test {
 namespace {
 
 const std::vector<FatPartner> floorOnly{test::floorPartner(-0.003)};
@@ -177,4 +177,4 @@ TEST(FatMotion, ComplianceOfRestKnowsTheTies) {
 }
 
 }  // namespace
-}  // namespace calot
+}  // namespace calot::fat_motion_test

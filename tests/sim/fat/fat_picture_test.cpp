@@ -6,7 +6,7 @@
 
 #include "tests/sim/fat/support/fat_bodies.h"
 
-namespace calot {
+namespace calot::fat_picture_test {
 namespace {
 
 std::unique_ptr<const FatModel> lump() {
@@ -69,4 +69,4 @@ TEST(FatPicture, AtRestItLiesAtRest) {
 }
 
 }  // namespace
-}  // namespace calot
+}  // namespace calot::fat_picture_test

@@ -8,7 +8,7 @@
 #include "sim/math/fields.h"
 #include "tests/sim/fat/support/fat_bodies.h"
 
-namespace calot {
+namespace calot::fat_stroke_test {
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
@@ -176,4 +176,4 @@ TEST(FatStroke, TiesFadeWithWhatTheyHold) {
 }
 
 }  // namespace
-}  // namespace calot
+}  // namespace calot::fat_stroke_test

@@ -8,7 +8,7 @@
 #include "sim/math/random.h"
 #include "tests/sim/scene/support/scenes.h"
 
-namespace calot {
+namespace calot::embedding_test {
 namespace {
 
 constexpr double radius = 0.03;
@@ -77,4 +77,4 @@ TEST(Embedding, AffineMotionIsMappedExactly) {
 }
 
 }  // namespace
-}  // namespace calot
+}  // namespace calot::embedding_test

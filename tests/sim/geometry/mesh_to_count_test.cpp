@@ -14,7 +14,7 @@
 #include "tests/sim/geometry/surfaces.h"
 #include "tests/support/message.h"
 
-namespace calot {
+namespace calot::mesh_to_count_test {
 namespace {
 
 constexpr double degree = 3.14159265358979323846 / 180.0;
@@ -138,4 +138,4 @@ TEST(StuffToCount, RefusesWhatItCannotDo) {
 }
 
 }  // namespace
-}  // namespace calot
+}  // namespace calot::mesh_to_count_test

@@ -15,7 +15,7 @@
 #include "sim/step/tissue_contacts.h"
 #include "tests/sim/scene/support/scenes.h"
 
-namespace calot {
+namespace calot::fat_on_tissue_test {
 namespace {
 
 constexpr double bottom = test::blockTop + 0.004;  ///< of the fat (m)
@@ -301,4 +301,4 @@ TEST(FatOnTissue, WhatIsFarApartIsNotSearched) {
 }
 
 }  // namespace
-}  // namespace calot
+}  // namespace calot::fat_on_tissue_test

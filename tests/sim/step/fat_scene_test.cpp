@@ -9,7 +9,7 @@
 #include "tests/sim/scene/support/scenes.h"
 #include "tests/support/message.h"
 
-namespace calot {
+namespace calot::fat_scene_test {
 namespace {
 
 constexpr double fatTop = test::blockTop + 0.010;
@@ -204,4 +204,4 @@ TEST(FatInAModel, SaysWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace calot
+}  // namespace calot::fat_scene_test

@@ -12,7 +12,7 @@
 #include "tests/sim/scene/support/scenes.h"
 #include "tests/support/message.h"
 
-namespace calot {
+namespace calot::vessel_scene_test {
 namespace {
 
 constexpr double height = 0.03;  ///< of the duct's centre line (m)
@@ -335,4 +335,4 @@ TEST(VesselModel, SaysWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace calot
+}  // namespace calot::vessel_scene_test

@@ -11,7 +11,7 @@
 #include "sim/vessel/beam_state.h"
 #include "tests/sim/vessel/support/beams.h"
 
-namespace calot {
+namespace calot::harsh_test {
 namespace {
 
 Vec3 vectorOf(Random& random, double size) {
@@ -107,4 +107,4 @@ TEST(HarshVessels, ALoosePieceDriftsToAStop) {
 }
 
 }  // namespace
-}  // namespace calot
+}  // namespace calot::harsh_test

@@ -9,7 +9,7 @@
 #include "sim/math/random.h"
 #include "tests/recorder/sources/devices/support/device_support.h"
 
-namespace calot::recorder {
+namespace calot::recorder::mouse_test {
 namespace {
 
 struct Rig {
@@ -304,4 +304,4 @@ TEST(ControlledSource, AsksForRetractionTickByTick) {
 }
 
 }  // namespace
-}  // namespace calot::recorder
+}  // namespace calot::recorder::mouse_test

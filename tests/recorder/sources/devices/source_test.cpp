@@ -20,7 +20,7 @@
 #include "tests/recorder/sources/devices/support/device_support.h"
 #include "tests/support/fault.h"
 
-namespace calot::recorder {
+namespace calot::recorder::source_test {
 namespace {
 
 using devicetest::emptyScene;
@@ -279,4 +279,4 @@ INSTANTIATE_TEST_SUITE_P(Modes, DeviceRecording, ::testing::Values(Mode::practic
                          [](const auto& which) { return which.param == Mode::practice ? "practice" : "assessment"; });
 
 }  // namespace
-}  // namespace calot::recorder
+}  // namespace calot::recorder::source_test

@@ -23,7 +23,7 @@
 #include "recorder/sources/devices/open_device.h"
 #include "tests/support/fault.h"
 
-namespace calot::recorder {
+namespace calot::recorder::force_device_test {
 namespace {
 
 using std::chrono::milliseconds;
@@ -169,4 +169,4 @@ TEST(ForceDevice, KilledInMidRunTheRecordingReplays) {
 }
 
 }  // namespace
-}  // namespace calot::recorder
+}  // namespace calot::recorder::force_device_test

@@ -11,7 +11,7 @@
 #include "tests/recorder/sources/devices/force/support/haply_service.h"
 #include "tests/support/fault.h"
 
-namespace calot::recorder {
+namespace calot::recorder::haply_device_test {
 namespace {
 
 using devicetest::HaplyService;
@@ -108,4 +108,4 @@ TEST(HaplyDevice, NoServiceAndNoDeviceAreSaid) {
 }
 
 }  // namespace
-}  // namespace calot::recorder
+}  // namespace calot::recorder::haply_device_test
