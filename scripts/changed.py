@@ -18,10 +18,10 @@ def git(*words):
 
 
 def changed(since=None):
-    base = git("merge-base", "HEAD", since or "origin/main")[:1]
-    if since and not base:
-        base = git("hash-object", "-t", "tree", "/dev/null")
-    elif not base or (not since and base == git("rev-parse", "HEAD")):
+    base = git("merge-base", "HEAD", "origin/main" if since is None else since)[:1]
+    if since is not None:
+        base = base or git("hash-object", "-t", "tree", "/dev/null")
+    elif not base or base == git("rev-parse", "HEAD"):
         base = ["HEAD~1"]
     files = set(git("diff", "--name-only", "--diff-filter=d", base[0])) | set(git("ls-files", "--others", "--exclude-standard"))
     if ".clang-tidy" in files:
