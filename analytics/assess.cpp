@@ -7,7 +7,10 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <cmath>
+#include <cstdint>
 #include <initializer_list>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -20,6 +23,7 @@
 #include "analytics/external/metric_input.h"
 #include "analytics/report/report_document.h"
 #include "recorder/base/dates.h"
+#include "recorder/base/files.h"
 #include "recorder/formats/scene_file.h"
 #include "recorder/loop.h"
 
@@ -179,12 +183,31 @@ std::string uuidOf(std::array<std::byte, 32> hash) {
   return uuid;
 }
 
+/// SHA-256 of the samples in nanoseconds, picometres and billionths of a unit quaternion; the least number: no sample.
+std::array<std::byte, 32> motionHash(const recorder::TrackedMotion& motion) {
+  std::vector<std::int64_t> numbers;
+  const auto add = [&](double value, double scale) {
+    numbers.push_back(std::isnan(value) ? std::numeric_limits<std::int64_t>::min() : std::llround(value * scale));
+  };
+  for (const double t : motion.time) add(t, 1e9);
+  for (const recorder::TrackedHand& hand : motion.hand) {
+    numbers.push_back((hand.present ? 1 : 0) + (hand.oriented ? 2 : 0));
+    for (const Vec3& p : hand.position) {
+      for (int i = 0; i < 3; ++i) add(p[i], 1e12);
+    }
+    for (const Quat& q : hand.orientation) {
+      for (const double part : {q.w(), q.x(), q.y(), q.z()}) add(part, q.w() < 0.0 ? -1e9 : 1e9);
+    }
+  }
+  return bytesOf(recorder::sha256Hex(std::as_bytes(std::span(numbers))));
+}
+
 }  // namespace
 
 AttemptRecord recordOf(const recorder::TrackedMotion& motion, const MotionDeclaration& declaration) {
   AttemptRecord a;
   a.chainHead = bytesOf(motion.sha256);
-  a.uuid = uuidOf(a.chainHead);
+  a.uuid = uuidOf(motionHash(motion));
   a.participant = declaration.participant;
   a.scene = declaration.task;
   a.operatorKind = recorder::OperatorKind::kinematics;
@@ -214,7 +237,12 @@ StoredMotion storeMotion(CohortDatabase& database, const recorder::TrackedMotion
                          const MotionDeclaration& declaration) {
   StoredMotion stored;
   stored.values = valuesFromSamples(motion, {declaration.outcome, declaration.handedness, motionCutoff});
-  stored.imported = database.storeAttempt(recordOf(motion, declaration), stored.values);
+  AttemptRecord record = recordOf(motion, declaration);
+  // Before the samples were the identity, the bytes were.
+  record.uuid = database.uuidOfMotion(record.uuid, uuidOf(record.chainHead), record.chainHead);
+  if (const std::optional<AttemptRow> known = database.attempt(record.uuid)) record.chainHead = known->chainHead;
+  stored.attempt = record.uuid;
+  stored.imported = database.storeAttempt(record, stored.values);
   return stored;
 }
 
@@ -269,6 +297,7 @@ std::string declareMotion(MotionDeclaration& d, std::string_view field, const st
   }
   if (field == "start") {
     if (!recorder::isDate(word)) return "2026-01-31T12:00:00Z is expected";
+    if (word > recorder::presentDate()) return "it is later than now; a start lies before its import";
     d.startUtc = word;
     return {};
   }

@@ -67,21 +67,23 @@ struct MotionDeclaration {
   std::string task = "unnamed-task";  ///< what was done; attempts of different tasks are never compared
   std::string participant;            ///< pseudonym, or empty
   recorder::Mode mode = recorder::Mode::practice;
-  std::string purpose = "training";
+  std::string purpose;  ///< empty: study where the participant has consented to study or research, else training
   std::string handedness = "unknown";
   recorder::Outcome outcome = recorder::Outcome::stopped;
   std::string startUtc;  ///< ISO 8601 with Z, or empty: not known
 };
 
 /// The row of the database: operator kind `kinematics`, no simulation, not checkable here (there is nothing to simulate
-/// again). The attempt's uuid (version 8 of RFC 9562) and chain head are the SHA-256 of the file's bytes, so the same
-/// file is the same attempt whatever its name.
+/// again). The attempt's uuid (version 8 of RFC 9562) is of the SHA-256 of the decoded samples, so the same motion is
+/// the same attempt whatever its file's name, line ends, units and further columns; the chain head is that of the
+/// bytes.
 AttemptRecord recordOf(const recorder::TrackedMotion& motion, const MotionDeclaration& declaration);
 
 /// Computes the motion's checkpoints and stores them; one transaction, idempotent.
 /// @return what was stored, and whether it was there already. @throws Error (refused) on a conflict
 /// (CohortDatabase::storeAttempt).
 struct StoredMotion {
+  std::string attempt;  ///< uuid; of motion that the cohort knows already, the uuid there
   Imported imported = Imported::unchanged;
   std::vector<CheckpointValue> values;
 };

@@ -8,6 +8,7 @@
 #include "analytics/checkpoints/checkpoint.h"
 #include "analytics/cohort/cohort_database.h"
 #include "analytics/cohort/withdraw.h"
+#include "analytics/report/study_population.h"
 #include "python/bindings.h"
 
 namespace py = pybind11;
@@ -92,6 +93,8 @@ auto listOf(Read read, Dict dict) {
 void bindCohort(py::module_& m) {
   m.def("assess", assessed, "path"_a, "threads"_a, "cutoff"_a, "apart"_a, "cohort"_a);
   m.def("checkpoints", checkpoints, "Definition of every checkpoint.");
+  m.def(
+      "phase_checkpoints", [] { return analytics::unaskedPhases({}); }, "Those that studies leave out unless asked.");
   const auto rowDict = [](const auto& row) { return dictOf(fieldsOf(row)); };
   py::class_<CohortReader>(m, "Cohort", "A cohort's database, opened for reading.")
       .def(py::init<const std::filesystem::path&>(), "path"_a, py::call_guard<py::gil_scoped_release>())

@@ -11,7 +11,7 @@
 #include "recorder/base/remedy_words.h"
 #include "recorder/compliance_cache.h"
 #include "recorder/formats/scene_file.h"
-#include "recorder/kept/engine_folders.h"
+#include "recorder/kept/kept_engine.h"
 #include "recorder/loop.h"
 #include "recorder/prepared_scene.h"
 #include "sim/instruments/instruments.h"

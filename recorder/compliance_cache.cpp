@@ -168,7 +168,7 @@ CacheEntry look(const fs::path& file) {
 }
 
 /// The files in the folder that this class makes, by name.
-std::vector<fs::path> filesIn(const fs::path& folder, std::error_code& fault) {
+std::vector<fs::path> entriesOf(const fs::path& folder, std::error_code& fault) {
   std::vector<fs::path> files;
   for (fs::directory_iterator it(folder, fault), end; !fault && it != end; it.increment(fault)) {
     const std::string name = it->path().filename().string();
@@ -239,7 +239,7 @@ void ComplianceCache::makeRoom(const fs::path& newest) const {
   };
   std::vector<File> files;
   std::uint64_t all = 0;
-  for (const fs::path& path : filesIn(folder_, fault)) {
+  for (const fs::path& path : entriesOf(folder_, fault)) {
     std::error_code gone;
     const File file{fs::last_write_time(path, gone), path, fs::file_size(path, gone)};
     if (gone) continue;
@@ -259,7 +259,7 @@ std::vector<CacheEntry> ComplianceCache::list() const {
   std::error_code fault;
   if (!fs::exists(folder_, fault)) return {};
   std::vector<CacheEntry> entries;
-  for (const fs::path& file : filesIn(folder_, fault)) entries.push_back(look(file));
+  for (const fs::path& file : entriesOf(folder_, fault)) entries.push_back(look(file));
   if (fault) throw Error(ErrorKind::failure, Where{folder_.string()}, "cannot be read: " + fault.message());
   return entries;
 }

@@ -20,7 +20,6 @@
 #include "recorder/recording/reader.h"
 #include "recorder/recording/writer.h"
 #include "recorder/replay.h"
-#include "recorder/sources/controller.h"
 #include "recorder/sources/source.h"
 #include "sim/math/executor.h"
 #include "sim/scene/model.h"

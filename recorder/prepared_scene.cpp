@@ -10,8 +10,7 @@
 #include "recorder/compliance_cache.h"
 #include "recorder/engine/session.h"
 #include "recorder/formats/scene_assets.h"
-#include "recorder/kept/engine_folders.h"
-#include "recorder/kept/engine_process.h"
+#include "recorder/kept/kept_engine.h"
 #include "sim/scene/version.h"
 
 namespace calot::recorder {

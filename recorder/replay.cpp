@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <thread>
 
-#include "recorder/kept/engine_folders.h"
+#include "recorder/kept/kept_engine.h"
 #include "recorder/live/worker_pool.h"
 #include "recorder/recorded_results.h"
 #include "recorder/recording/layout.h"

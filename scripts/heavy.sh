@@ -20,6 +20,8 @@ say "all of the sanitizers' tests"
 CALOT_CHECKS_ALL=1 "$root/scripts/checks.sh" asan-ubsan
 say "heavy tests"
 ctest --test-dir "$root/build/release" --label-regex heavy --output-on-failure --no-tests=error "$@"
+say "performers of known order"
+"$python" -B "$root/scripts/order.py"
 say "what a simulation version adds to a clone"
 "$python" -B "$root/scripts/engine.py" --jobs "$jobs" measure --calot "$root/build/release/bin/calot"
 say "fuzzing"

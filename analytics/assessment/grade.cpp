@@ -63,6 +63,7 @@ void judge(GradedFigure& figure, const AttemptValue* found, const Norm& norm, st
     return;
   }
   figure.passed = passes(figure.mark, *figure.value);
+  figure.near = isWithinError(figure.mark, figure.error, *figure.value);
   figure.open = figure.mark.lower && *figure.value >= *figure.mark.lower && *figure.value <= *figure.mark.upper;
   // A mark at the end of an interval that is a point is decided: the value is exact.
   if (figure.interval && figure.interval->lower)
@@ -101,14 +102,17 @@ void conclude(Grade& grade) {
     return;
   }
   grade.passed = keepsRule(grade.norm, passed);
+  grade.near = !isSteady(grade, [](const GradedFigure& f) { return f.near; });
   const bool marked = isSteady(grade, [](const GradedFigure& f) { return f.open; });
   const bool simulated = isSteady(grade, [](const GradedFigure& f) { return f.undecided; }) && !grade.criticalUndecided;
   // Open and undecided figures together may turn what neither turns alone.
   grade.certain = marked && simulated && isSteady(grade, [](const GradedFigure& f) { return f.open || f.undecided; });
   std::string doubt = fixed;
+  if (grade.near)
+    doubt += "; within one standard error of the pass marks, where another attempt may be graded otherwise";
   if (!marked) doubt += "; not certain, as figures lie within the intervals of their pass marks";
   if (!simulated) doubt += "; not decided by this simulation, whose intervals hold pass marks";
-  if (!grade.certain && doubt == fixed)
+  if (!grade.certain && marked && simulated)
     doubt +=
         "; not certain, as figures within the intervals of their pass marks and figures that this simulation does "
         "not decide can turn it together";
@@ -186,9 +190,11 @@ Grade gradeAttempt(const AttemptRow& attempt, const std::vector<AttemptRow>& att
     grade.criticalUndecided = v->interval && v->interval->contains(anyError);
   }
   const std::vector<const AttemptRow*> past = pastOf(attempt, attempts);
+  const std::vector<std::optional<MarkError>> errors = markErrors(norm, attempts, values);
   for (std::size_t i = 0; i < norm.checkpoints.size(); ++i) {
     GradedFigure figure;
     figure.mark = norm.checkpoints[i];
+    figure.error = errors[i];
     figure.title = figure.unit = figure.mark.checkpoint;
     const CheckpointDefinition* d =
         figure.mark.metric ? &figure.mark.metric->definition : findCheckpoint(figure.mark.checkpoint);

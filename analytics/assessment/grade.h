@@ -9,6 +9,7 @@
 
 #include "analytics/assessment/moments.h"
 #include "analytics/assessment/norm.h"
+#include "analytics/assessment/norm_decision.h"
 #include "analytics/cohort/cohort_database.h"
 #include "analytics/statistics/expected.h"
 #include "analytics/statistics/regression.h"
@@ -35,12 +36,14 @@ struct GradedFigure {
   std::string missing;          ///< why it is not judged, or empty
   std::optional<bool> passed;
   bool open = false;  ///< the value lies within the interval of the cut: another norm might judge otherwise
-  std::optional<ValueInterval> interval;           ///< of the simulation, where one was worked out
-  bool undecided = false;                          ///< the pass mark lies within it: not decided by this simulation
-  Expected<double> rank = NoResult{"not judged"};  ///< percentile()
-  std::uint64_t competent = 0;                     ///< members that rank is among
-  FigureMoments moments;                           ///< of a weak figure
-  std::vector<HistoryPoint> history;               ///< by start, this attempt the last
+  std::optional<MarkError> error;         ///< beside the mark, on its scale
+  bool near = false;                      ///< within that of the mark: another attempt might be judged otherwise
+  std::optional<ValueInterval> interval;  ///< of the simulation, where one was worked out
+  bool undecided = false;                 ///< the pass mark lies within it: not decided by this simulation
+  Expected<double> rank = NoResult{"not judged"};            ///< percentile()
+  std::uint64_t competent = 0;                               ///< members that rank is among
+  FigureMoments moments;                                     ///< of a weak figure
+  std::vector<HistoryPoint> history;                         ///< by start, this attempt the last
   Expected<LearningCurve> curve = NoResult{"not computed"};  ///< a - b / x, display unit
 
   [[nodiscard]] bool weak() const { return passed.has_value() && !*passed; }
@@ -56,6 +59,7 @@ struct Grade {
   std::vector<GradedFigure> figures;  ///< in the norm's order
   std::size_t inRule = 0, needed = 0, passedCount = 0;
   bool passed = false;
+  bool near = false;    ///< within one standard error of its marks, the judgement is the other
   bool certain = true;  ///< the judgement is the same however the open and undecided figures are taken
   std::string verdict;  ///< one sentence
   std::vector<std::string> remarks;
@@ -63,7 +67,8 @@ struct Grade {
 };
 
 /// Critical errors first: one fails the attempt. Then the norm's rule. A figure without a value is not passed.
-/// @param attempts the participant's other attempts of the same key, this one among them @param values theirs
+/// @param attempts this one among them: the participant's give the history, and those of the key the errors of
+/// measurement @param values theirs
 /// @throws Error (refused) where the attempt did not verify or is not whole, or its comparability key is not the norm's
 /// and `mixKeys` is not set.
 Grade gradeAttempt(const AttemptRow& attempt, const std::vector<AttemptRow>& attempts,

@@ -11,8 +11,10 @@
 
 #include "analytics/checkpoints/checkpoint.h"
 #include "analytics/report/report_document.h"
+#include "analytics/report/study_rows.h"
 #include "analytics/statistics/standard_setting.h"
 #include "recorder/base/errors.h"
+#include "recorder/base/text_words.h"
 
 namespace calot::analytics {
 namespace {
@@ -21,6 +23,7 @@ constexpr const char* competentGroup = "competent";
 constexpr const char* otherGroup = "not competent";
 constexpr const char* allFigures = "all";
 constexpr const char* borderlinePrefix = "borderline regression on form ";
+constexpr const char* borderlineMark = ", borderline mark ";
 
 std::size_t competentMembers(const Norm& norm) {
   return static_cast<std::size_t>(
@@ -145,7 +148,7 @@ std::vector<NormFigure> collectValues(Norm& norm, const std::vector<AttemptValue
       figures.push_back({definition, item.value.subject, item.value.metric});
       for (NormMember& m : norm.members) m.values.emplace_back();
     }
-    whose->second->values[position] = item.value.value;
+    whose->second->values[position] = withoutDust(item.value, definition->displayFactor);
   }
   return figures;
 }
@@ -249,7 +252,7 @@ Norm makeNorm(const std::vector<AttemptRow>& attempts, const std::vector<Attempt
     who.groups = {atMarkGroup, belowMarkGroup};
     who.better = atMarkGroup;
     norm.judgedBy =
-        fmt::format("{}{}, borderline mark {}", borderlinePrefix, request.borderline->form, request.borderline->mark);
+        borderlinePrefix + request.borderline->form + borderlineMark + fmt::format("{}", request.borderline->mark);
   }
   const Study study = studyOfMembers(candidates, values, who, name);
   if (study.better.empty())
@@ -278,6 +281,14 @@ Norm makeNorm(const std::vector<AttemptRow>& attempts, const std::vector<Attempt
                 fmt::format("a norm wants at least {} competent members and as many others; there are {} and {}",
                             minNormMembers, competent, norm.members.size() - competent));
   const auto figures = collectValues(norm, values, request, name);
+  for (const StudyRow& row : study.rows) {
+    const CoverageRow* sampling = coverageOf(study, row);
+    if (sampling == nullptr || sampling->refusal.empty()) continue;
+    if (std::any_of(figures.begin(), figures.end(), [&](const NormFigure& f) {
+          return f.definition->name == row.checkpoint && f.subject == row.subject;
+        }))
+      throw Error(ErrorKind::refused, Where{name}, fmt::format("{}: {}", row.checkpoint, sampling->refusal));
+  }
   checkCount(figures, request, name);
   for (std::size_t i = 0; i < figures.size(); ++i)
     norm.checkpoints.push_back(markOf(*figures[i].definition, figures[i], norm, i, rating, request.borderline));
@@ -286,6 +297,15 @@ Norm makeNorm(const std::vector<AttemptRow>& attempts, const std::vector<Attempt
 }
 
 bool isByBorderline(const Norm& norm) { return norm.judgedBy.rfind(borderlinePrefix, 0) == 0; }
+
+std::optional<BorderlineMark> borderlineOf(const Norm& norm) {
+  const std::size_t at = norm.judgedBy.rfind(borderlineMark), begin = std::string_view(borderlinePrefix).size();
+  if (!isByBorderline(norm) || at == std::string::npos) return std::nullopt;
+  std::string fault;
+  const double mark =
+      recorder::readFiniteNumber(norm.judgedBy.substr(at + std::string_view(borderlineMark).size()), fault);
+  return BorderlineMark{norm.judgedBy.substr(begin, at - begin), mark};
+}
 
 bool passes(const NormCheckpoint& mark, double value) {
   return mark.direction == Direction::lower ? value <= *mark.cut : value >= *mark.cut;
@@ -301,7 +321,8 @@ std::size_t neededPasses(const Norm& norm) { return norm.leastPassed > 0 ? norm.
 std::string ruleText(const Norm& norm) {
   const auto [competent, others] = passRates(norm);
   return fmt::format(
-      "no critical error, and {} of {} figures. By it {} of {} competent members pass, and {} of {} others.",
+      "no critical error, and {} of {} figures. By it {} of {} competent members pass, and {} of {} others; the marks "
+      "were made of these members: of people who are new to it fewer are judged right.",
       neededPasses(norm), figuresInRule(norm), competent.passed, competent.members, others.passed, others.members);
 }
 

@@ -125,6 +125,8 @@ std::string passMarkWarning(const Norm& norm);
 
 /// True if the pass marks come from borderline regression.
 bool isByBorderline(const Norm& norm);
+/// Its form and mark, where they do.
+std::optional<BorderlineMark> borderlineOf(const Norm& norm);
 
 /// How many figures the rule has, and how many of them must be passed: leastPassed, or all of them.
 std::size_t figuresInRule(const Norm& norm);

@@ -2,6 +2,7 @@
 #include "analytics/assessment/protocol.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -41,6 +42,8 @@ std::vector<Field> exclusionsFields() {
 
 }  // namespace
 
+std::string nameOf(Claim claim) { return nameIn({"difference", "equivalence", "non-inferiority"}, claim); }
+
 std::vector<Field> PopulationCriterion::fields() {
   using S = PopulationCriterion;
   return {
@@ -61,6 +64,7 @@ std::vector<Field> Population::fields() {
       optional("criteria", at<S, &S::criteria>,
                "Recorded experience that every member has; attempts of others stay out")
           .items(0, 20),
+      optional("planned", at<S, &S::planned>, "", within(1, 1000000), "Participants that are planned"),
   };
 }
 
@@ -78,6 +82,12 @@ std::vector<Field> DirectedHypothesis::fields() {
                "In place of a checkpoint: a column of a table from elsewhere"),
       optional("subject", at<S, &S::subject>, anyName, "Hand (left, right), organ or phase, of checkpoints with one"),
       {"larger", at<S, &S::larger>, anyName, "The group whose values are expected to be the larger ones"},
+      optional(
+          "claim", at<S, &S::claim>, FieldWords{{"difference", 0}, {"equivalence", 1}, {"non-inferiority", 2}},
+          "equivalence: the groups differ by less than the margin; non-inferiority: the values of larger exceed the "
+          "others by less than the margin"),
+      optional("margin", at<S, &S::margin>, "", above(0, maxBound),
+               "Of equivalence and non-inferiority: the margin, in the unit in which the figure is shown"),
       {"primary", at<S, &S::primary>, "In the family of Holm's adjustment; else secondary"},
   };
 }
@@ -95,6 +105,14 @@ std::vector<Field> Protocol::fields() {
        "Version of this protocol; a changed protocol has a higher one"},
       {"title", at<S, &S::title>, anyText, "One line"},
       optional("question", at<S, &S::question>, anyText, "Question of the study"),
+      optional("ethics", at<S, &S::ethics>, anyText, "Committee and number of its approval"),
+      optional("registry", at<S, &S::registry>, anyText, "Public registry and the study's number there"),
+      optional("sampleSizeReason", at<S, &S::sampleSizeReason>, anyText,
+               "Reason for the planned numbers of participants, as a power analysis"),
+      optional("stoppingRule", at<S, &S::stoppingRule>, anyText, "When recruitment ends"),
+      optional("covariates", at<S, &S::covariates>, anyText,
+               "Variables that may explain a difference; the comparison is not adjusted for them")
+          .items(0, 20),
       optional("operators", at<S, &S::performers>, FieldWords{{"people", 0}, {"performers", 1}},
                "Operators that are compared; performers prove the pipeline and nothing about people"),
       Field("populations", at<S, &S::populations>, "The two groups, in the order of the tables").items(2, 2),
@@ -112,6 +130,8 @@ std::vector<Field> Protocol::fields() {
                   {"worst-rank", number(MissingRule::worstRank)}},
        "complete-cases: who has no value is left out of that figure, and counted. worst-rank: who has none because the "
        "attempt was not completed ranks behind all others, tied (Lachin 1999)"},
+      optional("test", at<S, &S::unequalSpread>, FieldWords{{"mann-whitney", 0}, {"brunner-munzel", 1}},
+               "Test of two groups; brunner-munzel where they may scatter differently"),
       {"level", at<S, &S::level>, "1", above(0, 0.5), "Level of significance of the family"},
       Field("hypotheses", at<S, &S::hypotheses>,
             "At least one is primary. Holm's adjustment is over the primary ones alone; figures without a hypothesis "
@@ -150,13 +170,24 @@ void checkHypothesis(const Protocol& protocol, const JsonPlace& place, DirectedH
     if (place.has("subject")) place.at("subject").fail("an external metric has none");
   } else if (place.has("outcome")) {
     if (place.has("subject")) place.at("subject").fail("an outcome has none: it is a column of a table");
-  } else if (findCheckpoint(name) == nullptr) {
-    std::vector<std::string> known;
-    for (const CheckpointEntry& entry : checkpointRegistry()) known.push_back(entry.definition.name);
+  } else if (const CheckpointDefinition* const known = findCheckpoint(name); known == nullptr) {
+    std::vector<std::string> names;
+    for (const CheckpointEntry& entry : checkpointRegistry()) names.push_back(entry.definition.name);
     place.at("checkpoint")
         .fail(fmt::format("no checkpoint of this name{} (calot checkpoints lists them)",
-                          recorder::didYouMean(name, known)));
+                          recorder::didYouMean(name, names)));
+  } else {
+    const std::vector<std::string> subjects = subjectsOf(checkpointRegistry()[positionOf(name)], {});
+    const bool ofOrgans = known->aggregation == Aggregation::organ;  // of the scene: `calot protocol check` knows them
+    if (ofOrgans ? hypothesis.subject.empty() : std::count(subjects.begin(), subjects.end(), hypothesis.subject) == 0) {
+      place.fail(subjects == std::vector<std::string>{""}
+                     ? fmt::format("{} is of the whole attempt and has no subject", name)
+                     : fmt::format("{} needs its \"subject\": {}", name,
+                                   ofOrgans ? "an organ" : fmt::format("{}", fmt::join(subjects, ", "))));
+    }
   }
+  if (hypothesis.margin.has_value() == (hypothesis.claim == Claim::difference))
+    place.fail("equivalence and non-inferiority need a \"margin\", a difference has none");
   checkGroup(protocol, place.at("larger"), hypothesis.larger);
 }
 
@@ -183,6 +214,8 @@ Protocol parseProtocol(std::span<const std::byte> bytes, const std::string& file
   }
   if (protocol.populations[0].group == protocol.populations[1].group)
     populations.at(1).fail("has the group of the first population");
+  if (protocol.populations[0].planned + protocol.populations[1].planned > 0 && protocol.sampleSizeReason.empty())
+    root.fail("\"planned\" participants need their \"sampleSizeReason\"");
   checkGroup(protocol, root.at("better"), protocol.better);
   std::set<std::string> seen;
   for (std::size_t i = 0; i < protocol.hypotheses.size(); ++i) {

@@ -32,9 +32,19 @@ struct Population {
   std::string group;       ///< study group, or the performers' profile
   std::string definition;  ///< in words
   std::vector<PopulationCriterion> criteria;
+  std::uint32_t planned = 0;  ///< participants; 0: not declared
 
   static std::vector<Field> fields();
 };
+
+/// The claim of a hypothesis on the shift between the groups.
+enum class Claim : std::uint8_t {
+  difference,     ///< one group's values are the larger ones
+  equivalence,    ///< the shift lies within the margin on both sides
+  nonInferiority  ///< the one group's values are larger by less than the margin
+};
+
+std::string nameOf(Claim claim);
 
 /// "Novices take longer": which group's values of one figure are expected to be the larger ones.
 struct DirectedHypothesis {
@@ -42,7 +52,9 @@ struct DirectedHypothesis {
   bool external = false;            ///< a metric of a user's own script
   std::string sha256;               ///< of that script, or empty: any
   std::string larger;               ///< one of both groups
-  bool primary = false;             ///< in the family that Holm's adjustment holds
+  Claim claim = Claim::difference;
+  std::optional<double> margin;  ///< in the figure's display unit; of a claim that has one
+  bool primary = false;          ///< in the family that Holm's adjustment holds
 
   static std::vector<Field> fields();
 };
@@ -53,7 +65,8 @@ enum class MissingRule : std::uint8_t {
 };
 
 struct Protocol : DeclaredDocument {
-  std::string question;
+  std::string question, ethics, registry, sampleSizeReason, stoppingRule;
+  std::vector<std::string> covariates;
   bool performers = false;  ///< compares performers' profiles, to prove the pipeline; else people
   std::array<Population, 2> populations;
   std::string better;                      ///< the group that is expected to do better
@@ -62,6 +75,7 @@ struct Protocol : DeclaredDocument {
   std::vector<recorder::Outcome> excludedOutcomes;
   std::vector<std::string> exclusionReasons;  ///< for which an attempt may be excluded by hand
   MissingRule missing = MissingRule::completeCases;
+  bool unequalSpread = false;  ///< the test is Brunner and Munzel's
   double level = 0.05;
   std::vector<DirectedHypothesis> hypotheses;
 

@@ -103,6 +103,8 @@ std::vector<Field> RatingForm::fields() {
       {"source", at<S, &S::source>, anyText, "Source of the items"},
       {"about", at<S, &S::ofAttempts>, FieldWords{{"attempt", 1}, {"simulator", 0}},
        "attempt: a rater judges an attempt. simulator: a participant judges what they took part in"},
+      optional("shows", at<S, &S::ofDoublets>, FieldWords{{"film", 0}, {"doublet", 1}},
+               "film: raters are shown the attempt's film. doublet: photographs of its critical view, front and back"),
       {"scale", keyGroup<S, scaleFields>, "Scale of the scores"},
       Field("sections", at<S, &S::sections>,
             "Items under their headings. Of a questionnaire, Cronbach's alpha is over each")

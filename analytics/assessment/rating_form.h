@@ -44,7 +44,8 @@ struct FormSubscale {
 
 struct RatingForm : DeclaredDocument {
   std::string source;
-  bool ofAttempts = true;  ///< raters judge attempts; else participants judge what they took part in
+  bool ofAttempts = true;   ///< raters judge attempts; else participants judge what they took part in
+  bool ofDoublets = false;  ///< raters are shown front and back of the critical view, not the film
   int least = 1, most = 5;
   std::vector<std::string> words;  ///< of the scores, from the least; or empty
   std::vector<FormSection> sections;

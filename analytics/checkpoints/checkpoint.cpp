@@ -88,6 +88,8 @@ std::string firstObjection(const CheckpointEntry& entry, const AttemptContext& c
   return whyTooOld(context, entry.results);
 }
 
+}  // namespace
+
 std::vector<std::string> subjectsOf(const CheckpointEntry& entry, const AttemptContext& context) {
   if (entry.subjects != nullptr) return entry.subjects(context);
   std::vector<std::string> phases, handsInPhases;
@@ -109,8 +111,6 @@ std::vector<std::string> subjectsOf(const CheckpointEntry& entry, const AttemptC
   }
   return {""};
 }
-
-}  // namespace
 
 std::string nameOf(Direction direction) { return nameIn({"none", "lower", "higher"}, direction); }
 
@@ -242,6 +242,8 @@ std::vector<CheckpointValue> Checkpoint::values(const AttemptEnd& end) const {
                                                          : makeMissing(d, subjects_[s], origin, m.missing, m.reason));
     if (cutoff != motionCutoff && d.filter == motionFilterText()) value.filter = motionFilterText(cutoff);
     value.coverage = m.coverage;
+    value.rate = m.rate;
+    value.noise = m.noise;
   }
   return result;
 }

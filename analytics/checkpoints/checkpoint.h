@@ -83,7 +83,9 @@ struct CheckpointValue {
   std::string filter;  ///< as declared when the value was made
   /// Share of the window that samples cover, in [0, 1]; none where it isn't of samples, or the hand is absent.
   std::optional<double> coverage;
-  ExternalMetricRef metric = {};  ///< of origin `external`, and of no other
+  std::optional<double> rate = {};   ///< of the tracker's samples (Hz), as Motion::rate; of both hands the lower
+  std::optional<double> noise = {};  ///< of the tracker (m), as Motion::noise; of both hands the greater
+  ExternalMetricRef metric = {};     ///< of origin `external`, and of no other
   bool operator==(const CheckpointValue&) const = default;
 };
 
@@ -110,7 +112,8 @@ struct Measured {
   Availability missing = Availability::notApplicable;
   std::string reason = {};
   std::string note = {};
-  std::optional<double> coverage = {};  ///< MotionCoverage::share()
+  std::optional<double> coverage = {};          ///< MotionCoverage::share()
+  std::optional<double> rate = {}, noise = {};  ///< as CheckpointValue's
 
   static Measured of(double figure, std::string note = {}) {
     return {.value = figure, .missing = Availability::value, .note = std::move(note)};
@@ -287,6 +290,9 @@ CheckpointValue makeValue(const CheckpointDefinition& definition, std::string su
                           std::string note = {});
 CheckpointValue makeMissing(const CheckpointDefinition& definition, std::string subject, Origin origin,
                             Availability availability, std::string reason);
+
+/// Names of the entry's values: hands, phases, the context's organs; one empty name: the attempt.
+std::vector<std::string> subjectsOf(const CheckpointEntry& entry, const AttemptContext& context);
 
 /// Every checkpoint that this build knows, in the order in which tables show them: by family, then by rank.
 const std::vector<CheckpointEntry>& checkpointRegistry();

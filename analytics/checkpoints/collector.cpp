@@ -126,34 +126,12 @@ std::vector<CheckpointValue> valuesFromObservables(recorder::Recording& recordin
   return collector.values();
 }
 
-Motion motionOf(const recorder::TrackedMotion& tracked, std::size_t hand, double cutoff) {
-  const recorder::TrackedHand& rows = tracked.hand[hand];
-  Motion motion;
-  motion.cutoff = cutoff;
-  if (!rows.present) return motion;
-  // Rows of a fixed rate are counted, so that no time is rounded.
-  const bool counted = tracked.rate > 0.0;
-  const auto since = [&](std::size_t i) {
-    return counted ? 1.0 / tracked.rate : tracked.time[i] - tracked.time[i - 1];
-  };
-  MotionSamples samples{SampleGrid(counted ? tracked.rate : 1.0), {}, 0.0, {}, rows.oriented};
-  for (std::size_t i = 0; i < rows.position.size(); ++i) {
-    const double time = counted ? static_cast<double>(i) : tracked.time[i];
-    if (i > 0) samples.rate.add(since(i));
-    if (i == 0 || since(i) > straightBridge) {
-      samples.grid.begin(time, rows.position[i], rows.orientation[i], i > 0);
-    } else {
-      samples.grid.extend(time, rows.position[i], rows.orientation[i]);
-    }
-  }
-  const GapRule rule{samples.rate.interval()};
-  samples.longestRate = rule.longestEven();
-  samples.coverage.mounted = {{0.0, tracked.time.back()}};
-  for (std::size_t i = 1; i < tracked.time.size(); ++i) {
-    if (rule.isGap(since(i))) samples.coverage.lost.push_back({tracked.time[i] - rule.lost(since(i)), tracked.time[i]});
-  }
-  return filteredMotion(std::move(samples), cutoff);
-}
+namespace {
+
+/// A longer interval, in the tracker's own, hides a sample whose pose equalled the previous one.
+constexpr double unseenIntervals = 1.5;
+
+}  // namespace
 
 std::vector<CheckpointValue> valuesFromSamples(const recorder::TrackedMotion& tracked, const SamplesContext& context) {
   const std::array<Motion, handCount> motion{motionOf(tracked, 0, context.cutoff),
@@ -179,13 +157,6 @@ std::vector<CheckpointValue> valuesFromSamples(const recorder::TrackedMotion& tr
   }
   return values;
 }
-
-namespace {
-
-/// A longer interval, in the tracker's own, hides a sample whose pose equalled the previous one.
-constexpr double unseenIntervals = 1.5;
-
-}  // namespace
 
 MotionTrack::MotionTrack(double tickSeconds, double sourceRate)
     : tickSeconds_(tickSeconds), rowsPerTick_(sourceRate * tickSeconds), grid_(1.0 / tickSeconds) {

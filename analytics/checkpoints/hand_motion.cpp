@@ -29,12 +29,18 @@ std::optional<Measured> refusalOf(double minCoverage, const MotionCoverage& cove
   return std::nullopt;
 }
 
-/// Adds the coverage to a figure, and notes time without measurement.
-Measured withCoverage(Measured measured, const MotionCoverage& coverage) {
+/// Adds coverage, rate and noise to a figure, and notes time without measurement.
+Measured withSampling(Measured measured, const MotionCoverage& coverage, const Motion& one, const Motion& other) {
   measured.coverage = coverage.share();
+  if (measured.coverage && one.rate > 0.0 && other.rate > 0.0) measured.rate = std::min(one.rate, other.rate);
+  if (measured.coverage && one.noise && other.noise) measured.noise = std::max(one.noise, other.noise);
   const double lost = lengthOf(coverage.lost);
   if (measured.value && lost > straightBridge)
     measured.note += fmt::format("{}{:.3f} s without measurement", measured.note.empty() ? "" : "; ", lost);
+  const std::size_t leftOut = &one == &other ? one.leftOut : one.leftOut + other.leftOut;
+  if (measured.value && leftOut > 0)
+    measured.note +=
+        fmt::format("{}{} sample{} left out", measured.note.empty() ? "" : "; ", leftOut, leftOut == 1 ? "" : "s");
   return measured;
 }
 
@@ -43,7 +49,7 @@ Measured withCoverage(Measured measured, const MotionCoverage& coverage) {
 Measured measureHand(double minCoverage, const Motion& motion, MotionMeasure measure) {
   if (!motion.coverage.share()) return Measured::none(Availability::absentHand, "no instrument in this hand");
   std::optional<Measured> refusal = refusalOf(minCoverage, motion.coverage, !motion.segments.empty());
-  return withCoverage(refusal ? *std::move(refusal) : measure(motion), motion.coverage);
+  return withSampling(refusal ? *std::move(refusal) : measure(motion), motion.coverage, motion, motion);
 }
 
 struct HandMotion {
@@ -74,9 +80,9 @@ struct BothHands {
     for (std::size_t h = 0; h < end.motion.size(); ++h) {
       if (std::optional<Measured> refusal = refusalOf(declared.minCoverage, coverage, !end.motion[h]->segments.empty(),
                                                       fmt::format(" of the {} hand", handNames[h])))
-        return withCoverage(*std::move(refusal), coverage);
+        return withSampling(*std::move(refusal), coverage, left, right);
     }
-    return withCoverage(measure(left, right, context), coverage);
+    return withSampling(measure(left, right, context), coverage, left, right);
   }
 };
 
@@ -228,8 +234,11 @@ std::optional<double> speedCorrelation(const Motion& left, const Motion& right, 
     rr += dot(part.right, part.right, part.points, r, r);
     lr += dot(part.left, part.right, part.points, l, r);
   }
-  const double least = minSpeed * minSpeed * points;
-  if (!(ll > least) || !(rr > least)) return std::nullopt;
+  const auto varies = [points](double squares, const Motion& motion) {
+    const double least = std::max(minSpeed, speedNoise(motion));
+    return squares > least * least * points;
+  };
+  if (!varies(ll, left) || !varies(rr, right)) return std::nullopt;
   return std::clamp(lr / (std::sqrt(ll) * std::sqrt(rr)), -1.0, 1.0);
 }
 

@@ -31,7 +31,7 @@ using TwoHandMeasure = Measured (*)(const Motion& left, const Motion& right, con
 CheckpointEntry perHand(CheckpointEntry row, MotionMeasure measure);
 /// The same in each phase: "left clipping". @param whole row of the whole attempt @param rank, version as phaseRow()
 CheckpointEntry perHandAndPhase(const CheckpointEntry& whole, int rank, MotionMeasure measure,
-                                std::uint32_t version = 2);
+                                std::uint32_t version = 3);
 /// The row of a figure of both hands together; no value where a hand has no instrument.
 CheckpointEntry ofBothHands(CheckpointEntry row, TwoHandMeasure measure);
 
@@ -87,7 +87,8 @@ struct LaggedCorrelation {
   double correlation = 0.0;
   std::int64_t lag = 0;
 };
-/// At lag 0. @return nothing where there are fewer than 2 common points or a speed does not vary (by minSpeed).
+/// At lag 0. @return nothing where there are fewer than 2 common points or a speed does not vary by minSpeed, or by
+/// less than the tracker's noise.
 std::optional<double> speedCorrelation(const Motion& left, const Motion& right, std::int64_t lag = 0);
 /// The greatest within +-`farthest` points; the smallest lag of equals, the negative one first.
 std::optional<LaggedCorrelation> greatestSpeedCorrelation(const Motion& left, const Motion& right,

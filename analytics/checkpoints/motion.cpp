@@ -52,6 +52,8 @@ void SampleGrid::begin(double time, const Vec3& position, const Quat& orientatio
   while (gridTime(next_, unitsPerSecond_) < time - slack) ++next_;
   const TimedPose sample{time, position, unit(orientation)};
   runs_.push_back({next_, {}, {}, sample, sample, continues});
+  noise_.interrupt();
+  noise_.add(time / unitsPerSecond_, position);
   if (gridTime(next_, unitsPerSecond_) <= time + slack) put(position, sample.orientation);
 }
 
@@ -69,6 +71,7 @@ void SampleGrid::extend(double time, const Vec3& position, const Quat& orientati
     }
   }
   runs_.back().end = {time, position, to};
+  noise_.add(time / unitsPerSecond_, position);
 }
 
 namespace {
@@ -253,6 +256,7 @@ Motion filteredMotion(MotionSamples samples, double cutoff) {
   motion.mounted = !samples.coverage.mounted.empty();
   motion.interval = samples.rate.interval();
   motion.rate = samples.rate.hertz(samples.longestRate);
+  motion.noise = samples.grid.noise().deviation();
   motion.cutoff = cutoff;
   const double unitsPerSecond = samples.grid.unitsPerSecond();
   std::vector<GridRun> runs = bridged(std::move(samples.grid).takeRuns(), GapRule{motion.interval}, unitsPerSecond);

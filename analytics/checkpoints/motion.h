@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "analytics/checkpoints/tracker_noise.h"
 #include "sim/math/linear.h"
 
 namespace calot::analytics {
@@ -60,6 +61,7 @@ class SampleGrid {
   [[nodiscard]] const std::vector<GridRun>& runs() const { return runs_; }
   [[nodiscard]] std::vector<GridRun> takeRuns() && { return std::move(runs_); }
   [[nodiscard]] double unitsPerSecond() const { return unitsPerSecond_; }
+  [[nodiscard]] const TrackerNoise& noise() const { return noise_; }
 
  private:
   void put(const Vec3& position, const Quat& orientation);
@@ -67,6 +69,7 @@ class SampleGrid {
   double unitsPerSecond_;
   std::int64_t next_ = 0;
   std::vector<GridRun> runs_;
+  TrackerNoise noise_;
 };
 
 /// A tracker's own interval and its rate by the clock, from the times between its samples. Times over `longestInterval`
@@ -155,7 +158,9 @@ struct Motion {
   bool mounted = false;                 ///< there was an instrument at any time
   MotionCoverage coverage;              ///< when there was, and when nothing was measured of it
   double interval = 0.0;                ///< the tracker's own (s), as SampleRate::interval()
-  double rate = 0.0;                    ///< of the samples by the clock, gaps left out (Hz); 0: too few to tell
+  double rate = 0.0;                    ///< of the samples by the clock, gaps left out (Hz); 0: the pose never changed
+  std::optional<double> noise = {};     ///< TrackerNoise::deviation() (m); nothing: too few samples
+  std::size_t leftOut = 0;              ///< samples that no hand gives (recorder::markInvalidSamples())
   double cutoff = motionCutoff;         ///< of the filter (Hz)
   double movementSpeed = 0.0;           ///< threshold of this hand's movements (m/s), as movementSpeedOf()
   std::vector<MotionSegment> segments;  ///< each long enough for the filter

@@ -91,6 +91,7 @@ std::vector<PhaseMotion> PhaseTrack::cut(const std::array<Motion, handCount>& mo
       hand.coverage = coverageWithin(motion[h].coverage, window);
       hand.interval = motion[h].interval;
       hand.rate = motion[h].rate;
+      hand.noise = motion[h].noise;
       hand.cutoff = motion[h].cutoff;
       hand.movementSpeed = motion[h].movementSpeed;
     }

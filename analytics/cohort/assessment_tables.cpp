@@ -41,15 +41,17 @@ RegisteredProtocol CohortDatabase::registerProtocol(const StoredDocument& protoc
   if (by.empty()) throw Error(ErrorKind::invalid, "protocol: name who registers it");
   return connection_->change([&](SQLite::Database& db) {
     for (const RegisteredProtocol& known : protocols(protocol.name)) {
-      if (known.sha256 == protocol.sha256) {
+      const bool stands = known.withdrawnUtc.empty();
+      if (known.sha256 == protocol.sha256 && stands) {
         added = false;
         return known;
       }
-      if (known.version >= protocol.version) {
-        throw Error(ErrorKind::refused, Where{path()},
-                    fmt::format("protocol {} version {} was registered on {} with another text; a changed protocol has "
-                                "a higher version",
-                                known.name, known.version, known.registeredUtc));
+      if (known.version == protocol.version || (known.version > protocol.version && stands)) {
+        throw Error(
+            ErrorKind::refused, Where{path()},
+            fmt::format("protocol {} version {} was registered on {}{}; a changed protocol has a higher version",
+                        known.name, known.version, known.registeredUtc,
+                        stands ? " with another text" : " and withdrawn on " + known.withdrawnUtc));
       }
     }
     RegisteredProtocol fresh{protocol, nowUtc(), by};
@@ -64,6 +66,14 @@ RegisteredProtocol CohortDatabase::registerProtocol(const StoredDocument& protoc
 std::vector<RegisteredProtocol> CohortDatabase::protocols(const std::string& name) const {
   return connection_->read([&](SQLite::Database& db) {
     return selectRows(db, protocolTable, "WHERE name = ?1 OR ?1 = '' ORDER BY name, version", {name});
+  });
+}
+
+void CohortDatabase::withdrawProtocol(const std::string& sha256, const std::string& reason, const std::string& by) {
+  if (by.empty() || reason.empty()) throw Error(ErrorKind::invalid, "protocol: name who withdraws it, and why");
+  connection_->change([&](SQLite::Database& db) {
+    execute(db, "UPDATE protocol SET withdrawn_utc = ? WHERE sha256 = ?", {nowUtc(), sha256});
+    audit(db, "protocol-withdraw", sha256, fmt::format("{} (by {})", reason, by));
   });
 }
 

@@ -49,6 +49,20 @@ AttemptRow attemptRow(SQLite::Statement& row) {
   return a;
 }
 
+/// By uuid. @param condition on rows of attempt_left_out (alias l), with its parameters
+std::map<std::string, std::vector<LeftOut>> readLeftOut(SQLite::Database& db, const std::string& condition = "",
+                                                        const std::vector<Cell>& parameters = {}) {
+  std::map<std::string, std::vector<LeftOut>> found;
+  eachRow(db,
+          "SELECT a.uuid, l.position, l.rule, l.reason FROM attempt_left_out l JOIN attempt a ON a.id = l.attempt " +
+              condition + " ORDER BY l.position",
+          parameters, [&](SQLite::Statement& row) {
+            found[text(row.getColumn(0))].push_back(
+                {row.getColumn(1).getInt64(), text(row.getColumn(2)), text(row.getColumn(3))});
+          });
+  return found;
+}
+
 }  // namespace
 
 std::int64_t attemptId(SQLite::Database& db, const std::string& uuid) {
@@ -65,7 +79,9 @@ std::optional<AttemptRow> findAttempt(SQLite::Database& db, const std::string& u
   std::optional<AttemptRow> found;
   eachRow(db, selectAttempts("WHERE a.uuid = ?"), {uuid}, [&](SQLite::Statement& row) { found = attemptRow(row); });
   if (found) {
-    found->tags = firstTexts(db, "SELECT tag FROM attempt_tag WHERE attempt = ? ORDER BY tag", {attemptId(db, uuid)});
+    const std::int64_t id = attemptId(db, uuid);
+    found->tags = firstTexts(db, "SELECT tag FROM attempt_tag WHERE attempt = ? ORDER BY tag", {id});
+    found->leftOut = readLeftOut(db, "WHERE l.attempt = ?", {id})[uuid];
   }
   return found;
 }
@@ -78,8 +94,10 @@ std::vector<AttemptRow> readAttempts(SQLite::Database& db) {
   std::map<std::string, std::vector<std::string>> tagsOf;
   eachRow(db, "SELECT a.uuid, t.tag FROM attempt_tag t JOIN attempt a ON a.id = t.attempt ORDER BY 2", {},
           [&](SQLite::Statement& row) { tagsOf[text(row.getColumn(0))].push_back(text(row.getColumn(1))); });
+  auto leftOut = readLeftOut(db);
   for (AttemptRow& row : rows) {
     if (const auto at = tagsOf.find(row.uuid); at != tagsOf.end()) row.tags = std::move(at->second);
+    if (const auto at = leftOut.find(row.uuid); at != leftOut.end()) row.leftOut = std::move(at->second);
   }
   return rows;
 }
@@ -153,6 +171,18 @@ void CohortDatabase::includeAttempts(const std::vector<std::string>& attempts, c
   });
 }
 
+std::string CohortDatabase::uuidOfMotion(const std::string& uuid, const std::string& earlier,
+                                         const std::array<std::byte, 32>& bytesHash) const {
+  return connection_->read([&](SQLite::Database& db) {
+    if (attemptId(db, uuid) >= 0) return uuid;
+    const std::vector<std::string> sameBytes =
+        firstTexts(db, "SELECT a.uuid FROM recording r JOIN attempt a ON a.id = r.attempt WHERE r.chain_head = ?",
+                   {blobOf(bytesHash)});
+    if (!sameBytes.empty()) return sameBytes.front();
+    return isWithdrawn(db, earlier) ? earlier : uuid;
+  });
+}
+
 std::size_t CohortDatabase::tagAttempts(const std::vector<std::string>& attempts, const std::string& tag,
                                         const std::string& by) {
   return changeTags(*connection_, attempts, tag, by,
@@ -199,7 +229,7 @@ std::string contradiction(const AttemptRecord& known, const AttemptRecord& incom
     return "signer";
   if (!known.station.empty() && known.station != incoming.station) return "station";
   if (known.device != incoming.device || known.calibration != incoming.calibration) return "device";
-  if (known.chainHead == incoming.chainHead) return {};
+  if (known.chainHead == incoming.chainHead || isMotion(known)) return {};  // motion's uuid is of its samples
   // Only an incomplete recording has a continuation. That the longer one begins with the shorter is the replay's to
   // show.
   if (known.steps == incoming.steps && known.complete == incoming.complete) return "content";
@@ -245,8 +275,16 @@ void insertAttempt(SQLite::Database& db, const AttemptRecord& a, const std::vect
       audit(db, "participant-add", a.participant, "named by attempt " + a.uuid);
     }
   }
+  AttemptRecord entered = a;
+  if (isMotion(a) && a.purpose.empty()) {
+    const bool consented = firstNumber(db,
+                                       "SELECT 1 FROM consent WHERE participant = ? AND purpose IN ('research', "
+                                       "'study')",
+                                       {participant}) == 1;
+    entered.purpose = consented ? "study" : "training";
+  }
   InsertOf put(db, attemptTable, {"participant", "imported_utc"});
-  put(a, {participant >= 0 ? Cell(participant) : Cell(), nowUtc()});
+  put(entered, {participant >= 0 ? Cell(participant) : Cell(), nowUtc()});
   const std::int64_t id = db.getLastInsertRowid();
   writeRecording(db, id, a);
   if (a.signature) writeSignature(db, id, a);

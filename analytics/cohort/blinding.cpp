@@ -34,6 +34,22 @@ std::optional<bool> readGroupMask(const std::string& path, const std::string& pr
   });
 }
 
+void refuseWhileMasked(const std::string& path, const std::string& protocolSha256) {
+  const std::vector<std::string> masked =
+      CohortConnection(path, CohortDatabase::Access::read).read([&](SQLite::Database& db) {
+        return firstTexts(db,
+                          "SELECT coalesce((SELECT name || ' version ' || version FROM protocol p WHERE p.sha256 = "
+                          "m.protocol_sha256), m.protocol_sha256) FROM group_mask m WHERE m.protocol_sha256 <> ? AND "
+                          "m.protocol_sha256 NOT IN (SELECT protocol_sha256 FROM analysis_lock) ORDER BY drawn_utc",
+                          {protocolSha256});
+      });
+  if (masked.empty()) return;
+  throw Error(ErrorKind::refused, Where{path},
+              fmt::format("the groups are masked until the analysis of protocol {} is locked; this analysis would name "
+                          "them, make the study by that protocol",
+                          masked.front()));
+}
+
 bool drawGroupMask(const std::string& path, const std::string& protocolSha256) {
   [[maybe_unused]] static const int ready = sodium_init();
   return CohortConnection(path, CohortDatabase::Access::write).change([&](SQLite::Database& db) {
@@ -62,6 +78,15 @@ AnalysisLock storeAnalysisLock(const std::string& path, const AnalysisLock& lock
     InsertOf(db, analysisLockTable)(fresh);
     audit(db, "analysis-lock", fresh.protocol, fmt::format("values {} (by {})", fresh.valuesSha256, fresh.by));
     return fresh;
+  });
+}
+
+std::uint64_t studyRuns(const std::string& path, const std::string& protocolSha256, const std::string& note) {
+  CohortConnection cohort(path, note.empty() ? CohortDatabase::Access::read : CohortDatabase::Access::write);
+  if (!note.empty()) cohort.change([&](SQLite::Database& db) { audit(db, "study-run", protocolSha256, note); });
+  return cohort.read([&](SQLite::Database& db) {
+    return static_cast<std::uint64_t>(
+        firstNumber(db, "SELECT count(*) FROM audit WHERE action = 'study-run' AND subject = ?", {protocolSha256}));
   });
 }
 

@@ -3,6 +3,7 @@
 // form for raters, who know the films by random names alone. The key stands in the cohort database.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -23,6 +24,10 @@ struct AnalysisLock {
 
 /// True if the protocol's second population is "group 1"; none: never masked. @throws Error as CohortDatabase
 std::optional<bool> readGroupMask(const std::string& path, const std::string& protocolSha256);
+/// Before groups are named by an analysis that is not the masked one.
+/// @param protocolSha256 of the analysis' protocol, or empty
+/// @throws Error (refused) where groups are masked for another protocol whose analysis is not locked.
+void refuseWhileMasked(const std::string& path, const std::string& protocolSha256);
 /// The same, drawn from the system's source of randomness and stored unless there is one already; audited.
 bool drawGroupMask(const std::string& path, const std::string& protocolSha256);
 
@@ -30,6 +35,10 @@ std::optional<AnalysisLock> readAnalysisLock(const std::string& path, const std:
 /// Stores a lock with the present time, audited; one that is there stays and is returned. @param[out] added whether it
 /// is new. @throws Error (invalid) where nobody locks it
 AnalysisLock storeAnalysisLock(const std::string& path, const AnalysisLock& lock, bool& added);
+
+/// Number of studies of the protocol that showed named groups before its analysis was locked, by their notes in the
+/// audit. @param note of another one, which is added first; or empty
+std::uint64_t studyRuns(const std::string& path, const std::string& protocolSha256, const std::string& note = {});
 
 struct PackedFilm {
   std::string name;     ///< random

@@ -12,6 +12,7 @@
 
 #include "analytics/cohort/embedded.h"
 #include "analytics/cohort/tables.h"
+#include "recorder/base/text_words.h"
 
 namespace calot::analytics {
 
@@ -135,10 +136,11 @@ std::string CohortDatabase::attemptNamed(const std::string& text) const {
     const std::vector<std::string> found =
         firstTexts(db, "SELECT uuid FROM attempt WHERE substr(uuid, 1, length(?1)) = ?1 ORDER BY uuid LIMIT 2", {text});
     if (text.empty() || found.empty())
-      throw Error(ErrorKind::refused, Where{path()}, fmt::format("no attempt \"{}\"", text));
+      throw Error(ErrorKind::refused, Where{path()}, fmt::format("no attempt \"{}\"", recorder::shown(text)));
     if (found.size() > 1) {
-      throw Error(ErrorKind::refused, Where{path()},
-                  fmt::format("more than one attempt begins with \"{}\"; give more of its uuid", text));
+      throw Error(
+          ErrorKind::refused, Where{path()},
+          fmt::format("more than one attempt begins with \"{}\"; give more of its uuid", recorder::shown(text)));
     }
     return found.front();
   });
@@ -235,8 +237,16 @@ void addFields(Fields& fields, const DeclaredTable& table, const void* row) {
 
 }  // namespace
 
+const char* startEvidence(const AttemptRecord& a) {
+  if (a.startUtc.empty()) return "unknown";
+  if (isMotion(a) || a.operatorKind == recorder::OperatorKind::kinematics) return "stated";
+  return a.signature ? "signed" : "recorded";
+}
+
 Fields fieldsOf(const AttemptRow& a) {
   Fields fields;
+  std::vector<std::string> leftOut;
+  for (const LeftOut& out : a.leftOut) leftOut.push_back(out.rule);
   addFields(fields, attemptTable, static_cast<const AttemptRecord*>(&a));
   addFields(fields, recordingTable, static_cast<const AttemptRecord*>(&a));
   addFields(fields, verificationTable, &a.verification);
@@ -245,10 +255,12 @@ Fields fieldsOf(const AttemptRow& a) {
                       {"arm", a.arm},
                       {"site", a.site},
                       {"seconds", static_cast<double>(a.steps) * a.stepSeconds},
+                      {"start_evidence", startEvidence(a)},
                       {"excluded", a.excluded},
                       {"exclusion_reason", a.exclusionReason},
                       {"withdrawn", a.withdrawn},
-                      {"tags", a.tags}};
+                      {"tags", a.tags},
+                      {"left_out", leftOut}};
   fields.insert(fields.end(), others.begin(), others.end());
   return fields;
 }

@@ -95,6 +95,21 @@ struct AttemptRecord {
   Verification verification;
 };
 
+/// A rule that leaves an attempt out of studies: a row of the view attempt_left_out
+/// (schemas/cohort/0011_analysis_set.sql), the definition of what is analysed.
+struct LeftOut {
+  std::int64_t position = 0;  ///< order in which studies count the rules
+  std::string rule;           ///< "practice"
+  std::string reason;
+};
+
+/// Imported motion: there is no simulation, and what is known of it beside the samples was stated by hand.
+inline bool isMotion(const AttemptRecord& attempt) { return attempt.simulationVersion == 0; }
+
+/// Evidence of an attempt's start: "signed" or "recorded" within its chain, "stated", or "unknown". A recording of
+/// a motion file has the time of its making, not of the motion's: that is stated, too.
+const char* startEvidence(const AttemptRecord& attempt);
+
 /// A row of the list of attempts, with what the database adds.
 struct AttemptRow : AttemptRecord {
   std::string group, arm, site;   ///< the participant's
@@ -104,6 +119,7 @@ struct AttemptRow : AttemptRecord {
   bool excluded = false;          ///< by hand, or withdrawn
   std::string exclusionReason;    ///< reason and by whom
   std::vector<std::string> tags;  ///< words to find it by, in the order of their bytes
+  std::vector<LeftOut> leftOut;   ///< by position; empty: in the analysis set
 };
 
 /// One value of a row in a list for people or other programs; enumerations by their words.
@@ -146,6 +162,7 @@ struct StoredDocument {
 struct RegisteredProtocol : StoredDocument {
   std::string registeredUtc;  ///< by the clock of the machine that registered it
   std::string by;
+  std::string withdrawnUtc = {};  ///< empty: it stands
 };
 
 /// One completed form: by a rater about an attempt, or by a participant about their participation.
@@ -266,6 +283,10 @@ class CohortDatabase {
   /// Takes it off again. @returns how many had it @throws Error as tagAttempts
   std::size_t untagAttempts(const std::vector<std::string>& attempts, const std::string& tag, const std::string& by);
 
+  /// The uuid under which the cohort knows imported motion: `uuid` itself, that of the attempt whose file had these
+  /// bytes (read by another map, or by an earlier version), or `earlier` if an attempt of that uuid was withdrawn.
+  [[nodiscard]] std::string uuidOfMotion(const std::string& uuid, const std::string& earlier,
+                                         const std::array<std::byte, 32>& bytesHash) const;
   /// The uuid that begins with `text`. @throws Error (refused) if there is none, or more than one.
   [[nodiscard]] std::string attemptNamed(const std::string& text) const;
   [[nodiscard]] std::vector<AttemptRow> listAttempts() const;  ///< by start, then uuid
@@ -287,11 +308,14 @@ class CohortDatabase {
 
   /// Stores a protocol with the current time. Storing the same text again changes nothing and returns the stored one.
   /// @param[out] added whether it is new
-  /// @throws Error (refused) where this version, or a higher one, is there with another text; Error (invalid) where
-  /// nobody registers.
+  /// @throws Error (refused) where this version, or a higher one that stands, is there with another text; Error
+  /// (invalid) where nobody registers.
   RegisteredProtocol registerProtocol(const StoredDocument& protocol, const std::string& by, bool& added);
   /// By version; of all names by name where none is given.
   [[nodiscard]] std::vector<RegisteredProtocol> protocols(const std::string& name = "") const;
+  /// Withdraws a registered protocol, audited; its row stays. @pre it is registered and stands
+  /// @throws Error (invalid) without reason or name
+  void withdrawProtocol(const std::string& sha256, const std::string& reason, const std::string& by);
 
   /// Stores one filled form and the form itself where it is not there yet.
   /// @throws Error (refused) where this form's version is there with another text, there is no such attempt or

@@ -77,6 +77,10 @@ const std::vector<DeclaredTable> furtherTables{
       {"form_sha256", sqlText, "SHA-256 of its text"},
       {"form_text", sqlText, "the form, byte for byte"},
       {"packed_utc", sqlText, "when", {}, "", utc}}},
+    {"rater",
+     {{"name", sqlText, "pseudonym, as in rating"},
+      {"criterion", sqlText, "what is described, as experience"},
+      {"value", sqlText, "the answer"}}},
     {"rating_pack_rater",
      {{"pack", sqlText, "name of the pack"},
       {"rater", sqlText, "pseudonym of the rater"},
@@ -191,7 +195,11 @@ const TableOf<CheckpointValue> checkpointValueTable{
        "0 re-simulated, 1 observables, 2 samples"},
       {"filter", sqlText, "resampling and filter when the value was made", at<&CheckpointValue::filter>},
       {"coverage", realOrNull, "share of the window that samples cover", at<&CheckpointValue::coverage>, "1", "0 to 1",
-       "empty: not of samples, or not known"}}}};
+       "empty: not of samples, or not known"},
+      {"rate", realOrNull, "rate of the tracker's samples, of both hands the lower", at<&CheckpointValue::rate>, "Hz",
+       "more than 0", "empty: not of samples, or not known"},
+      {"noise", realOrNull, "standard deviation of the tracker's positions on each axis, of both hands the greater",
+       at<&CheckpointValue::noise>, "m", "at least 0", "empty: not of samples, or not known"}}}};
 
 const TableOf<ExternalMetric> externalMetricTable{
     {"external_metric",
@@ -257,7 +265,9 @@ const TableOf<RegisteredProtocol> protocolTable{
       {"text", sqlText, "the protocol, byte for byte", inRow<RegisteredProtocol, &RegisteredProtocol::text>},
       {"registered_utc", sqlText, "when it was registered",
        inRow<RegisteredProtocol, &RegisteredProtocol::registeredUtc>, "", utc},
-      {"registered_by", sqlText, "by whom", inRow<RegisteredProtocol, &RegisteredProtocol::by>}}}};
+      {"registered_by", sqlText, "by whom", inRow<RegisteredProtocol, &RegisteredProtocol::by>},
+      {"withdrawn_utc", sqlText, "when it was withdrawn without data",
+       inRow<RegisteredProtocol, &RegisteredProtocol::withdrawnUtc>, "", utc, "empty: it stands"}}}};
 
 const TableOf<StoredDocument> formTable{{"form",
                                          {{"id", integerOrNull, "number of the row, which other tables name"},
@@ -328,6 +338,48 @@ const std::vector<const DeclaredTable*>& cohortTables() {
     return all;
   }();
   return tables;
+}
+
+const std::vector<DeclaredTable>& cohortViews() {
+  static const std::vector<DeclaredTable> views = [] {
+    const auto view = [](const char* name, const std::vector<std::pair<const char*, const char*>>& columns) {
+      DeclaredTable declared{name, {{"attempt", sqlText, "uuid of the attempt"}}};
+      for (const auto& [table, column] : columns) {
+        DeclaredColumn& c = declared.columns.emplace_back(*findColumn(table, column));
+        c.member = {};
+        if (std::string_view(column) == "pseudonym") c.name = "participant";
+      }
+      declared.columns.push_back(
+          {"trial", sqlInteger, "number of the attempt among the participant's of one comparability key, by start"});
+      return declared;
+    };
+    std::vector<DeclaredTable> all{view("analysis_attempt", {{"participant", "pseudonym"},
+                                                             {"participant", "study_group"},
+                                                             {"participant", "arm"},
+                                                             {"participant", "site"},
+                                                             {"attempt", "scene"},
+                                                             {"attempt", "comparability_key"},
+                                                             {"attempt", "outcome"},
+                                                             {"attempt", "start_utc"}}),
+                                   view("analysis_value", {{"participant", "pseudonym"},
+                                                           {"participant", "study_group"},
+                                                           {"participant", "arm"},
+                                                           {"participant", "site"},
+                                                           {"attempt", "comparability_key"},
+                                                           {"attempt", "outcome"},
+                                                           {"checkpoint_value", "name"},
+                                                           {"checkpoint_value", "subject"},
+                                                           {"checkpoint_value", "version"},
+                                                           {"checkpoint_value", "value"},
+                                                           {"checkpoint_value", "unit"},
+                                                           {"checkpoint_value", "availability"},
+                                                           {"checkpoint_value", "reason"},
+                                                           {"checkpoint_value", "origin"}})};
+    all.back().columns.push_back(
+        {"of_phase", sqlInteger, "of a single phase, other than how long it lasted", {}, "", yesNo});
+    return all;
+  }();
+  return views;
 }
 
 const DeclaredColumn* findColumn(std::string_view table, std::string_view column) {

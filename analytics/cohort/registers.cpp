@@ -84,6 +84,21 @@ void setCohort(const std::string& path, const std::string& name, const std::opti
   });
 }
 
+void setRater(const std::string& path, const std::string& name,
+              const std::vector<std::pair<std::string, std::string>>& criteria) {
+  change(path, "rater", name, [&](SQLite::Database& db, std::string& detail) {
+    for (const auto& [criterion, value] : criteria) {
+      checkName("rater: a criterion", criterion);
+      if (execute(db,
+                  "INSERT INTO rater VALUES (?, ?, ?) ON CONFLICT DO UPDATE SET value = excluded.value WHERE value <> "
+                  "excluded.value",
+                  {name, criterion, value}) > 0)
+        detail += criterion + "; ";
+    }
+    return !detail.empty();
+  });
+}
+
 Registers readRegisters(const std::string& path) {
   return CohortConnection(path, CohortDatabase::Access::read).read([](SQLite::Database& db) {
     Registers r;

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace calot::analytics {
@@ -44,6 +45,10 @@ void setStation(const std::string& path, const std::string& name, const std::opt
                 const std::optional<PublicKey>& key, const std::optional<std::string>& note);
 void setCohort(const std::string& path, const std::string& name, const std::optional<std::string>& note,
                const std::vector<std::string>& add, const std::vector<std::string>& remove);
+
+/// Describes a rater: criteria ("experience", "training", "independence") and their values; others stay.
+void setRater(const std::string& path, const std::string& name,
+              const std::vector<std::pair<std::string, std::string>>& criteria);
 
 /// Status of the key that signed a station's recording, according to the database.
 enum class KeyStanding : std::uint8_t {

@@ -140,7 +140,9 @@ extern const TableOf<NormEvidence> normEvidenceTable;
 
 /// All of them, with those that no struct holds.
 const std::vector<const DeclaredTable*>& cohortTables();
-/// A column of one of them; null if the table lacks it.
+/// Views of the analysis set, as `cohort export` writes them.
+const std::vector<DeclaredTable>& cohortViews();
+/// A column of a table; null if the table lacks it.
 const DeclaredColumn* findColumn(std::string_view table, std::string_view column);
 
 struct ColumnFacts {

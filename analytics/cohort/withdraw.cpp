@@ -7,9 +7,7 @@
 #include <SQLiteCpp/Backup.h>
 #include <algorithm>
 #include <filesystem>
-#include <set>
 #include <system_error>
-#include <tuple>
 
 #include "analytics/cohort/tables.h"
 #include "recorder/loop.h"
@@ -70,13 +68,28 @@ void silenceAudit(SQLite::Database& db, const std::vector<std::string>& words, c
 
 const char* nameOf(WithdrawalScope scope) { return scope == WithdrawalScope::all ? "all" : "research"; }
 
-void leaveTombstone(SQLite::Database& db, const std::string& id, const Withdrawal& w) {
-  execute(db, "INSERT INTO tombstone VALUES (?, ?, ?, ?)",
-          {id, nowUtc(), nameOf(w.scope), static_cast<std::int64_t>(w.attempts.size())});
+/// @returns its id: that of a withdrawal of these attempts which was announced or interrupted before, or a new one
+std::string leaveTombstone(SQLite::Database& db, const Withdrawal& w) {
+  std::string id;
+  for (std::size_t i = 0; i < w.attempts.size() && id.empty(); ++i) {
+    const auto known = firstTexts(db,
+                                  "SELECT t.id FROM tombstone t JOIN tombstone_attempt a ON a.tombstone = t.id WHERE "
+                                  "a.digest = ? AND t.scope = ?",
+                                  {blobOf(withdrawalDigest(w.attempts[i])), nameOf(w.scope)});
+    if (!known.empty()) id = known.front();
+  }
+  if (id.empty()) {
+    id = recorder::newUuid();
+    execute(db, "INSERT INTO tombstone VALUES (?, ?, ?, 0)", {id, nowUtc(), nameOf(w.scope)});
+  }
   for (const std::string& uuid : w.attempts) {
     execute(db, "INSERT INTO tombstone_attempt VALUES (?, ?) ON CONFLICT DO NOTHING",
             {blobOf(withdrawalDigest(uuid)), id});
   }
+  execute(db,
+          "UPDATE tombstone SET attempts = (SELECT count(*) FROM tombstone_attempt WHERE tombstone = ?1) WHERE id = ?1",
+          {id});
+  return id;
 }
 
 /// The participant stays, without any research data.
@@ -116,9 +129,9 @@ void rebuild(SQLite::Database& db, const std::string& path) {
 }
 
 /// Within a transaction: every row that hangs on the withdrawal, and the words of audit rows that name it.
+/// @param id of its tombstone
 void removeRows(SQLite::Database& db, const Withdrawal& w, const std::string& id) {
   db.exec("PRAGMA defer_foreign_keys = ON");
-  leaveTombstone(db, id, w);
   for (const std::string& uuid : w.attempts) execute(db, "DELETE FROM attempt WHERE uuid = ?", {uuid});
   if (w.scope == WithdrawalScope::all) {
     execute(db, "DELETE FROM participant WHERE pseudonym = ?", {w.pseudonym});
@@ -189,9 +202,10 @@ std::vector<std::string> backupsOf(const std::string& path) {
 }
 
 std::string withdraw(const std::string& path, const Withdrawal& w) {
-  const std::string id = recorder::newUuid();
+  std::string id;
   CohortConnection cohort = openForDeletion(path);
   cohort.change([&](SQLite::Database& db) {
+    id = leaveTombstone(db, w);
     removeRows(db, w, id);
     audit(db, "participant-withdraw", w.scope == WithdrawalScope::all ? "withdrawn " + id : w.pseudonym,
           fmt::format("scope {}, {} attempts", nameOf(w.scope), w.attempts.size()));
@@ -199,6 +213,11 @@ std::string withdraw(const std::string& path, const Withdrawal& w) {
   cohort.read([&](SQLite::Database& db) { rebuild(db, path); });
   removeBackups(path);
   return id;
+}
+
+void announceWithdrawal(const std::string& path, const Withdrawal& w) {
+  if (w.attempts.empty()) return;
+  CohortConnection(path, CohortDatabase::Access::write).change([&](SQLite::Database& db) { leaveTombstone(db, w); });
 }
 
 void scrub(const std::string& path) {
@@ -213,7 +232,7 @@ std::vector<std::string> placesLeft(const std::string& path, const Withdrawal& w
     SQLite::Backup(copy, from).executeStep(-1);
     copy.exec("PRAGMA foreign_keys = ON");
     SQLite::Transaction transaction(copy);
-    if (w.known) removeRows(copy, w, recorder::newUuid());
+    if (w.known) removeRows(copy, w, leaveTombstone(copy, w));
     return columnsNaming(copy, words);
   });
 }
@@ -238,7 +257,8 @@ void recordExport(const std::string& path, const std::string& kind, const std::s
   });
 }
 
-Withdrawal planWithdrawal(const std::string& path, const std::string& pseudonym, WithdrawalScope scope) {
+Withdrawal planWithdrawal(const std::string& path, const std::string& pseudonym, WithdrawalScope scope,
+                          std::optional<bool> assessments) {
   return CohortConnection(path, CohortDatabase::Access::write).read([&](SQLite::Database& db) {
     Withdrawal w;
     w.pseudonym = pseudonym;
@@ -246,25 +266,34 @@ Withdrawal planWithdrawal(const std::string& path, const std::string& pseudonym,
     const std::int64_t id = participantId(db, pseudonym);
     w.known = id >= 0;
     if (!w.known) return w;
+    const auto earlier = firstTexts(db, "SELECT withdrawn_utc FROM research_withdrawal WHERE participant = ?", {id});
+    if (!earlier.empty()) w.earlierUtc = earlier.front();
+    const bool consented =
+        firstNumber(db, "SELECT 1 FROM consent WHERE participant = ? AND purpose IN ('research', 'study')", {id}) == 1;
+    const bool assessmentsGo = assessments ? !*assessments : consented;
     // Attempts that branch from one of these, from those, and so on, go with them.
-    w.attempts = firstTexts(db,
-                            "WITH RECURSIVE gone (uuid) AS (SELECT uuid FROM attempt WHERE participant = ?1 AND (?2 OR "
-                            "purpose <> 'training') UNION SELECT a.uuid FROM attempt a JOIN gone ON a.parent_uuid = "
-                            "gone.uuid) SELECT uuid FROM gone ORDER BY uuid",
-                            {id, scope == WithdrawalScope::all ? 1 : 0});
-    std::set<std::tuple<std::string, std::string, std::string>> exports;
-    for (const std::string& uuid : w.attempts) {
-      if (firstNumber(db, "SELECT coalesce(participant, -1) FROM attempt WHERE uuid = ? AND participant <> ?",
-                      {uuid, id}) >= 0)
-        w.branchesOfOthers.push_back(uuid);
-      eachRow(db,
-              "SELECT e.at_utc, e.kind, e.target FROM export e JOIN export_attempt x ON x.export = e.id "
-              "JOIN attempt a ON a.id = x.attempt WHERE a.uuid = ?",
-              {uuid}, [&](SQLite::Statement& row) {
-                exports.emplace(text(row.getColumn(0)), text(row.getColumn(1)), text(row.getColumn(2)));
-              });
-    }
-    for (const auto& [utc, kind, target] : exports) w.exports.push_back({utc, kind, target});
+    const std::string gone =
+        "WITH RECURSIVE gone (uuid) AS (SELECT uuid FROM attempt WHERE participant = ?1 AND (?2 OR purpose <> "
+        "'training' OR (mode = 1 AND ?3)) UNION SELECT a.uuid FROM attempt a JOIN gone ON a.parent_uuid = gone.uuid) ";
+    const std::vector<Cell> whose{id, scope == WithdrawalScope::all ? 1 : 0, assessmentsGo ? 1 : 0};
+    w.attempts = firstTexts(db, gone + "SELECT uuid FROM gone ORDER BY uuid", whose);
+    w.branchesOfOthers =
+        firstTexts(db, gone + "SELECT uuid FROM attempt WHERE participant <> ?1 AND uuid IN gone ORDER BY uuid", whose);
+    eachRow(db, gone + "SELECT uuid, mode FROM attempt WHERE participant = ?1 AND uuid NOT IN gone ORDER BY uuid",
+            whose, [&](SQLite::Statement& row) {
+              const bool assessment = row.getColumn(1).getInt() == 1;
+              w.staying.emplace_back(text(row.getColumn(0)), assessment ? "assessment" : "practice");
+              if (assessment && !assessments) w.undecided.push_back(w.staying.back().first);
+            });
+    eachRow(db,
+            gone +
+                "SELECT e.at_utc, e.kind, e.target, max(a.uuid IN gone) FROM export e JOIN export_attempt x ON "
+                "x.export = e.id JOIN attempt a ON a.id = x.attempt WHERE a.participant = ?1 OR a.uuid IN gone GROUP "
+                "BY 1, 2, 3 ORDER BY 1, 2, 3",
+            whose, [&](SQLite::Statement& row) {
+              w.exports.push_back({text(row.getColumn(0)), text(row.getColumn(1)), text(row.getColumn(2)),
+                                   row.getColumn(3).getInt() == 1});
+            });
     return w;
   });
 }

@@ -3,19 +3,23 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace calot::analytics {
 
 enum class WithdrawalScope : std::uint8_t {
   research,  ///< removes all but training data; the participant stays but is excluded from every study
+             ///< (planWithdrawal() says which attempts are training)
   all,       ///< removes everything, including the participant
 };
 
 /// An export from the database for others.
 struct ExportRow {
   std::string utc, kind, target;
+  bool removed = true;  ///< holds an attempt that goes; else only ones that stay
   bool operator==(const ExportRow&) const = default;
 };
 
@@ -26,15 +30,25 @@ struct Withdrawal {
   bool known = false;                         ///< the database has such a participant
   std::vector<std::string> attempts;          ///< uuids, including all branches by whomever
   std::vector<std::string> branchesOfOthers;  ///< those of `attempts` that another participant made
-  std::vector<ExportRow> exports;             ///< that hold some of these attempts
+  std::vector<ExportRow> exports;             ///< that hold some attempt of the participant
+  /// The participant's attempts that stay, each with its mode: their purpose is training.
+  std::vector<std::pair<std::string, std::string>> staying;
+  std::vector<std::string> undecided;  ///< assessments of purpose training, of which nobody said what becomes of them
+  std::string earlierUtc;              ///< when the participant withdrew from research already; or empty
 };
 
 /// Registers an export of attempts to a file or folder. Idempotent within a second.
 void recordExport(const std::string& path, const std::string& kind, const std::string& target,
                   const std::vector<std::string>& attempts);
 
-/// Lists what would be removed; changes nothing.
-Withdrawal planWithdrawal(const std::string& path, const std::string& pseudonym, WithdrawalScope scope);
+/// Lists what would be removed; changes nothing. Of scope `research`, attempts of purpose training stay; but a study
+/// analyses those in assessment mode, whatever their purpose: these go with a consent to study or research, and are
+/// undecided without one. @param assessments whether these stay, where somebody said so
+Withdrawal planWithdrawal(const std::string& path, const std::string& pseudonym, WithdrawalScope scope,
+                          std::optional<bool> assessments = {});
+
+/// Leaves the tombstones of the attempts, before any file is removed: what was interrupted does not come in again.
+void announceWithdrawal(const std::string& path, const Withdrawal& withdrawal);
 
 /// Takes it away, in one transaction: every row that hangs on the attempts (and, of scope `all`, on the participant),
 /// the words of audit rows that name them; leaves a tombstone. What was deleted is overwritten, the database is rebuilt

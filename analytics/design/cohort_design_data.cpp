@@ -10,8 +10,11 @@
 #include <span>
 
 #include "analytics/checkpoints/checkpoint.h"
+#include "analytics/cohort/blinding.h"
 #include "analytics/design/design_data.h"
+#include "analytics/report/study_people.h"
 #include "analytics/report/study_population.h"
+#include "analytics/report/study_rows.h"
 #include "recorder/base/errors.h"
 #include "recorder/base/text_words.h"
 
@@ -22,7 +25,7 @@ namespace {
 struct Placed {
   std::size_t person = 0, occasion = 0;
   double order = 1.0;
-  bool completed = false;
+  bool completed = false, unfinished = false;
   double seconds = 0.0;  ///< how long it lasted
 };
 /// By uuid.
@@ -55,12 +58,16 @@ PlacedAttempts place(DesignData& data, const std::map<std::string, std::vector<c
   for (std::size_t i = 0; !byDevice && i < most; ++i) data.occasions.push_back(fmt::format("{}", i + 1));
   for (const auto& [person, list] : people) {
     DesignPerson p{person, 0, 0};
-    if (!data.groups.empty()) p.group = positionIn(data.groups, groupOf(*list[0], options.grouping));
+    if (const std::string group = groupOf(*list[0], options.grouping); !data.groups.empty())
+      p.group = positionIn(data.groups, group.empty() ? "no group" : group);
     if (!choices.strata.empty()) p.stratum = positionIn(data.strata, stratumOf(*list[0], choices.strata));
     for (std::size_t i = 0; i < list.size(); ++i) {
       const AttemptRow& a = *list[i];
-      placed[a.uuid] = {data.people.size(), byDevice ? positionIn(data.occasions, a.device) : i,
-                        static_cast<double>(i + 1), a.outcome == recorder::Outcome::completed,
+      placed[a.uuid] = {data.people.size(),
+                        byDevice ? positionIn(data.occasions, a.device) : i,
+                        static_cast<double>(i + 1),
+                        a.outcome == recorder::Outcome::completed,
+                        isUnfinished(a),
                         static_cast<double>(a.steps) * a.stepSeconds};
       data.attempts.push_back(a.uuid);
       data.synthetic = data.synthetic || a.synthetic;
@@ -93,6 +100,7 @@ void addFigures(DesignData& data, const std::vector<AttemptValue>& values, const
   const std::set<std::string> aside(unasked.begin(), unasked.end());
   std::map<std::pair<std::size_t, std::string>, DesignFigure> figures;
   std::map<std::string, std::set<std::uint32_t>> versions;
+  TrackerSpread trackers;
   for (const AttemptValue& item : values) {
     const auto at = placed.find(item.attempt);
     const CheckpointDefinition* d = findCheckpoint(item.value.name);
@@ -107,10 +115,12 @@ void addFigures(DesignData& data, const std::vector<AttemptValue>& values, const
     figure.unit = d->displayUnit == "1" ? "" : d->displayUnit;
     figure.direction = d->direction;
     versions[full].insert(item.value.version);
+    trackers.add(item.value);
     const double shown = item.value.value.value_or(HUGE_VAL) * d->displayFactor;
     if (std::isfinite(shown))
       figure.values.push_back({at->second.person, at->second.occasion, at->second.order, at->second.completed, shown});
   }
+  if (std::string warning = trackers.warning(); !warning.empty()) data.remarks.push_back(std::move(warning));
   for (auto& [key, figure] : figures) {
     askForOneVersion(figure.name, versions[figure.name].size(), options, name, data.remarks);
     sortValues(figure);
@@ -134,15 +144,17 @@ void keepTimes(DesignData& data, const std::vector<AttemptValue>& values, const 
   for (const auto& [uuid, p] : placed) {
     if (p.completed) continue;
     const auto at = lasted.find(uuid);
-    times.values.push_back({p.person, p.occasion, p.order, false, at == lasted.end() ? p.seconds : at->second});
+    times.values.push_back(
+        {p.person, p.occasion, p.order, false, at == lasted.end() ? p.seconds : at->second, p.unfinished});
   }
   sortValues(times);
   data.figures = {std::move(times)};
 }
 
-/// Ratings by a form: mean of its items and of its raters, and of each rater of a participant's first rated attempt.
-void addForm(DesignData& data, const RatingForm& form, const std::vector<Rating>& ratings,
-             const PlacedAttempts& placed) {
+/// Ratings by a form: mean of its items and of its raters, where it is named that of their sum, and of each rater of a
+/// participant's first rated attempt.
+void addForm(DesignData& data, const RatingForm& form, const std::vector<Rating>& ratings, const PlacedAttempts& placed,
+             const DesignChoices& choices) {
   std::map<std::string, std::map<std::string, double>> scores;  // by attempt, by rater
   for (const Rating& r : ratings) {
     if (r.form != form.name || r.formVersion != form.version || placed.count(r.attempt) == 0) continue;
@@ -165,7 +177,12 @@ void addForm(DesignData& data, const RatingForm& form, const std::vector<Rating>
       raters.values.push_back({person, positionIn(data.raters, rater), attempt.first, true, score});
   }
   sortValues(figure);
+  DesignFigure total = figure;
+  total.name += " sum";
+  for (DesignValue& v : total.values) v.value *= static_cast<double>(form.items().size());
   data.figures.push_back(std::move(figure));
+  if (choices.against == total.name || std::count(choices.family.begin(), choices.family.end(), total.name) > 0)
+    data.figures.push_back(std::move(total));
   data.rated.push_back(std::move(raters));
 }
 
@@ -204,6 +221,13 @@ DesignData populated(const std::vector<AttemptRow>& recruited, const std::vector
       attemptsOfUnits(taken, data.groups, options.grouping,
                       {choices.attemptRule, entryOf(choices.design).oneEach, byDevice}, name, data.flow);
   data.attemptRule = people.rule;
+  countPeople(data, recruited, included, rules, people);
+  if (choices.design == Design::reliability && !grouped) {  // analysed together, and each beside it
+    std::set<std::string> names;
+    for (const AttemptRow* a : taken) names.insert(groupOf(*a, options.grouping));
+    names.erase("");
+    if (names.size() > 1) data.groups.assign(names.begin(), names.end());
+  }
   placed = place(data, people.units, options, choices);
   for (const std::string& key : keyList) data.head.push_back(keySentence(key));
   const std::string first = setting.firstStartUtc.substr(0, 10), last = setting.lastStartUtc.substr(0, 10);
@@ -212,7 +236,14 @@ DesignData populated(const std::vector<AttemptRow>& recruited, const std::vector
                           : fmt::format("Attempts from {} to {}. Cohort {}{}.", first, last, data.where,
                                         options.cohort ? ", participants of \"" + options.cohort->name + "\"" : ""));
   addFigures(data, values, placed, options, choices, name);
-  if (choices.design == Design::timeToCriterion) keepTimes(data, values, placed);
+  if (choices.design == Design::timeToCriterion) {
+    keepTimes(data, values, placed);
+    return data;
+  }
+  std::vector<const AttemptRow*> analysed;
+  for (const auto& item : people.units) analysed.insert(analysed.end(), item.second.begin(), item.second.end());
+  if (std::string remark = unfinishedRemark(analysed, data.groups, options.grouping, ""); !remark.empty())
+    data.remarks.push_back(std::move(remark));
   return data;
 }
 
@@ -227,6 +258,7 @@ DesignData cohortDesignData(const std::vector<AttemptRow>& attempts, const std::
 }
 
 DesignData cohortDesignData(const CohortDatabase& database, const StudyOptions& asked, const DesignChoices& choices) {
+  refuseWhileMasked(database.path(), "");
   StudyOptions options = withCohortData(database, asked);
   options.family = choices.family;
   PlacedAttempts placed;
@@ -236,7 +268,7 @@ DesignData cohortDesignData(const CohortDatabase& database, const StudyOptions& 
     const std::vector<Rating> ratings = database.ratings();
     for (const StoredDocument& stored : database.forms()) {
       const RatingForm form = parseRatingForm(std::as_bytes(std::span(stored.text)), stored.name);
-      if (form.ofAttempts) addForm(data, form, ratings, placed);
+      if (form.ofAttempts) addForm(data, form, ratings, placed, choices);
     }
   }
   keepNamedFigures(data, choices);

@@ -24,7 +24,7 @@ constexpr std::array<DesignEntry, 9> allDesigns{{
      GroupsNeeded::several, true},
     {Design::strata, "strata", "Do two groups differ within sites", "van Elteren", GroupsNeeded::two, true},
     {Design::repeated, "repeated", "Do two groups change differently over their attempts",
-     "mixed model of group and occasion", GroupsNeeded::two, false},
+     "each participant's change, Brunner-Munzel", GroupsNeeded::two, false},
     {Design::timeToCriterion, "time-to-criterion", "Who finishes sooner, unfinished attempts included",
      "log-rank, Kaplan-Meier", GroupsNeeded::two, true},
     {Design::learning, "learning", "How fast do groups learn, and who has reached the criterion",
@@ -82,7 +82,7 @@ std::vector<std::string> groupsOfDesign(const std::map<std::string, std::uint64_
     }
   }
   std::vector<std::string> groups = choices.groups;
-  if (groups.empty() && entry.groups != GroupsNeeded::none) groups = there;
+  if (groups.empty()) groups = there;
   const bool fits = entry.groups == GroupsNeeded::two       ? groups.size() == 2
                     : entry.groups == GroupsNeeded::several ? groups.size() >= 3
                     : entry.groups == GroupsNeeded::any     ? !groups.empty()
@@ -310,6 +310,7 @@ DesignData tableDesignData(const CsvTable& table, const TableStudyOptions& asked
                                           row.finished, *row.record->values[o]});
       }
     }
+    ++data.analysedPeople[data.groups.empty() ? "" : data.groups[p.group]];
     data.people.push_back(std::move(p));
   }
   for (DesignFigure& figure : data.figures) sortValues(figure);

@@ -77,6 +77,7 @@ struct DesignValue {
   double order = 0.0;        ///< among the person's attempts: number from 1, or line of the table
   bool finished = true;
   double value = 0.0;  ///< in the display unit
+  bool ended = true;   ///< false: the file ends, and nobody knows whether the attempt would have been finished
 };
 
 struct DesignFigure {

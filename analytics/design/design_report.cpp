@@ -8,7 +8,7 @@
 #include <cmath>
 #include <utility>
 
-#include "analytics/report/study_output.h"
+#include "analytics/report/study_people.h"
 #include "analytics/statistics/rank_tests.h"
 #include "recorder/base/errors.h"
 #include "recorder/loop.h"
@@ -52,7 +52,7 @@ DesignReport makeDesignReport(const DesignData& data, const DesignChoices& choic
   report.title = fmt::format("Study (exploratory), {}: {}?", entry.name, entry.question);
   report.synthetic = data.synthetic;
   report.head = data.head;
-  report.flow = flowTable(data, populationOf(data));
+  report.flow = flowTable(data, data.groups);
   report.attempts = data.attempts;
   report.json = {
       {"design", entry.name},
@@ -68,6 +68,7 @@ DesignReport makeDesignReport(const DesignData& data, const DesignChoices& choic
     report.json["flow"]["left_out"].push_back({{"reason", row.reason}, {"count", row.attempts}});
   analyses[static_cast<std::size_t>(choices.design)](data, choices, report);
   noteRefused(report);
+  report.notes.emplace_back("Intervals hold for each figure by itself, not for all at once (not simultaneous).");
   report.notes.insert(report.notes.end(), data.remarks.begin(), data.remarks.end());
   report.methods =
       fmt::format("Methods. {}Of {} {} in the {}, {} of {} were analysed ({}); {} were left out. {} Computed by {}.",

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "analytics/design/design_report.h"
+#include "analytics/report/study_population.h"
 #include "analytics/statistics/resampling.h"
 #include "analytics/statistics/survival.h"
 #include "recorder/base/errors.h"
@@ -247,9 +248,12 @@ namespace {
 
 using GroupTimes = std::vector<std::vector<CensoredTime>>;
 
-GroupTimes timesByGroup(const DesignData& data, const DesignFigure& figure) {
+/// @param ranked without attempts of which nobody knows whether they would have been finished
+GroupTimes timesByGroup(const DesignData& data, const DesignFigure& figure, bool ranked) {
   GroupTimes times(data.groups.size());
-  for (const DesignValue& v : figure.values) times[data.people[v.person].group].push_back({v.value, v.finished});
+  for (const DesignValue& v : figure.values) {
+    if (v.ended || !ranked) times[data.people[v.person].group].push_back({v.value, v.finished});
+  }
   return times;
 }
 
@@ -289,18 +293,19 @@ ValueTree worstTree(const WorstRank& worst) {
 void analyseTimes(const DesignData& data, const DesignChoices& choices, DesignReport& report) {
   if (choices.attemptRule == AttemptRule::mean)
     throw Error(ErrorKind::invalid, "study: times of which some are not finished have no mean", {Remedy::takeFirst});
-  const bool firstFaster = data.better != data.groups[1];
+  const Hypothesis hypothesis =
+      hypothesisOf(Direction::lower, data.better, data.groups).value_or(Hypothesis::firstLarger);
   ValueTree& results = analyseFigures(data, report, [&](const DesignFigure& figure) {
-    const GroupTimes times = timesByGroup(data, figure);
+    const GroupTimes times = timesByGroup(data, figure, false), ranked = timesByGroup(data, figure, true);
     const Expected<LogRank> test = logRank(times[0], times[1]);
     if (!test) return Expected<ValueTree>(NoResult{test.reason()});
     LinePlot plot{"Finished: " + figure.name, "%", figure.unit.empty() ? "time" : figure.unit, {}, {}, data.synthetic};
-    const Expected<WorstRank> worst =
-        worstRank(times[0], times[1], firstFaster ? Hypothesis::firstSmaller : Hypothesis::firstLarger);
+    const Expected<WorstRank> worst = worstRank(ranked[0], ranked[1], hypothesis);
     ValueTree result{
         {"groups", groupsTree(data, times, plot)},
         {"log_rank", {{"observed", test->observed}, {"expected", test->expected}, {"z", test->z}, {"p", test->p}}},
-        {"worst_rank", treeOf(worst, worstTree)}};
+        {"worst_rank", treeOf(worst, worstTree)},
+        {"not_ranked", times[0].size() + times[1].size() - ranked[0].size() - ranked[1].size()}};
     if (std::optional<Drawing> drawing = drawLines(plot)) report.drawings.push_back(std::move(*drawing));
     return Expected<ValueTree>(std::move(result));
   });
@@ -332,8 +337,17 @@ void analyseTimes(const DesignData& data, const DesignChoices& choices, DesignRe
       "the equipment, not for those who gave up because they were slow. Worst rank puts every unfinished attempt "
       "behind "
       "all others: right where not to finish is the worst result.");
-  report.notes.push_back(fmt::format("A: chance that a participant of {} is faster than one of {}.",
-                                     data.groups[firstFaster ? 0 : 1], data.groups[firstFaster ? 1 : 0]));
+  const bool firstFaster = hypothesis == Hypothesis::firstSmaller;
+  report.notes.push_back(data.better.empty()
+                             ? fmt::format("A: chance that a participant of {} takes longer than one of {}.",
+                                           data.groups[0], data.groups[1])
+                             : fmt::format("A: chance that a participant of {} is faster than one of {}.",
+                                           data.groups[firstFaster ? 0 : 1], data.groups[firstFaster ? 1 : 0]));
+  for (const ValueTree& row : results) {
+    if (row["not_ranked"] != 0)
+      report.notes.push_back(fmt::format("{}: {} attempts whose motion file only ends are censored, and have no rank.",
+                                         figureTitle(row), plain(row["not_ranked"])));
+  }
   report.methods =
       "Times were compared by the log-rank test with unfinished attempts censored, and by the rank test with "
       "unfinished "

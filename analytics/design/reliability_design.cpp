@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <span>
 
 #include "analytics/design/design_report.h"
 #include "analytics/report/report_document.h"
@@ -67,13 +68,8 @@ CrossedTable completeTable(const CrossedValues& values, std::size_t levels, bool
   return result;
 }
 
-ValueTree iccInterval(const RatingTable& table, IccForm form) {
-  return treeOf(intraclassCorrelation(table, form),
-                [](const IntraclassCorrelation& icc) { return ValueTree(icc.interval); });
-}
-
 ValueTree componentsTree(const DesignFigure& figure, const std::string& facet, const Generalizability& g,
-                         const CrossedTable& crossed) {
+                         const CrossedTable& crossed, const std::string& of) {
   ValueTree decisions = ValueTree::array();
   for (std::size_t k = 1; k <= std::max(mostDecisions, g.levels); ++k) {
     const DecisionStudy d = g.at(k);
@@ -86,6 +82,7 @@ ValueTree componentsTree(const DesignFigure& figure, const std::string& facet, c
   return {{"figure", figure.name},
           {"unit", figure.unit},
           {"facet", facet},
+          {"of", of},
           {"people", g.people},
           {"levels", g.levels},
           {"left_out", crossed.incomplete},
@@ -94,8 +91,11 @@ ValueTree componentsTree(const DesignFigure& figure, const std::string& facet, c
           {"residual_variance", g.residual},
           {"truncated", g.truncated},
           {"decisions", decisions},
-          {"g_interval", iccInterval(crossed.table, IccForm::threeAverage)},
-          {"phi_interval", iccInterval(crossed.table, IccForm::twoAverage)}};
+          {"g_interval", g.gInterval},
+          {"phi_interval", g.groups > 1
+                               ? ValueTree(nullptr)
+                               : treeOf(intraclassCorrelation(crossed.table, IccForm::twoAverage),
+                                        [](const IntraclassCorrelation& icc) { return ValueTree(icc.interval); })}};
 }
 
 /// A variance and its share of all.
@@ -112,35 +112,62 @@ std::string coefficientText(const ValueTree& row, const std::string& of) {
   return share2(all[of]) + (interval.contains("lower") ? " " + shares2(interval) : "");
 }
 
-/// @returns whether the figure has components
+constexpr const char* allPeople = "all";
+
+/// The figure of one group's people.
+DesignFigure within(const DesignData& data, const DesignFigure& figure, std::size_t group) {
+  DesignFigure part = figure;
+  std::erase_if(part.values, [&](const DesignValue& v) { return data.people[v.person].group != group; });
+  return part;
+}
+
+/// Components of all people, then, where there are groups, of people nested in groups and of each group.
+/// @returns whether the figure has components of all
 bool addComponents(const DesignData& data, const DesignFigure& figure, const std::string& facet,
                    const std::vector<std::string>& levels, bool leading, DesignReport& report) {
-  const CrossedTable crossed = completeTable(crossedValues(data, figure, facet, levels), levels.size(), leading);
-  const Expected<Generalizability> g = generalizability(crossed.table);
-  if (!g) {
-    report.refused.emplace_back(
-        fmt::format("variance components of {} over {}s", figure.name, facet),
-        crossed.table.subjects < 2 ? "fewer than two participants have values at all of them" : g.reason());
-    return false;
+  const auto crossedOf = [&](const DesignFigure& of, std::size_t most, bool first) {
+    return completeTable(crossedValues(data, of, facet, levels), most, first);
+  };
+  const CrossedTable all = crossedOf(figure, levels.size(), leading);
+  const auto add = [&](const CrossedTable& crossed, std::span<const RatingTable> tables, const std::string& of) {
+    const Expected<Generalizability> g = generalizability(tables);
+    if (!g) {
+      report.refused.emplace_back(
+          fmt::format("variance components of {} over {}s ({})", figure.name, facet, of),
+          crossed.table.subjects < 2 ? "fewer than two participants have values at all of them" : g.reason());
+      return false;
+    }
+    if (g->truncated)
+      report.notes.push_back(fmt::format(
+          "{} ({}): a negative variance component was set to 0; there are too few data for it.", figure.name, of));
+    report.json["components"].push_back(componentsTree(figure, facet, *g, crossed, of));
+    return true;
+  };
+  if (!add(all, {&all.table, 1}, allPeople)) return false;
+  std::vector<CrossedTable> groups;
+  std::vector<RatingTable> tables;
+  for (std::size_t g = 0; data.groups.size() > 1 && g < data.groups.size(); ++g) {
+    groups.push_back(crossedOf(within(data, figure, g), all.table.raters, false));
+    if (groups.back().table.subjects > 1) tables.push_back(groups.back().table);
   }
-  if (g->truncated)
-    report.notes.push_back(
-        fmt::format("{}: a negative variance component was set to 0; there are too few data for it.", figure.name));
-  report.json["components"].push_back(componentsTree(figure, facet, *g, crossed));
+  if (tables.size() > 1) add(all, tables, "within groups");
+  for (std::size_t g = 0; g < groups.size(); ++g) add(groups[g], {&groups[g].table, 1}, data.groups[g]);
   return true;
 }
 
 /// @returns whether the figure has an error of measurement
-bool addError(const DesignFigure& figure, DesignReport& report, std::vector<std::string>& warnings) {
+bool addError(const DesignFigure& figure, const std::string& of, DesignReport& report,
+              std::vector<std::string>& warnings) {
   std::vector<RepeatedValue> values;
   for (const DesignValue& v : figure.values) values.push_back({v.person, v.order, v.value});
   const Expected<MeasurementError> e = measurementError(values);
   if (!e) {
-    report.refused.emplace_back("error of measurement of " + figure.name, e.reason());
+    report.refused.emplace_back(fmt::format("error of measurement of {} ({})", figure.name, of), e.reason());
     return false;
   }
   report.json["measurement_error"].push_back({{"figure", figure.name},
                                               {"unit", figure.unit},
+                                              {"of", of},
                                               {"people", e->people},
                                               {"attempts", e->attempts},
                                               {"df", e->df},
@@ -161,14 +188,16 @@ void analyseReliability(const DesignData& data, const DesignChoices&, DesignRepo
   std::size_t analysed = 0;
   const bool leading = data.source == "cohort" || data.occasionWord == "row";
   for (const DesignFigure& figure : data.figures) {
-    if (addError(figure, report, warnings)) ++analysed;
+    if (addError(figure, allPeople, report, warnings)) ++analysed;
+    for (std::size_t g = 0; data.groups.size() > 1 && g < data.groups.size(); ++g)
+      addError(within(data, figure, g), data.groups[g], report, warnings);
     if (addComponents(data, figure, data.occasionWord, data.occasions, leading, report)) ++analysed;
   }
   for (const DesignFigure& form : data.rated) {
     if (addComponents(data, form, "rater", data.raters, false, report)) ++analysed;
   }
   askForResults(data, report, analysed);
-  std::vector<TreeColumn> decisions{{"=figure", "", figureTitle}, {"=facet", "/facet", plain}};
+  std::vector<TreeColumn> decisions{{"=figure", "", figureTitle}, {"=facet", "/facet", plain}, {"=of", "/of", plain}};
   for (std::size_t k = 1; k <= mostDecisions; ++k)
     decisions.push_back({fmt::format("{}", k), fmt::format("/decisions/{}", k - 1),
                          [](const ValueTree& d) { return share2(d["g"]) + " / " + share2(d["phi"]); }});
@@ -176,6 +205,7 @@ void analyseReliability(const DesignData& data, const DesignChoices&, DesignRepo
   for (ReportTable table :
        {tableOf("Error of measurement", report.json["measurement_error"],
                 {{"=figure", "", figureTitle},
+                 {"=of", "/of", plain},
                  {"people", "/people", plain},
                  {"attempts", "/attempts", plain},
                  {"SEM", "/sem", digits4},
@@ -185,6 +215,7 @@ void analyseReliability(const DesignData& data, const DesignChoices&, DesignRepo
         tableOf("Variance components", components,
                 {{"=figure", "", figureTitle},
                  {"=facet", "/facet", plain},
+                 {"=of", "/of", plain},
                  {"people", "/people", plain},
                  {"left out", "/left_out", plain},
                  {"levels", "/levels", plain},
@@ -203,12 +234,18 @@ void analyseReliability(const DesignData& data, const DesignChoices&, DesignRepo
       "G: how reliably participants are ranked, Phi: how reliably they are held against a mark, by the mean of all "
       "levels "
       "of the facet. Left out: participants without values at all of these levels.");
+  if (data.groups.size() > 1)
+    report.notes.emplace_back(
+        "all: in a mixture of groups that differ, G and Phi are larger than within a group, since differences between "
+        "groups count as differences between people. within groups: people nested in groups. Where a score grades "
+        "people of one group, its own row counts.");
   for (const std::string& warning : warnings) report.notes.push_back("Warning: " + warning + ".");
   report.methods =
       "The error of measurement is the pooled deviation of participants' attempts about their own means, with "
       "intervals "
       "from chi-squared. Variance components of participants by facet are those of the two-way analysis of variance of "
-      "complete data; G and Phi have the intervals of ICC(3,k) and ICC(2,k).";
+      "complete data, pooled within groups for people nested in groups; G and Phi have the intervals of ICC(3,k) and "
+      "ICC(2,k).";
 }
 
 }  // namespace calot::analytics

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "analytics/design/design_report.h"
+#include "analytics/report/study_population.h"
 #include "analytics/statistics/descriptive.h"
 #include "analytics/statistics/mixed_models.h"
 #include "analytics/statistics/rank_tests.h"
@@ -21,16 +22,18 @@ std::string quartilesText(const ValueTree& group) {
                      digits4(group["upper_quartile"]));
 }
 
+ValueTree medianTree(const std::string& group, const std::vector<double>& values) {
+  return {{"group", group},
+          {"n", values.size()},
+          {"median", *median(values)},
+          {"lower_quartile", *quantile(values, 0.25)},
+          {"upper_quartile", *quantile(values, 0.75)}};
+}
+
 ValueTree severalTree(const DesignData& data, const std::vector<std::vector<double>>& values,
                       const KruskalWallis& test) {
   ValueTree groups = ValueTree::array(), pairs = ValueTree::array();
-  for (std::size_t g = 0; g < values.size(); ++g) {
-    groups.push_back({{"group", data.groups[g]},
-                      {"n", values[g].size()},
-                      {"median", *median(values[g])},
-                      {"lower_quartile", *quantile(values[g], 0.25)},
-                      {"upper_quartile", *quantile(values[g], 0.75)}});
-  }
+  for (std::size_t g = 0; g < values.size(); ++g) groups.push_back(medianTree(data.groups[g], values[g]));
   const std::vector<DunnPair> compared = *dunn(values);
   for (const DunnPair& pair : compared) {
     pairs.push_back({{"first", data.groups[pair.first]},
@@ -101,10 +104,13 @@ void analyseStrata(const DesignData& data, const DesignChoices& choices, DesignR
     }
     const Expected<StratifiedRankSum> test = stratifiedRankSum(strata);
     if (!test) return Expected<ValueTree>(NoResult{test.reason()});
+    const std::optional<Hypothesis> hypothesis = hypothesisOf(figure.direction, data.better, data.groups);
+    const bool swapped = hypothesis == Hypothesis::firstSmaller;
     return Expected<ValueTree>(ValueTree{{"n", each.person.size()},
                                          {"strata", test->strata},
                                          {"strata_left_out", test->left},
-                                         {"a", test->a},
+                                         {"a", swapped ? 1.0 - test->a : test->a},
+                                         {"a_of", !hypothesis ? data.groups[0] + " larger" : data.better + " better"},
                                          {"z", test->z},
                                          {"p", test->p}});
   });
@@ -115,13 +121,16 @@ void analyseStrata(const DesignData& data, const DesignChoices& choices, DesignR
                                    {"strata", "/strata", plain},
                                    {"left out", "/strata_left_out", plain},
                                    {"A", "/a", share3},
+                                   {"=of", "/a_of", plain},
                                    {"z", "/z", signed2},
                                    {"p", "/p", pValue},
                                    {"Holm", "/p_holm", pValue}}));
   report.notes.push_back(
-      fmt::format("A: chance that a value of {} is larger than one of {} of the same stratum, ties counting one half. "
-                  "Left out: strata with one group, or with all values equal. Holm: over {} figures.",
-                  data.groups[0], data.groups[1], results.size()));
+      fmt::format("A: chance that one of {} is better than one of the other group in the same stratum, by the figure's "
+                  "direction (without one that {} has the larger value), ties counting one half. z: positive where {} "
+                  "has the larger values. Left out: strata with one group, or with all values equal. Holm: over {} "
+                  "figures.",
+                  data.better.empty() ? "a group" : data.better, data.groups[0], data.groups[0], results.size()));
   report.methods = fmt::format(
       "Groups were compared within the strata of \"{}\" by van Elteren's stratified rank sum test (normal "
       "approximation, corrected for ties); p values were adjusted by Holm's method.",
@@ -141,103 +150,125 @@ std::vector<std::string> occasionsOf(const DesignData& data, const DesignFigure&
   return names;
 }
 
-ValueTree termTree(const ModelTerm& term) {
-  return {{"estimate", term.estimate}, {"error", term.error}, {"t", term.t}, {"df", term.df}, {"p", term.p},
-          {"interval", term.interval}};
+ValueTree overallTree(const Expected<RandomIntercept>& overall) {
+  return treeOf(overall, [](const RandomIntercept& r) {
+    return ValueTree{{"difference", r.estimate},
+                     {"error", r.error},
+                     {"df", r.df},
+                     {"p", r.p},
+                     {"interval", r.interval},
+                     {"between_variance", r.betweenVariance},
+                     {"within_variance", r.withinVariance}};
+  });
 }
 
-ValueTree termsTree(const std::vector<ModelTerm>& terms, const std::vector<std::string>& occasions) {
-  ValueTree tree = ValueTree::array();
-  for (std::size_t s = 0; s < terms.size(); ++s) {
-    tree.push_back(termTree(terms[s]));
-    tree.back()["of"] = occasions[s + 1];
+/// Changes of the participants, by group, and with strata within these. @param of what they are changes to or over
+Expected<ValueTree> changeTree(const DesignData& data, const std::vector<ParticipantValue>& changes,
+                               const std::string& of) {
+  std::vector<std::vector<double>> groups(2);
+  std::vector<Stratum> strata(data.strata.size());
+  for (const ParticipantValue& c : changes) {
+    const DesignPerson& person = data.people[c.participant];
+    groups[person.group].push_back(c.value);
+    if (!strata.empty()) (person.group == 0 ? strata[person.stratum].x : strata[person.stratum].y).push_back(c.value);
   }
-  return tree;
+  const Expected<BrunnerMunzel> test = brunnerMunzel(groups[0], groups[1]);
+  if (!test) return NoResult{test.reason()};
+  ValueTree tree{{"of", of}, {"groups", ValueTree::array()}};
+  for (std::size_t g = 0; g < 2; ++g) tree["groups"].push_back(medianTree(data.groups[g], groups[g]));
+  tree.update({{"shift", *hodgesLehmann(groups[0], groups[1])},
+               {"shift_interval", treeOf(hodgesLehmannInterval(groups[0], groups[1]),
+                                         [](const ShiftInterval& i) {
+                                           return ValueTree{{"lower", i.lower}, {"upper", i.upper}};
+                                         })},
+               {"a", superiority(groups[0], groups[1])->a},
+               {"p", test->p},
+               {"exact", test->exact},
+               {"smallest_p", mannWhitney(groups[0], groups[1])->smallestP}});
+  if (strata.empty()) return Expected<ValueTree>(std::move(tree));
+  const Expected<StratifiedRankSum> within = stratifiedRankSum(strata);
+  if (!within) return NoResult{within.reason()};
+  tree.update({{"a", within->a}, {"p", within->p}, {"exact", false}, {"smallest_p", nullptr}});
+  return Expected<ValueTree>(std::move(tree));
 }
 
-ValueTree repeatedTree(const RepeatedGroups& m, const Expected<RandomIntercept>& overall,
-                       const std::vector<std::string>& occasions) {
-  return {{"participants", m.participants},
-          {"attempts", m.attempts},
-          {"group", termTree(m.group)},
-          {"occasion", termsTree(m.occasion, occasions)},
-          {"interaction", termsTree(m.interaction, occasions)},
-          {"between_variance", m.betweenVariance},
-          {"within_variance", m.withinVariance},
-          {"restricted_log_likelihood", m.restrictedLogLikelihood},
-          {"overall", treeOf(overall, [](const RandomIntercept& r) {
-             return ValueTree{
-                 {"difference", r.estimate}, {"error", r.error}, {"df", r.df}, {"p", r.p}, {"interval", r.interval}};
-           })}};
+std::string root(const ValueTree& variance) {
+  return variance.is_number() ? significant(std::sqrt(variance.get<double>())) : "-";
 }
-
-void addTerm(ReportTable& table, std::string& figure, const std::string& name, const ValueTree& term,
-             const std::string& adjusted) {
-  table.rows.push_back({std::exchange(figure, ""), name, digits4(term["estimate"]), range4(term["interval"]),
-                        share2(term["t"]), digits4(term["df"]), pValue(term["p"]), adjusted});
-}
-
-std::string root(const ValueTree& variance) { return significant(std::sqrt(variance.get<double>())); }
 
 }  // namespace
 
 void analyseRepeated(const DesignData& data, const DesignChoices& choices, DesignReport& report) {
-  std::vector<std::string> first;  // occasion, of each result
-  std::vector<double> p;
+  ValueTree changes = ValueTree::array();
   const ValueTree& results = analyseFigures(data, report, [&](const DesignFigure& figure) {
     std::vector<OccasionValue> values;
     std::vector<ModelAttempt> attempts;
-    std::vector<std::size_t> sites;
     for (const DesignValue& v : figure.values) {
       const DesignPerson& person = data.people[v.person];
       double occasion = static_cast<double>(v.occasion);
       if (data.numbered && data.source == "table") occasion = std::stod(data.occasions[v.occasion]);
-      values.push_back({v.person, person.group == 0, occasion, v.value});
+      values.push_back({v.person, occasion, v.value});
       attempts.push_back({v.person, person.group == 0, person.stratum, v.value});
-      if (!data.strata.empty()) sites.push_back(person.stratum);
     }
-    const Expected<RepeatedGroups> model =
-        repeatedGroups(values, data.numbered ? OccasionKind::number : OccasionKind::named, sites);
-    if (!model) return Expected<ValueTree>(NoResult{model.reason()});
+    const auto lists = personalChanges(values, data.numbered ? OccasionKind::number : OccasionKind::named);
+    if (lists.empty()) return Expected<ValueTree>(NoResult{"there is one occasion only"});
     const std::vector<std::string> occasions = occasionsOf(data, figure);
-    first.push_back(occasions.at(0));
-    for (const ModelTerm& term : model->interaction) p.push_back(term.p);
-    return Expected<ValueTree>(repeatedTree(*model, randomIntercept(attempts), occasions));
+    std::string reason;
+    const std::size_t before = changes.size();
+    for (std::size_t c = 0; c < lists.size(); ++c) {
+      const std::string& of = occasions.at(c + 1);
+      const Expected<ValueTree> change = changeTree(data, lists[c], of);
+      if (change) {
+        changes.push_back({{"figure", figure.name}, {"unit", figure.unit}});
+        changes.back().update(*change);
+      } else {
+        reason = fmt::format("its change, {}: {}", of, change.reason());
+        if (lists.size() > 1) report.refused.emplace_back(figure.name, reason);
+      }
+    }
+    if (changes.size() == before) return Expected<ValueTree>(NoResult{reason});
+    return Expected<ValueTree>(ValueTree{
+        {"attempts", values.size()}, {"first", occasions.at(0)}, {"overall", overallTree(randomIntercept(attempts))}});
   });
-  const Expected<std::vector<double>> adjusted = holm(p);
-  ReportTable table =
-      tableOf("Group, occasion and interaction", {"=figure", "=term", "estimate", "95 %", "t", "df", "p", "Holm"});
-  const std::string both = fmt::format("{} less {}", data.groups[0], data.groups[1]);
-  std::size_t next = 0;
-  for (std::size_t i = 0; i < results.size(); ++i) {
-    std::string title = figureTitle(results[i]);
-    addTerm(table, title, fmt::format("{}, at {}", both, first[i]), results[i]["group"], "");
-    for (const ValueTree& term : results[i]["occasion"])
-      addTerm(table, title, fmt::format("{}, {}", plain(term["of"]), data.groups[1]), term, "");
-    for (const ValueTree& term : results[i]["interaction"])
-      addTerm(table, title, fmt::format("{}, {}", plain(term["of"]), both), term,
-              adjusted ? pText((*adjusted)[next++]) : "-");
-  }
-  report.tables = {std::move(table), tableOf("Variances", results,
-                                             {{"=figure", "", figureTitle},
-                                              {"participants", "/participants", plain},
-                                              {"attempts", "/attempts", plain},
-                                              {"sd between", "/between_variance", root},
-                                              {"sd within", "/within_variance", root},
-                                              {"difference overall", "/overall/difference", digits4},
-                                              {"95 %", "/overall/interval", range4},
-                                              {"p", "/overall/p", pValue}})};
+  addHolm(changes);
+  report.json["changes"] = changes;
+  report.tables = {
+      tableOf(fmt::format("Change of each participant: {} against {}", data.groups[0], data.groups[1]), changes,
+              {{"=figure", "", figureTitle},
+               {"=of", "/of", plain},
+               {data.groups[0], "/groups/0", quartilesText},
+               {data.groups[1], "/groups/1", quartilesText},
+               {"shift", "/shift", digits4},
+               {"95 %", "/shift_interval", range4},
+               {"A", "/a", share3},
+               {"p", "/p", pValue},
+               {"Holm", "/p_holm", pValue},
+               {"smallest", "/smallest_p", pValue}}),
+      tableOf("Over all attempts", results,
+              {{"=figure", "", figureTitle},
+               {"attempts", "/attempts", plain},
+               {"sd between", "/overall/between_variance", root},
+               {"sd within", "/overall/within_variance", root},
+               {"difference", "/overall/difference", digits4},
+               {"95 %", "/overall/interval", range4},
+               {"p", "/overall/p", pValue}})};
   report.notes.push_back(fmt::format(
-      "Occasion: {}. The interaction is by how much the groups' changes differ; Holm: over the {} interactions. "
-      "Difference overall: {} less {} over all attempts, without occasion.",
-      data.numbered ? fmt::format("the number of the {}, one slope, counted from the first", data.occasionWord)
-                    : fmt::format("\"{}\", each against the first", data.occasionWord),
-      p.size(), data.groups[0], data.groups[1]));
+      "Change: {}. Who has no such change is left out. A: chance that the change of one of {} is the larger one (a "
+      "fall "
+      "is negative). shift: {} - {}. p: Brunner and Munzel's test, since changes over few attempts scatter more. Holm: "
+      "over the {} changes. Difference: {} less {} over all attempts, without occasion.",
+      data.numbered
+          ? fmt::format("slope of a participant's values over the number of the {}", data.occasionWord)
+          : fmt::format("difference from \"{}\", the first \"{}\"", plain(results[0]["first"]), data.occasionWord),
+      data.groups[0], data.groups[0], data.groups[1], changes.size(), data.groups[0], data.groups[1]));
   report.methods = fmt::format(
-      "Group, occasion and their interaction were estimated by a mixed model with a random intercept for each "
-      "participant, by restricted maximum likelihood, with Student's t and the degrees of freedom of inner and outer "
-      "terms{}. The interactions' p values were adjusted by Holm's method.",
-      data.strata.empty() ? "" : fmt::format("; the strata of \"{}\" had constants of their own", choices.strata));
+      "Changes of the participants ({}) were compared by {}; p values were adjusted by Holm's method. The difference "
+      "over all attempts is that of a mixed model with a random intercept for each participant, by restricted maximum "
+      "likelihood.",
+      data.numbered ? "least-squares slopes" : "differences from the first occasion",
+      data.strata.empty()
+          ? "Brunner and Munzel's test (the larger p of its permutation and Student's t), with the Hodges-Lehmann shift"
+          : fmt::format("van Elteren's test within the strata of \"{}\"", choices.strata));
 }
 
 }  // namespace calot::analytics

@@ -7,6 +7,7 @@
 #include <cassert>
 #include <cerrno>
 #include <fstream>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -279,7 +280,9 @@ TemporaryFolder writeMetricInput(const recorder::TrackedMotion& motion, recorder
     for (std::size_t h = 0; h < static_cast<std::size_t>(handCount); ++h) {
       const recorder::TrackedHand& hand = motion.hand[h];
       const std::string name = std::string(handNames[h]) + "_";
-      if (hand.present) samples.vector(name + "position", "m", "p_FI", hand.position[i]);
+      // Not a number: the script must not take what was left out for a sample.
+      const Vec3 missing = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
+      if (hand.present) samples.vector(name + "position", "m", "p_FI", hand.isMissing(i) ? missing : hand.position[i]);
       if (hand.present && hand.oriented) samples.rotation(name + "orientation", "q_FI", hand.orientation[i]);
     }
     samples.endRow();

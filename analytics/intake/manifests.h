@@ -15,7 +15,7 @@
 #include "analytics/cohort/cohort_database.h"
 #include "recorder/base/csv.h"
 #include "recorder/base/errors.h"
-#include "recorder/sources/tracked_motion.h"
+#include "recorder/sources/column_map.h"
 
 namespace calot::analytics {
 

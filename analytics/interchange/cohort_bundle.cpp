@@ -89,13 +89,15 @@ const DeclaredTable& bundleFile(std::string_view name) {
         asIn("recording", "steps"),
         asIn("recording", "step_seconds"),
         asIn("verification", "verdict", "verdict", "verified, not checkable here, not checked"),
-        asIn("attempt", "synthetic")}},
+        asIn("attempt", "synthetic"),
+        {"analysed", "INTEGER", "studies take it: the analysis set", {}, "", "0 no, 1 yes"}}},
       {"values",
        {attempt, asIn("checkpoint_value", "name", "checkpoint"), asIn("checkpoint_value", "subject"),
         asIn("checkpoint_value", "version"), asIn("checkpoint_value", "availability"),
         asIn("checkpoint_value", "value"), asIn("checkpoint_value", "reason"), asIn("checkpoint_value", "unit"),
         asIn("checkpoint_value", "origin", "origin", "re-simulated, observables, samples, external"),
-        asIn("checkpoint_value", "filter"), asIn("checkpoint_value", "coverage")}},
+        asIn("checkpoint_value", "filter"), asIn("checkpoint_value", "coverage"), asIn("checkpoint_value", "rate"),
+        asIn("checkpoint_value", "noise")}},
       {"ratings",
        {form,
         attempt,
@@ -321,7 +323,8 @@ class Writer {
                        recorder::wordFor(a.mode), recorder::wordFor(a.outcome), a.device,
                        names_.numbered("calibration ", a.calibration), std::to_string(a.simulationVersion),
                        names_.numbered("key ", a.comparabilityKey), std::to_string(a.steps),
-                       fmt::format("{}", a.stepSeconds), nameOf(a.verification.verdict), a.synthetic ? "1" : "0"});
+                       fmt::format("{}", a.stepSeconds), nameOf(a.verification.verdict), a.synthetic ? "1" : "0",
+                       a.leftOut.empty() ? "1" : "0"});
     }
     return text;
   }
@@ -332,10 +335,11 @@ class Writer {
       const auto list = source_.values.find(h.attempt->uuid);
       if (list == source_.values.end()) continue;
       for (const CheckpointValue& v : list->second) {
-        text += fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", h.name, csvCell(v.name), csvCell(v.subject),
-                            v.version, static_cast<int>(v.availability), v.value ? fmt::format("{}", *v.value) : "",
-                            csvCell(v.reason), csvCell(v.unit), csvCell(nameOf(v.origin)), csvCell(v.filter),
-                            v.coverage ? fmt::format("{}", *v.coverage) : "");
+        const auto number = [](const std::optional<double>& n) { return n ? fmt::format("{}", *n) : std::string(); };
+        text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{}\n", h.name, csvCell(v.name), csvCell(v.subject),
+                            v.version, static_cast<int>(v.availability), number(v.value), csvCell(v.reason),
+                            csvCell(v.unit), csvCell(nameOf(v.origin)), csvCell(v.filter), number(v.coverage),
+                            number(v.rate), number(v.noise));
         ++bundle.values;
       }
     }

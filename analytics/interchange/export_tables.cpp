@@ -3,9 +3,11 @@
 #include "analytics/interchange/export_tables.h"
 
 #include <fmt/format.h>
+#include <algorithm>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <string>
 
 #include "analytics/checkpoints/checkpoint.h"
@@ -71,12 +73,22 @@ std::vector<ExportedTable> exportCohort(const std::string& database, const std::
   CohortConnection(database, CohortDatabase::Access::read).read([&](SQLite::Database& db) {
     SQLite::Transaction reading(db);
     std::vector<CodebookEntry> entries;
-    for (const TableFacts& table : readTables(db)) {
+    const auto add = [&](const TableFacts& table, std::vector<CodebookEntry> explained) {
       const std::vector<Row> rows = readRows(db, table);
       output.add(table.name + ".csv", csvOf(table, rows));
       output.add(table.name + ".json", jsonOf(table, rows));
-      for (CodebookEntry& e : columnEntries(table)) entries.push_back(std::move(e));
+      std::move(explained.begin(), explained.end(), std::back_inserter(entries));
       written.push_back({table.name, rows.size()});
+    };
+    for (const TableFacts& table : readTables(db)) add(table, columnEntries(table));
+    for (const DeclaredTable& view : cohortViews()) {
+      TableFacts facts;
+      facts.name = view.name;
+      for (const DeclaredColumn& c : view.columns) {
+        facts.columns.push_back({c.name, c.type});
+        if (std::set<std::string>{"attempt", "name", "subject"}.count(c.name) > 0) facts.key.emplace_back(c.name);
+      }
+      add(facts, columnEntries(view));
     }
     for (CodebookEntry& e : checkpointEntries(tables::readExternalMetrics(db))) entries.push_back(std::move(e));
     output.add("codebook.csv", codebookCsv(entries));
@@ -257,6 +269,7 @@ nlohmann::ordered_json summaryOf(const Motion& motion) {
   const std::optional<double> share = motion.coverage.share();
   summary["coverage"] = share ? nlohmann::ordered_json(*share) : nlohmann::ordered_json(nullptr);
   summary["sample_rate_hz"] = motion.rate;
+  summary["noise_m"] = motion.noise ? nlohmann::ordered_json(*motion.noise) : nlohmann::ordered_json(nullptr);
   summary["sample_interval_s"] = motion.interval;
   summary["movement_threshold_m_s"] = motion.movementSpeed;
   summary["points"] = motion.points();

@@ -39,6 +39,8 @@ ValueTree treeOf(const GradedFigure& f) {
           {"simulation_upper", number(f.interval ? f.interval->upper : std::nullopt)},
           {"no_simulation_interval", f.interval ? f.interval->reason : "none was worked out"},
           {"undecided", f.undecided},
+          {"within_standard_error", f.near},
+          {"standard_error_people", f.error ? std::optional(f.error->people) : std::nullopt},
           {"percentile", f.rank ? std::optional(*f.rank) : std::nullopt},
           {"no_percentile", f.rank.reason()},
           {"competent_members", f.competent},
@@ -84,8 +86,8 @@ std::string percentileText(const ValueTree& rank) {
 }
 std::string passedText(const ValueTree& f) {
   if (f["passed"].is_null()) return "-";
-  return fmt::format("{}{}{}", f["passed"] == true ? "yes" : "no", f["open"] == true ? ", open" : "",
-                     f["undecided"] == true ? ", undecided" : "");
+  return fmt::format("{}{}{}{}", f["passed"] == true ? "yes" : "no", f["within_standard_error"] == true ? ", near" : "",
+                     f["open"] == true ? ", open" : "", f["undecided"] == true ? ", undecided" : "");
 }
 
 /// The simulation's interval; empty where none was worked out.
@@ -121,7 +123,9 @@ std::vector<std::string> notes(const Grade& g) {
   std::vector<std::string> lines{
       "pass mark: the cut of contrasting groups, at which one passes, with its bootstrap interval, or a mark that was "
       "fixed, without one. open: the value "
-      "lies within that interval. percentile: among the competent members; higher is better."};
+      "lies within that interval. near: the value lies within one standard error of the mark: of measurement, from the "
+      "repeated attempts of five people or more, else of the mark itself. percentile: among the competent members; "
+      "higher is better."};
   if (std::any_of(g.figures.begin(), g.figures.end(), [](const GradedFigure& f) { return f.interval.has_value(); })) {
     lines.emplace_back(
         "simulation: where the value may lie for an exact simulation with the right constants. undecided: the pass "
@@ -240,6 +244,7 @@ ValueTree gradeTree(const Grade& g) {
                  {"critical_times", g.criticalTimes},
                  {"passed", g.passed},
                  {"certain", g.certain},
+                 {"within_standard_error", g.near},
                  {"verdict", g.verdict},
                  {"rule", {{"figures", g.inRule}, {"needed", g.needed}, {"passed", g.passedCount}}},
                  {"pass_rate",

@@ -32,9 +32,10 @@ std::string dataOf(const RatingPage& page) {
       items.push_back({{"key", item.key}, {"text", item.text}, {"section", section.name}, {"anchors", item.anchors}});
     }
   }
-  const Json data{{"pack", page.pack},      {"rater", page.rater},      {"least", page.form.least},
-                  {"most", page.form.most}, {"words", page.form.words}, {"items", items},
-                  {"films", page.films}};
+  const Json data{{"pack", page.pack},        {"rater", page.rater},
+                  {"least", page.form.least}, {"most", page.form.most},
+                  {"words", page.form.words}, {"items", items},
+                  {"films", page.films},      {"doublets", page.form.ofDoublets}};
   std::string text = data.dump(-1, ' ', true, Json::error_handler_t::replace);
   for (std::size_t at = text.find('<'); at != std::string::npos; at = text.find('<', at))
     text.replace(at, 1, "\\u003c");
@@ -46,10 +47,10 @@ constexpr const char* bodyOfPage = R"~(<header><div><h1>{title}</h1><p id="count
 <p id="message" role="alert" hidden></p>
 <nav aria-label="Films"><ol id="list"></ol></nav>
 <main><section aria-label="Film"><h2 id="heading" tabindex="-1"></h2><video id="film" controls preload="metadata"></video>
-<p class="hint">Tab moves on, the arrow keys choose a score, the space bar plays and pauses the film that has the focus.
+<p class="hint">Tab moves on, the arrow keys choose a score.{film}
 Answers stay in this browser until they are saved.</p></section>
 <form id="form" aria-labelledby="heading"><div id="items"></div>
-<p class="step"><button id="previous" type="button">Previous film</button> <button id="next" type="button">Next film</button></p></form></main>
+<p class="step"><button id="previous" type="button">Previous</button> <button id="next" type="button">Next</button></p></form></main>
 )~";
 
 }  // namespace
@@ -57,11 +58,15 @@ Answers stay in this browser until they are saved.</p></section>
 std::string ratingPageHtml(const RatingPage& page) {
   const std::string style = ratingPageStyle(), script = ratingPageScript();
   std::string body = bodyOfPage;
-  body.replace(body.find("{title}"), std::string_view("{title}").size(), escaped(page.form.title));
+  const auto put = [&](const std::string& place, const std::string& text) {
+    body.replace(body.find(place), place.size(), text);
+  };
+  put("{title}", escaped(page.form.title));
+  put("{film}", page.form.ofDoublets ? "" : " The space bar plays and pauses the film that has the focus.");
   return fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
       "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src '{}'; style-src '{}'; "
-      "media-src 'self' file:; form-action 'none'; base-uri 'none'\">\n"
+      "media-src 'self' file:; img-src 'self' file:; form-action 'none'; base-uri 'none'\">\n"
       "<meta name=\"referrer\" content=\"no-referrer\">\n"
       "<meta name=\"viewport\" content=\"width=device-width\">\n<title>{}</title>\n"
       "<style>{}</style></head>\n<body>{}<script type=\"application/json\" id=\"data\">{}</script>\n"

@@ -5,6 +5,12 @@ const data = JSON.parse(document.getElementById("data").textContent);
 const at = id => document.getElementById(id);
 const place = "calot-answers " + data.pack + " " + data.rater;
 const BLANK = "-";
+const kind = data.doublets ? "Doublet" : "Film", ending = data.doublets ? ".png" : ".mp4";
+if (data.doublets) {
+  const picture = document.createElement("img");
+  picture.id = "film";
+  at("film").replaceWith(picture);
+}
 let answers = {}, shown = 0, saved = true;
 for (const film of data.films) answers[film] = {};
 try {
@@ -30,11 +36,11 @@ function say(text, good) {
 }
 function count() {
   const whole = data.films.filter(isWhole).length;
-  at("count").textContent = whole + " of " + data.films.length + " films rated";
+  at("count").textContent = whole + " of " + data.films.length + " " + kind.toLowerCase() + "s rated";
   data.films.forEach((film, i) => {
     const button = at("list").children[i].firstChild, n = given(film);
     button.textContent = (i + 1) + (isWhole(film) ? " \u2713" : n > 0 ? " \u2026" : "");
-    button.setAttribute("aria-label", "Film " + (i + 1) + ", " +
+    button.setAttribute("aria-label", kind + " " + (i + 1) + ", " +
       (isWhole(film) ? "rated" : n > 0 ? n + " of " + data.items.length + " items answered" : "not rated"));
     if (i === shown) button.setAttribute("aria-current", "true"); else button.removeAttribute("aria-current");
   });
@@ -62,9 +68,9 @@ function show(number, move) {
   shown = number;
   say("");
   const film = data.films[number];
-  at("heading").textContent = "Film " + (number + 1) + " of " + data.films.length;
-  at("film").src = "films/" + film + ".mp4";
-  at("film").setAttribute("aria-label", "Film " + (number + 1));
+  at("heading").textContent = kind + " " + (number + 1) + " of " + data.films.length;
+  at("film").src = "films/" + film + ending;
+  at("film").setAttribute(data.doublets ? "alt" : "aria-label", kind + " " + (number + 1));
   at("items").replaceChildren();
   let section = "";
   for (const item of data.items) {
@@ -93,8 +99,8 @@ function save() {
   const open = data.films.findIndex(film => !isWhole(film));
   if (open >= 0) {
     show(open, true);
-    say("Film " + (open + 1) + " is not rated: " + data.items.filter(item => !(item.key in answers[data.films[open]]))
-      .map(item => item.text).join(", ") + ". Choose \u201ccannot judge\u201d where the film does not show it.");
+    say(kind + " " + (open + 1) + " is not rated: " + data.items.filter(item => !(item.key in answers[data.films[open]]))
+      .map(item => item.text).join(", ") + ". Choose \u201ccannot judge\u201d where it is not shown.");
     return;
   }
   try {
@@ -119,7 +125,7 @@ at("previous").addEventListener("click", () => show(shown - 1, true));
 at("next").addEventListener("click", () => show(shown + 1, true));
 at("save").addEventListener("click", save);
 at("form").addEventListener("submit", event => event.preventDefault());
-at("film").addEventListener("error", () => say("The film films/" + data.films[shown] + ".mp4 cannot be played. Unpack the whole folder, and open the page from there."));
+at("film").addEventListener("error", () => say("films/" + data.films[shown] + ending + " cannot be shown. Unpack the whole folder, and open the page from there."));
 window.addEventListener("beforeunload", event => { if (!saved) event.preventDefault(); });
 const first = data.films.findIndex(film => !isWhole(film));
 show(first < 0 ? 0 : first, false);

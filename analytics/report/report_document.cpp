@@ -238,11 +238,27 @@ void printReport(const ReportOpening& opening, std::ostream& out, const std::fun
   printWrapped(opening.title, out);
   for (const std::string& line : opening.head) printWrapped(line, out);
   out << '\n';
-  for (const auto& row : opening.flow.rows)
-    printWrapped(fmt::format("{} {} {}", row[0], opening.flow.columns[0].first, row[1]), out);
-  if (!opening.flow.rows.empty()) out << '\n';
+  if (!opening.flow.rows.empty()) printTable(opening.flow, out);
   body();
   if (opening.synthetic) out << watermarkText << '\n';
+}
+
+void printDocument(const ReportDocument& document, std::ostream& out) {
+  const auto textOf = [](const Paragraph& paragraph) {
+    std::string text;
+    for (const TextSpan& span : paragraph) text += span.text;
+    return text;
+  };
+  printReport({document.title, document.synthetic, {}, {}}, out, [&] {
+    for (const auto& part : document.parts) {
+      if (const auto* heading = std::get_if<Heading>(&part)) out << heading->text << '\n';
+      if (const auto* table = std::get_if<ReportTable>(&part)) printTable(*table, out);
+      if (const auto* paragraph = std::get_if<Paragraph>(&part)) printWrapped(textOf(*paragraph) + '\n', out);
+      if (const auto* list = std::get_if<BulletList>(&part)) {
+        for (const Paragraph& item : list->items) printWrapped("- " + textOf(item), out);
+      }
+    }
+  });
 }
 
 std::string cutTo(const std::string& text, std::size_t width) {
@@ -285,6 +301,7 @@ h1 { font-size: 1.5em; } h2 { font-size: 1.15em; margin-top: 2em; }
 table { border-collapse: collapse; font-variant-numeric: tabular-nums; }
 th, td { padding: .2em .7em; border-bottom: 1px solid #d8dde3; text-align: left; white-space: nowrap; }
 th { border-bottom: 2px solid #57606a; } .right { text-align: right; }
+.words { white-space: normal; min-width: 16em; vertical-align: top; }
 .figures { display: flex; flex-wrap: wrap; gap: 1em; } svg { max-width: 100%; height: auto; }
 .watermark { background: #b00020; color: #fff; font-weight: bold; padding: .5em 1em; }
 .behind { position: fixed; inset: 0; display: flex; align-items: center; justify-content: center; pointer-events: none;
@@ -294,9 +311,12 @@ th { border-bottom: 2px solid #57606a; } .right { text-align: right; }
 
 std::string cells(const std::vector<std::string>& row, const ReportTable& table, const char* tag) {
   std::string html = "<tr>";
+  constexpr std::size_t longest = 60;  // letters of a cell on one line
   for (std::size_t c = 0; c < row.size(); ++c) {
-    html += fmt::format("<{}{}>{}</{}>", tag, table.columns[c].second == Align::right ? " class=\"right\"" : "",
-                        escaped(row[c]), tag);
+    const char* kind = row[c].size() > longest                   ? " class=\"words\""
+                       : table.columns[c].second == Align::right ? " class=\"right\""
+                                                                 : "";
+    html += fmt::format("<{}{}>{}</{}>", tag, kind, escaped(row[c]), tag);
   }
   return html + "</tr>\n";
 }

@@ -108,8 +108,11 @@ struct ReportOpening {
   std::vector<std::string> head;
   ReportTable flow;
 };
-/// A report for a terminal: its opening, the flow as sentences, then what `body` prints, between watermarks.
+/// A report for a terminal: its opening with the flow, then what `body` prints, between watermarks.
 void printReport(const ReportOpening& opening, std::ostream& out, const std::function<void()>& body);
+
+/// A whole document for a terminal; figures are left out.
+void printDocument(const ReportDocument& document, std::ostream& out);
 
 /// Watermark of everything that contains performers' figures.
 inline constexpr const char* watermarkText = "SYNTHETIC: made by performers, says nothing about people";

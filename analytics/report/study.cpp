@@ -2,14 +2,19 @@
 
 #include "analytics/report/study.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <functional>
 #include <map>
 #include <set>
+#include <string_view>
 
 #include "analytics/checkpoints/checkpoint.h"
+#include "analytics/cohort/blinding.h"
+#include "analytics/report/study_people.h"
 #include "analytics/report/study_population.h"
 #include "analytics/report/study_protocol.h"
 #include "analytics/report/study_rows.h"
@@ -86,14 +91,15 @@ struct Member {
   std::size_t group = 0;
   std::string participant;
   std::size_t number = 0;  ///< by start
-  bool completed = false;
+  bool unfinished = false;
 };
 
 /// Selects the study's attempts; fills the study's counts and the rest of its flow.
-std::map<std::string, Member> members(Study& study, const std::vector<const AttemptRow*>& attempts,
-                                      const StudyOptions& options, const std::string& name) {
+std::map<std::string, Member> members(Study& study, const std::vector<AttemptRow>& recruited,
+                                      const IncludedAttempts& included, const StudyOptions& options,
+                                      const std::string& name) {
   const AttemptsOfUnits people =
-      attemptsOfUnits(attempts, study.groups, options.grouping, {options.attemptRule}, name, study.flow);
+      attemptsOfUnits(included.taken, study.groups, options.grouping, {options.attemptRule}, name, study.flow);
   study.attemptRule = people.rule;
   std::map<std::string, Member> member;
   std::set<std::string> keys;
@@ -102,8 +108,9 @@ std::map<std::string, Member> members(Study& study, const std::vector<const Atte
     ++study.participants[g];
     study.attempts[g] += list.size();
     study.analysed += list.size();
+    addTraits(study.people[person] = {g, list.size()}, list, options);
     for (const AttemptRow* a : list) {
-      member.emplace(a->uuid, Member{g, person, member.size(), a->outcome == recorder::Outcome::completed});
+      member.emplace(a->uuid, Member{g, person, member.size(), isUnfinished(*a)});
       study.groupOf[person] = study.groupOf[a->uuid] = study.groups[g];
       study.attemptOf[a->uuid] = {person, a->startUtc};
       keys.insert(a->comparabilityKey);
@@ -112,6 +119,7 @@ std::map<std::string, Member> members(Study& study, const std::vector<const Atte
     }
   }
   study.keys.assign(keys.begin(), keys.end());
+  countPeople(study, recruited, included, options, people);
   return member;
 }
 
@@ -138,6 +146,28 @@ StudyRow describedRow(const ColumnKey& key, const Column& column) {
   return row;
 }
 
+/// Begins the note of `hand-ratio`.
+constexpr std::string_view handednessNote = "handedness ";
+
+/// A participant with an attempt that ranks last has no other value beside it: the mean of both is the worst, too.
+void leaveToRanks(StudySample& sample) {
+  for (std::size_t g = 0; g < 2; ++g)
+    std::erase_if(sample.values[g], [&](const StudyValue& v) { return sample.unfinished[g].count(v.participant) > 0; });
+}
+
+/// Outcomes with values of attempts that were not finished.
+std::string partialFigures(const Study& study) {
+  constexpr std::size_t most = 6;
+  std::vector<std::string> names;
+  for (const StudyRow& row : study.rows) {
+    if (row.notOutcome.empty() && row.unfinished[0] + row.unfinished[1] > 0)
+      names.push_back(figureName(row.checkpoint, row.subject));
+  }
+  const std::size_t more = names.size() > most ? names.size() - most : 0;
+  names.resize(names.size() - more);
+  return fmt::format("{}{}", fmt::join(names, ", "), more > 0 ? fmt::format(" and {} more (marked *)", more) : "");
+}
+
 using TakeValue = std::function<void(const AttemptValue&)>;
 
 /// Reading the values takes longer than comparing them, unless the groups are large: a share each.
@@ -158,8 +188,13 @@ Study studyOf(const std::vector<AttemptRow>& recruited, const std::function<void
   study.flow = std::move(included.flow);
   study.groups = chooseGroups(included.present, options, name, leftOutOf(study.recruited, study.flow));
   study.better = betterOf(study.groups, options);
-  const std::map<std::string, Member> member = members(study, included.taken, options, name);
+  study.unequalSpread = options.unequalSpread;
+  const std::map<std::string, Member> member = members(study, recruited, included, options, name);
   askForOneKey(study.keys, options, name, study.remarks);
+  const auto& people = options.people;
+  if (!study.synthetic && !people.empty() &&
+      std::all_of(people.begin(), people.end(), [](const Participant& p) { return p.consent.empty(); }))
+    study.remarks.emplace_back("No consent is recorded in this cohort, so nobody is left out for lack of it.");
   if (options.protocol) {
     std::vector<const AttemptRow*> data;
     for (const AttemptRow& a : recruited) {
@@ -172,6 +207,10 @@ Study studyOf(const std::vector<AttemptRow>& recruited, const std::function<void
 
   const std::vector<std::string> unasked = unaskedPhases(options);
   const std::set<std::string> leftAside(unasked.begin(), unasked.end());
+  std::vector<const AttemptRow*> analysed;
+  for (const AttemptRow& a : recruited) {
+    if (member.count(a.uuid) > 0) analysed.push_back(&a);
+  }
   std::map<ColumnKey, Column> columns;
   std::vector<ColumnKey> order;
   CoverageCollector coverage;
@@ -197,18 +236,24 @@ Study studyOf(const std::vector<AttemptRow>& recruited, const std::function<void
     const Member& m = at->second;
     column.sampled = column.sampled || item.value.coverage;
     coverage.add(item.value, m.group, m.participant, item.attempt);
+    if (item.value.note.starts_with(handednessNote) && !item.value.note.ends_with(" unknown"))
+      study.people[m.participant].traits.try_emplace("handedness", item.value.note.substr(handednessNote.size()));
     column.metric = item.value.metric;
     const double factor = column.factor;
-    const double shown = item.value.value.value_or(0.0) * factor;
+    const double shown = withoutDust(item.value, factor) * factor;
     if (!item.value.value || !std::isfinite(shown)) {
       column.sample.missing[m.group][m.participant].push_back(
           item.value.value ? MissingValue{Availability::notAvailable, "not finite"}
                            : MissingValue{item.value.availability, item.value.reason});
-      if (item.value.availability == Availability::notAvailable && !m.completed && options.protocol &&
+      // A hand without an instrument or a tracker that loses it says nothing about the performance.
+      const bool ofPerformance = item.value.availability == Availability::notApplicable ||
+                                 item.value.availability == Availability::notAvailable;
+      if (m.unfinished && ofPerformance && options.protocol &&
           options.protocol->protocol.missing == MissingRule::worstRank)
         column.sample.unfinished[m.group].insert(m.participant);
       return;
     }
+    if (m.unfinished) column.sample.partOfTask[m.group].insert(m.participant);
     column.versions.insert(item.value.version);
     column.origins.insert(item.value.origin);
     StudyValue& value = column.sample.values[m.group].emplace_back(StudyValue{m.participant, m.number, shown, {}, 0.0});
@@ -220,9 +265,13 @@ Study studyOf(const std::vector<AttemptRow>& recruited, const std::function<void
   std::stable_sort(order.begin(), order.end(),
                    [](const auto& a, const auto& b) { return positionOf(a.first) < positionOf(b.first); });
   study.coverage = coverage.rows();
+  if (!options.mixKeys) {
+    for (CoverageRow& row : study.coverage) row.refusal = trackersApart(study, row);
+  }
   std::array<std::map<std::string, double>, 2> duration;
   for (const ColumnKey& key : order) {
-    const Column& column = columns[key];
+    Column& column = columns[key];
+    leaveToRanks(column.sample);
     askForOneVersion(key.first, column.versions.size(), options, name, study.remarks);
     StudyRow& row = study.rows.emplace_back(describedRow(key, column));
     if (options.protocol) declareRow(row, study, options.protocol->protocol);
@@ -245,6 +294,9 @@ Study studyOf(const std::vector<AttemptRow>& recruited, const std::function<void
     compareGroups(study.rows[i], study, duration);
   }
   addPublished(study);
+  if (std::string remark = unfinishedRemark(analysed, study.groups, options.grouping, partialFigures(study));
+      !remark.empty())
+    study.remarks.push_back(std::move(remark));
   finishRows(study, options, options.protocol ? &options.protocol->protocol : nullptr);
   return study;
 }
@@ -253,13 +305,15 @@ Study studyOf(const std::vector<AttemptRow>& recruited, const std::function<void
 
 StudyOptions withCohortData(const CohortDatabase& database, StudyOptions options) {
   if (options.cohort) options.cohort->participants = participantsOf(database.path(), options.cohort->name);
+  options.people = database.participants();
   if (options.protocol) {
-    for (const Participant& p : database.participants()) options.protocol->experience[p.pseudonym] = p.experience;
+    for (const Participant& p : options.people) options.protocol->experience[p.pseudonym] = p.experience;
   }
   return options;
 }
 
 Study makeStudy(const CohortDatabase& database, const StudyOptions& options, const StudyProgress& progress) {
+  refuseWhileMasked(database.path(), options.protocol ? options.protocol->protocol.sha256 : "");
   const StudyOptions known = withCohortData(database, options);
   const auto each = [&](const TakeValue& take) { database.eachValue(unaskedPhases(known), take); };
   return studyOf(database.listAttempts(), each, known, database.path(), progress);

@@ -61,6 +61,7 @@ struct StudyChoices {
                                     ///< are levels of skill (expert and skilled, intermediate, novice and unskilled)
   std::optional<AttemptRule> attemptRule;  ///< rule that reduces a participant's several values to one; none: refused
   std::vector<std::string> family;         ///< checkpoints or outcomes that are adjusted for each other; empty: all
+  bool unequalSpread = false;              ///< Brunner and Munzel's test in place of Mann and Whitney's
 };
 
 /// A protocol and what the database knows of it.
@@ -81,6 +82,7 @@ struct CohortInUse {
 struct StudyOptions : StudyChoices {
   std::optional<ProtocolInUse> protocol;
   std::optional<CohortInUse> cohort;  ///< only attempts of its participants
+  std::vector<Participant> people;    ///< registered, by pseudonym; makeStudy() of a database fills them in
   Grouping grouping = Grouping::group;
   bool includeSynthetic = false;
   bool includePractice = false;
@@ -112,19 +114,29 @@ struct StudyLock {
 
 /// A report's information about its protocol.
 struct StudyProtocol : Protocol {
-  std::string registeredUtc = {};    ///< empty: never
-  std::string firstAttemptUtc = {};  ///< earliest start among the data; empty: not known
-  std::string whyExploratory = {};   ///< empty: it was registered before the first attempt
+  std::string registeredUtc = {};                    ///< empty: never
+  std::string firstAttemptUtc = {};                  ///< earliest start among the data; empty: not known
+  std::map<std::string, std::uint64_t> starts = {};  ///< attempts by startEvidence()
+  std::string whyExploratory = {};                   ///< empty: Calot holds evidence that it came first
   std::vector<ProtocolVersion> versions = {};
   std::vector<std::string> deviations = {};  ///< whole sentences
   bool masked = false;                       ///< the groups have drawn names, hypotheses no directions
   std::optional<StudyLock> lock = {};        ///< none: not locked
+  std::uint64_t runsBeforeLock = 0;          ///< with named groups, as the audit notes them
 };
 
 /// A reason for exclusion of attempts (or a table's rows), in the order in which reasons are checked.
 struct FlowRow {
   std::string reason;
   std::uint64_t attempts = 0;
+  std::map<std::string, std::uint64_t> people = {};  ///< by group: those of whom nothing is analysed, for this reason
+};
+
+/// An analysed participant.
+struct StudyPerson {
+  std::size_t group = 0;
+  std::uint64_t attempts = 0;
+  std::map<std::string, std::string> traits = {};  ///< experience by criterion; "handedness", "site", "arm", "device"
 };
 
 /// One group's values of one checkpoint, one per participant, in the checkpoint's display unit.
@@ -158,16 +170,24 @@ struct StudyRow {
   std::array<std::vector<std::string>, 2> participants;  ///< whose, ascending; "attempt UUID" for a performer's run
   std::array<std::vector<double>, 2> values;             ///< as many, in the display unit
   Expected<MannWhitney> test = NoResult{"not computed"};
-  std::optional<double> holm;                  ///< p adjusted over the family; none outside of it or without a test
-  Role role = Role::undeclared;                ///< by the protocol, where there is one
-  std::optional<double> benjaminiHochberg;     ///< with a protocol: p adjusted over the rows that are not primary
-  std::array<std::uint64_t, 2> worstRanked{};  ///< participants without a value who rank behind all in test and A
+  /// Computed where the smaller group scatters more; where StudyChoices::unequalSpread asks for it its p is in `test`.
+  Expected<BrunnerMunzel> brunnerMunzel = NoResult{"not computed"};
+  std::optional<double> holm;               ///< p adjusted over the family; none outside of it or without a test
+  Role role = Role::undeclared;             ///< by the protocol, where there is one
+  std::optional<double> benjaminiHochberg;  ///< of a secondary hypothesis: p adjusted over these
+  /// Participants without a value, since they did not finish, who rank behind all in test and A.
+  std::array<std::vector<std::string>, 2> worstRanked;
+  double worst = 0.0;                         ///< a value behind all others, for their ranks
+  std::array<std::uint64_t, 2> unfinished{};  ///< participants whose value is of an attempt that was not finished
   /// Smallest adjusted p that these values could give, whatever their assignment to the groups: all tests of the family
   /// at their MannWhitney::smallestP. Above the level, nothing could be found.
   std::optional<double> attainableP;
   /// A hypothesis of the protocol: adjusted p at most the level, as expected; none without a test or where no adjusted
   /// p can reach the level.
   std::optional<bool> supported;
+  Claim claim = Claim::difference;                      ///< of its hypothesis
+  std::optional<double> margin;                         ///< of that claim
+  Expected<double> marginP = NoResult{"not computed"};  ///< p of equivalence or non-inferiority, which Holm adjusts
   std::optional<Hypothesis> hypothesis;  ///< from the direction and the group that is expected to do better
   std::optional<bool> asHypothesised;    ///< A of the hypothesis above one half; none at one half, or without one
   Expected<Superiority> effect = NoResult{"not computed"};  ///< of the first group's values being larger
@@ -189,12 +209,20 @@ struct StudyRow {
 /// The smallest adjusted p that the row's groups can give is above the level.
 inline bool isOutOfReach(const StudyRow& row, double level) { return row.attainableP && *row.attainableP > level; }
 
-/// Coverage of the attempts by samples, for figures of one subject.
+/// Rate (Hz) or noise (m) of the trackers: one value per participant, the mean of several attempts.
+struct TrackerQuality {
+  std::array<std::vector<double>, 2> values;
+  Expected<MannWhitney> test = NoResult{"not computed"};
+};
+
+/// Coverage of the attempts by samples, rate and noise of their trackers, for figures of one subject.
 struct CoverageRow {
   std::string subject;                       ///< as of the figures: a hand, "" both, "left clipping"
   std::array<std::vector<double>, 2> share;  ///< in [0, 1], one per participant, the mean of several attempts
   std::array<std::uint64_t, 2> below{};      ///< participants with a figure that was refused for it
   Expected<MannWhitney> test = NoResult{"not computed"};
+  TrackerQuality rate, noise;
+  std::string refusal = {};  ///< why its figures are not tested: the groups' trackers are not alike; empty: they are
 };
 
 /// Sites and dates of a study's attempts.
@@ -218,21 +246,24 @@ struct AnalysedData {
   std::string attemptRule;      ///< how a participant's attempts were reduced to one value, a clause
   std::uint64_t recruited = 0;  ///< attempts in the database, rows in the table
   std::vector<FlowRow> flow;
-  std::uint64_t analysed = 0;        ///< attempts
-  std::vector<std::string> remarks;  ///< what a reader must know, whole sentences
+  std::uint64_t analysed = 0;                                            ///< attempts
+  std::map<std::string, std::uint64_t> recruitedPeople, analysedPeople;  ///< by group
+  std::vector<std::string> remarks;                                      ///< what a reader must know, whole sentences
 };
 
 struct Study : AnalysedData {
-  std::string heading;  ///< "confirmatory": a protocol was registered before the first attempt; else "exploratory"
+  std::string heading;  ///< "confirmatory": evidence shows that the protocol came first; else "exploratory"
   std::optional<StudyProtocol> protocol;
   StudySetting setting;  ///< of a cohort
   std::string cohort;    ///< the named cohort whose attempts alone were taken, or empty: all
   std::array<std::string, 2> groups;
   std::array<std::uint64_t, 2> participants{}, attempts{};
-  std::vector<std::string> keys;  ///< comparability keys of the attempts in it
-  std::vector<AbsentRow> absent;  ///< of a table with occasions, by participant
-  bool phasesLeftOut = false;     ///< checkpoints of single phases, other than how long the phases lasted
-  std::string family;             ///< which p values are adjusted for each other, a sentence
+  std::map<std::string, StudyPerson> people;  ///< by unit of analysis; none in a masked study
+  std::vector<std::string> keys;              ///< comparability keys of the attempts in it
+  std::vector<AbsentRow> absent;              ///< of a table with occasions, by participant
+  bool phasesLeftOut = false;                 ///< checkpoints of single phases, other than how long the phases lasted
+  std::string family;                         ///< which p values are adjusted for each other, a sentence
+  bool unequalSpread = false;                 ///< as declared (StudyChoices)
   std::vector<StudyRow> rows;
   std::vector<CoverageRow> coverage;  ///< of figures of samples, by subject
   std::string publishedSource;        ///< of the paper's means
@@ -254,7 +285,7 @@ using StudyProgress = std::function<void(double share, const char* doing)>;
 /// comparability keys or checkpoint versions would mix; Error (invalid) for an unknown name, of a cohort too.
 Study makeStudy(const CohortDatabase& database, const StudyOptions& options, const StudyProgress& progress = {});
 
-/// Additions of makeStudy() of a database to the options: the named cohort's participants, recorded experience.
+/// Additions of makeStudy() of a database to the options: participants, those of the named cohort, their experience.
 /// @throws Error (invalid) where there is no such cohort
 StudyOptions withCohortData(const CohortDatabase& database, StudyOptions options);
 

@@ -27,15 +27,15 @@ void explainColumns(const Study& study, std::vector<std::string>& notes) {
   notes.emplace_back(
       "none: participants without a value. The interval of the shift is distribution-free, that of A the score "
       "interval; A is the area under the ROC curve. ~: p by normal approximation, else exact with ties. Without a "
-      "direction of its own, a figure's A is that of the first group's values being larger. expected: whether A is "
-      "above "
-      "one half, where p is below 1.");
+      "direction of its own, a figure's A is that of the first group's values being larger.");
   const bool correlated = any(study, [](const StudyRow& r) { return static_cast<bool>(r.withDuration); });
   notes.push_back(
       fmt::format("g: Hedges, {} - {}, interval by non-central t, which assumes normal groups.{}", a, b,
                   correlated ? " rho: Spearman's correlation with the attempt's duration, over both groups." : ""));
   if (study.source == "cohort" && !correlated)
     notes.emplace_back("No correlation with the attempt's duration: durations are missing, too few, or all equal.");
+  if (any(study, [](const StudyRow& r) { return r.unfinished[0] + r.unfinished[1] > 0; }))
+    notes.emplace_back("*: has values of attempts that were not finished.");
   if (any(study, [](const StudyRow& r) { return r.simulation.has_value(); })) {
     notes.emplace_back(
         "Uncertainty of the simulation: each attempt was run again in smaller steps, with a finer mesh and with other "
@@ -86,17 +86,19 @@ void explainMissingOf(const Study& study, const StudyRow& row, std::vector<std::
   const std::string name = rowName(row);
   if (const std::string reason = untested(row); !reason.empty()) notes.push_back(fmt::format("{}: {}", name, reason));
   if (hasNoValue(row)) return;
+  if (row.brunnerMunzel && !study.unequalSpread)
+    notes.push_back(fmt::format("{}: p {} by the test of Brunner and Munzel", name, pText(row.brunnerMunzel->p)));
   for (std::size_t g = 0; g < 2; ++g) {
     const GroupSummary& s = row.group[g];
     if (s.missing > 0) {
       notes.push_back(fmt::format("{}: {} of {} {} without a value ({})", name, s.missing, s.missing + s.n,
                                   study.groups[g], whyMissing(s)));
     }
-    if (row.worstRanked[g] > 0) {
+    if (!row.worstRanked[g].empty()) {
       notes.push_back(
-          fmt::format("{}: {} of these {} did not complete the attempt and rank behind all others in p "
+          fmt::format("{}: {} of these {} did not finish the attempt and rank behind all others in p "
                       "and A; shift and g are of the values alone",
-                      name, row.worstRanked[g], study.groups[g]));
+                      name, row.worstRanked[g].size(), study.groups[g]));
     }
     if (s.partial > 0) {
       notes.push_back(fmt::format("{}: the mean of {} of {} {} lacks some of their {}", name, s.partial, s.n,
@@ -169,10 +171,11 @@ std::vector<std::string> appendixNotes(const Study& study) {
 namespace {
 
 std::string comparisons(const Study& study) {
-  const bool exact = any(study, [](const StudyRow& r) { return r.test && r.test->exact; });
-  const bool normal = any(study, [](const StudyRow& r) { return r.test && !r.test->exact; });
-  if (!exact && !normal) return "No figure could be tested. ";
-  return fmt::format("Groups were compared by the two-sided Mann-Whitney test, {}. ",
+  const bool exact = any(study, [](const StudyRow& r) { return r.attainableP && r.test->exact; });
+  const bool normal = any(study, [](const StudyRow& r) { return r.attainableP && !r.test->exact; });
+  if (!exact && !normal) return "Nothing was tested. ";
+  return fmt::format("Groups were compared by the two-sided {}, {}. ",
+                     study.unequalSpread ? "test of Brunner and Munzel" : "Mann-Whitney test",
                      exact && normal ? "exact with ties up to 80 values and by normal approximation beyond"
                      : exact         ? "exact with ties"
                                      : "by normal approximation with correction for ties and continuity");
@@ -199,7 +202,7 @@ std::string missing(const Study& study) {
   std::uint64_t without = 0, worst = 0;
   for (const StudyRow& row : study.rows) {
     without += row.group[0].missing + row.group[1].missing;
-    worst += row.worstRanked[0] + row.worstRanked[1];
+    worst += row.worstRanked[0].size() + row.worstRanked[1].size();
   }
   if (without == 0) return "No value was missing. ";
   return fmt::format("{} values were missing over all figures; {}. ", without,
@@ -227,7 +230,8 @@ std::string lockText(const StudyProtocol& protocol) {
   if (protocol.masked) return "Groups are masked until the analysis is locked.";
   if (!protocol.lock) return "The analysis is not locked.";
   const std::string changed = fmt::format("{}", fmt::join(protocol.lock->changed, ", "));
-  return fmt::format("Analysis locked on {} by {}; {}.", protocol.lock->lockedUtc, protocol.lock->by,
+  return fmt::format("Analysis locked on {} by {}, after {} runs with named groups; {}.", protocol.lock->lockedUtc,
+                     protocol.lock->by, protocol.runsBeforeLock,
                      changed.empty() ? "nothing has changed since" : "changed since: " + changed);
 }
 
@@ -236,10 +240,17 @@ std::vector<std::string> protocolLines(const Study& study) {
   const StudyProtocol& p = *study.protocol;
   std::vector<std::string> lines{fmt::format("Protocol {} version {}: {}", p.name, p.version, p.title)};
   if (!p.question.empty()) lines.push_back(p.question);
+  for (const auto& [what, text] : {std::pair("Ethics: ", &p.ethics),
+                                   {"Registry: ", &p.registry},
+                                   {"Sample size: ", &p.sampleSizeReason},
+                                   {"Stopping rule: ", &p.stoppingRule}}) {
+    if (!text->empty()) lines.push_back(what + *text);
+  }
   lines.push_back(p.registeredUtc.empty()
                       ? fmt::format("SHA-256 {}, not registered.", p.sha256)
-                      : fmt::format("SHA-256 {}, registered on {}; first attempt {}.", p.sha256, p.registeredUtc,
-                                    p.firstAttemptUtc.empty() ? "at an unknown time" : p.firstAttemptUtc));
+                      : fmt::format("SHA-256 {}, registered on {}; first attempt {}{}.", p.sha256, p.registeredUtc,
+                                    p.firstAttemptUtc.empty() ? "at an unknown time" : p.firstAttemptUtc,
+                                    p.starts.count("stated") > 0 ? ", as stated" : ""));
   if (p.masked || p.lock) lines.push_back(lockText(p));
   if (!p.whyExploratory.empty()) lines.push_back(fmt::format("Exploratory: {}.", p.whyExploratory));
   for (const ProtocolVersion& v : p.versions) {

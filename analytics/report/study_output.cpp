@@ -12,6 +12,7 @@
 
 #include "analytics/report/plots.h"
 #include "analytics/report/ratings.h"
+#include "analytics/report/study_people.h"
 #include "analytics/report/study_rows.h"
 #include "analytics/statistics/descriptive.h"
 #include "recorder/base/errors.h"
@@ -86,6 +87,8 @@ ValueTree protocolTree(const std::optional<StudyProtocol>& protocol) {
                         {"by", v.by},
                         {"changed", v.changed}});
   }
+  ValueTree starts = ValueTree::object();
+  for (const auto& [evidence, attempts] : p.starts) starts[evidence] = attempts;
   ValueTree lock = nullptr;
   if (p.lock) lock = {{"locked_utc", p.lock->lockedUtc}, {"by", p.lock->by}, {"changed", p.lock->changed}};
   return {{"name", p.name},
@@ -94,10 +97,18 @@ ValueTree protocolTree(const std::optional<StudyProtocol>& protocol) {
           {"sha256", p.sha256},
           {"registered_utc", p.registeredUtc},
           {"first_attempt_utc", p.firstAttemptUtc},
+          {"starts", starts},
           {"why_exploratory", p.whyExploratory},
           {"level", p.level},
           {"missing", p.missing == MissingRule::worstRank ? "worst-rank" : "complete-cases"},
           {"populations", {p.populations[0].definition, p.populations[1].definition}},
+          {"ethics", p.ethics},
+          {"registry", p.registry},
+          {"planned", {p.populations[0].planned, p.populations[1].planned}},
+          {"sample_size_reason", p.sampleSizeReason},
+          {"stopping_rule", p.stoppingRule},
+          {"covariates", p.covariates},
+          {"runs_before_lock", p.runsBeforeLock},
           {"versions", versions},
           {"deviations", p.deviations},
           {"masked", p.masked},
@@ -119,6 +130,12 @@ ValueTree coverageTree(const CoverageRow& row) {
     return ValueTree{{"u", t.u}, {"p", t.p}, {"method", t.exact ? "exact" : "asymptotic"}};
   });
   tree["differs"] = coverageDiffers(row);
+  tree["rates_hz"] = row.rate.values;
+  tree["noises_m"] = row.noise.values;
+  tree["trackers_p"] = ValueTree::array();
+  for (const TrackerQuality* quality : {&row.rate, &row.noise})
+    tree["trackers_p"].push_back(quality->test ? std::optional(quality->test->p) : std::nullopt);
+  tree["refusal"] = row.refusal;
   return tree;
 }
 
@@ -140,7 +157,11 @@ ValueTree rowTree(const Study& study, const StudyRow& row) {
                {"leading", row.leading},
                {"attainable_p", row.attainableP},
                {"supported", row.supported},
-               {"worst_ranked", row.worstRanked},
+               {"claim", nameOf(row.claim)},
+               {"margin", row.margin},
+               {"margin_p", row.marginP ? ValueTree(*row.marginP) : ValueTree(nullptr)},
+               {"worst_ranked", {row.worstRanked[0].size(), row.worstRanked[1].size()}},
+               {"unfinished", row.unfinished},
                {"hypothesis", hypothesisTree(study, row)}});
   tree["mann_whitney"] = treeOf(row.test, [&](const MannWhitney& t) {
     return ValueTree{{"u", t.u},
@@ -150,6 +171,13 @@ ValueTree rowTree(const Study& study, const StudyRow& row) {
                      {"method", t.exact ? "exact" : "asymptotic"},
                      {"ties", t.ties},
                      {"smallest_p", t.smallestP}};
+  });
+  tree["brunner_munzel"] = treeOf(row.brunnerMunzel, [&](const BrunnerMunzel& b) {
+    return ValueTree{{"statistic", b.statistic},
+                     {"df", b.df},
+                     {"p", b.p},
+                     {"method", b.exact ? "permutation" : "Student's t"},
+                     {"decides", study.unequalSpread}};
   });
   tree["effect"] = treeOf(row.effect, [](const Superiority& e) {
     return ValueTree{{"cliffs_delta", e.delta}, {"a", e.a}};
@@ -201,13 +229,22 @@ ValueTree studyTree(const Study& study) {
                  {"first_start_utc", study.setting.firstStartUtc},
                  {"last_start_utc", study.setting.lastStartUtc},
                  {"cohort_name", study.cohort},
-                 {"flow", {{"recruited", study.recruited}, {"analysed", study.analysed}}},
+                 {"flow",
+                  {{"recruited", study.recruited},
+                   {"recruited_participants", study.recruitedPeople},
+                   {"analysed", study.analysed},
+                   {"analysed_participants", study.analysedPeople}}},
+                 {"simultaneous_intervals", false},
                  {"remarks", study.remarks},
                  {"protocol", protocolTree(study.protocol)},
                  {"methods", studyMethods(study)},
                  {"published_source", study.publishedSource}};
   ValueTree& excluded = tree["flow"]["excluded"] = ValueTree::array();
-  for (const FlowRow& row : study.flow) excluded.push_back({{"reason", row.reason}, {"attempts", row.attempts}});
+  for (const FlowRow& row : study.flow)
+    excluded.push_back({{"reason", row.reason}, {"attempts", row.attempts}, {"participants", row.people}});
+  const ReportTable table1 = peopleTable(study);
+  ValueTree& people = tree["table_1"] = ValueTree::array();
+  for (const auto& row : table1.rows) people.push_back({{"characteristic", row[0]}, {"groups", {row[1], row[2]}}});
   ValueTree& absent = tree["absent"] = ValueTree::array();
   for (const AbsentRow& a : study.absent)
     absent.push_back({{"participant", a.participant}, {"group", a.group}, {"occasion", a.occasion}});
@@ -244,7 +281,9 @@ std::string summaryFile(const ValueTree& study) {
       "baseline_p_holm=/at_one_baseline/p_holm baseline_slope=/at_one_baseline/slope "
       "baseline_slope_p=/at_one_baseline/one_slope/p coverage_warnings role "
       "p_benjamini_hochberg=/mann_whitney/p_benjamini_hochberg supported worst_ranked_a=/worst_ranked/0 "
-      "worst_ranked_b=/worst_ranked/1 simulation_half_width=/simulation/half_width "
+      "worst_ranked_b=/worst_ranked/1 unfinished_a=/unfinished/0 unfinished_b=/unfinished/1 "
+      "p_brunner_munzel=/brunner_munzel/p "
+      "simulation_half_width=/simulation/half_width "
       "first_larger_lower=/simulation/first_larger/lower first_larger_upper=/simulation/first_larger/upper "
       "simulation_decided=/simulation/decided attainable_p not_outcome_because source_sha256");
 }
@@ -277,6 +316,9 @@ std::string flowFile(const Study& study) {
 
 std::string coverageFile(const Study& study, const ValueTree& watermark) {
   ValueTree rows = ValueTree::array();
+  const auto medianOf = [](const std::vector<double>& values) {
+    return values.empty() ? std::nullopt : std::optional(*median(values));
+  };
   for (const CoverageRow& row : study.coverage) {
     for (std::size_t g = 0; g < 2; ++g) {
       const std::vector<double>& shares = row.share[g];
@@ -284,14 +326,17 @@ std::string coverageFile(const Study& study, const ValueTree& watermark) {
           {{"subject", row.subject},
            {"group", study.groups[g]},
            {"n", shares.size()},
-           {"median", shares.empty() ? std::nullopt : std::optional(*median(shares))},
+           {"median", medianOf(shares)},
            {"lowest", shares.empty() ? std::nullopt : std::optional(*std::min_element(shares.begin(), shares.end()))},
            {"too_little", row.below[g]},
            {"p", row.test ? std::optional(row.test->p) : std::nullopt},
-           {"watermark", watermark}});
+           {"watermark", watermark},
+           {"rate", medianOf(row.rate.values[g])},
+           {"noise", medianOf(row.noise.values[g])},
+           {"refusal", row.refusal}});
     }
   }
-  return csvText(rows, "subject group n median lowest too_little p watermark");
+  return csvText(rows, "subject group n median lowest too_little p watermark rate_hz=/rate noise_m=/noise refusal");
 }
 
 std::string ratingsFile(const ValueTree& study) {
@@ -318,6 +363,19 @@ std::string ratingsFile(const ValueTree& study) {
                  "icc_2_1_upper=/icc/interval/upper watermark");
 }
 
+/// The analysed attempts; a masked study names none.
+std::string attemptsFile(const Study& study, const ValueTree& watermark) {
+  ValueTree rows = ValueTree::array();
+  for (const auto& [uuid, of] : study.attemptOf) {
+    rows.push_back({{"attempt", uuid},
+                    {"participant", of.participant},
+                    {"group", study.groupOf.at(uuid)},
+                    {"start", of.startUtc},
+                    {"watermark", watermark}});
+  }
+  return csvText(rows, "attempt participant group start watermark");
+}
+
 }  // namespace
 
 void writeStudyCsv(const Study& study, const std::string& folder, bool force) {
@@ -331,6 +389,8 @@ void writeStudyCsv(const Study& study, const std::string& folder, bool force) {
   const ValueTree& watermark = tree["watermark"];
   std::vector<std::pair<const char*, std::string>> files{
       {"study.csv", summaryFile(tree)}, {"values.csv", valuesFile(study, watermark)}, {"flow.csv", flowFile(study)}};
+  if (!study.attemptOf.empty() && !(study.protocol && study.protocol->masked))
+    files.emplace_back("attempts.csv", attemptsFile(study, watermark));
   if (!study.coverage.empty()) files.emplace_back("coverage.csv", coverageFile(study, watermark));
   if (!study.ratings.empty()) files.emplace_back("ratings.csv", ratingsFile(tree));
   for (const auto& file : files) recorder::refuseOutput(root / file.first, force);
@@ -372,14 +432,16 @@ std::optional<Drawing> boxPlotOf(const Study& study, const StudyRow& row, const 
                       .frame = frame});
 }
 
-ReportDocument studyDocument(const Study& study) {
+ReportDocument studyDocument(const Study& study, StudyDetail detail) {
   ReportDocument document{studyTitle(study), study.synthetic, {}};
   for (const std::string& line : studyHead(study)) document.add(line);
-  document.parts.emplace_back(flowTable(study));
-  document.parts.emplace_back(primaryTable(study));
+  for (ReportTable table : {flowTable(study, study.groups), peopleTable(study), primaryTable(study)}) {
+    if (!table.rows.empty()) document.parts.emplace_back(std::move(table));
+  }
   document.addList(primaryNotes(study));
-  if (std::optional<Drawing> forest = forestOf(study)) document.parts.emplace_back(Figures{{std::move(*forest)}});
+  if (Figures forests{forestsOf(study)}; !forests.drawings.empty()) document.parts.emplace_back(std::move(forests));
   document.add(studyMethods(study));
+  if (detail == StudyDetail::first) return document;
   document.parts.emplace_back(Heading{"Appendix", true});
   for (ReportTable& table : appendixTables(study)) document.parts.emplace_back(std::move(table));
   document.parts.emplace_back(Heading{"Notes"});
@@ -403,7 +465,8 @@ void printStudy(const Study& study, std::ostream& out, StudyDetail detail) {
   const auto print = [&](const std::vector<std::string>& lines) {
     for (const std::string& line : lines) printWrapped(line, out);
   };
-  printReport({studyTitle(study), study.synthetic, studyHead(study), flowTable(study)}, out, [&] {
+  printReport({studyTitle(study), study.synthetic, studyHead(study), flowTable(study, study.groups)}, out, [&] {
+    if (const ReportTable people = peopleTable(study); !people.rows.empty()) printTable(people, out);
     printTable(primaryTable(study), out);
     print(primaryNotes(study));
     if (detail == StudyDetail::first) return;

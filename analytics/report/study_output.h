@@ -18,7 +18,7 @@
 namespace calot::analytics {
 
 enum class StudyDetail : std::uint8_t {
-  first,  ///< heading, flow, the first result and its notes: about one screen
+  first,  ///< heading, flow, participants, the first result and its notes: a screen, two pages
   all     ///< the appendix and the methods as well
 };
 
@@ -35,9 +35,10 @@ ValueTree rowTree(const Study& study, const StudyRow& row);  ///< one of its "ro
 /// @throws Error (invalid) when a file is there already, Error (failure) when writing fails.
 void writeStudyCsv(const Study& study, const std::string& folder, bool force);
 
-/// First page: heading, flow, the first result with its notes, its forest plot, methods. Appendix: all other tables, a
-/// box plot with all points for each row, and of each form that was filled in how its scores are spread.
-ReportDocument studyDocument(const Study& study);
+/// First: heading, flow, participants, the first result with its notes, its forest plots, methods. All: as an appendix
+/// all other tables, a box plot with all points for each row, and of each form that was filled in how its scores are
+/// spread.
+ReportDocument studyDocument(const Study& study, StudyDetail detail = StudyDetail::all);
 
 std::string studyTitle(const Study& study);  ///< "Study (exploratory): expert against novice"
 /// Checkpoint and subject, "path-length left"; external metrics are marked, "mean-grasp-force (external)".
@@ -53,17 +54,14 @@ std::vector<std::string> studyHead(const Study& study);
 /// Methods paragraph for a paper: states only what was done.
 std::string studyMethods(const Study& study);
 
-/// Flow: numbers included, excluded with reasons, and analysed.
-ReportTable flowTable(const Study& study);
-/// The same of any design. @param whom how many of which group were analysed
-ReportTable flowTable(const AnalysedData& data, const std::string& whom);
 /// The first result: the primary hypotheses; without a protocol the rows that lead (StudyRow::leading). With n, shift,
 /// A, their intervals, p, adjusted p and the smallest adjusted p that the groups can give.
 ReportTable primaryTable(const Study& study);
 /// The same of the secondary hypotheses; without rows where there are none.
 ReportTable secondaryTable(const Study& study);
-/// A of the first result's rows with intervals, one below the other; none where there is none.
-std::optional<Drawing> forestOf(const Study& study);
+/// A of the first result's rows with intervals, one below the other: of those with a hypothesis, then of those without
+/// a direction. None where there is none.
+std::vector<Drawing> forestsOf(const Study& study);
 /// A row's values in both groups; marks are participants. None where it has no values.
 std::optional<Drawing> boxPlotOf(const Study& study, const StudyRow& row, const PlotFrame& frame = {});
 /// Notes to the first result: its columns, whether the groups can reach the level at all, warnings, remarks,

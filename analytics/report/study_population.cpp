@@ -18,19 +18,8 @@
 namespace calot::analytics {
 namespace {
 
-constexpr std::array exclusionReasons{"not in the named cohort",
-                                      "withdrawn from research",
-                                      "excluded by hand",
-                                      "recording diverged or damaged",
-                                      "not verified yet",
-                                      "recording incomplete",
-                                      "technical failure",
-                                      "synthetic (performer)",
-                                      "practice",
-                                      "branch of another attempt",
-                                      "golden recording",
-                                      "no group",
-                                      "not comparable (another key)"};
+/// Positions of a study's own rules; between them lie those of the view attempt_left_out.
+enum : std::int64_t { ofCohort = 0, ofGroup = 100, ofKey = 101, ofProtocol = 102 };
 
 }  // namespace
 
@@ -41,33 +30,66 @@ std::string groupOf(const AttemptRow& a, Grouping grouping) {
 
 namespace {
 
-/// First reason that excludes an attempt, or empty. Details that differ between attempts follow a colon.
-std::string whyOut(const AttemptRow& a, const StudyOptions& options, bool everybody) {
-  const auto& reason = exclusionReasons;
+/// Rules that the study's options lift. Groups may be profiles, or of raters' making: groupOf() knows them.
+bool isWaived(const std::string& rule, const StudyOptions& o) {
+  return rule == "group" || (rule == "synthetic" && o.includeSynthetic) || (rule == "practice" && o.includePractice) ||
+         (rule == "branch" && o.includeBranches);
+}
+
+/// Position and words of the first reason that excludes an attempt; no words: it is taken. Details that differ between
+/// attempts follow a colon.
+std::pair<std::int64_t, std::string> whyOut(const AttemptRow& a, const StudyOptions& options, bool everybody) {
   if (options.cohort && options.cohort->participants.count(a.participant) == 0)
-    return fmt::format("{}: {}", reason[0], options.cohort->name);
-  if (a.withdrawn) return reason[1];
-  if (a.excluded) return fmt::format("{}: {}", reason[2], a.exclusionReason);
-  if (a.verification.verdict == Verdict::diverged || a.verification.verdict == Verdict::damaged) return reason[3];
-  if (a.verification.verdict == Verdict::notChecked) return reason[4];
-  if (!a.complete || a.outcome == recorder::Outcome::running) return reason[5];
-  if (a.outcome == recorder::Outcome::technicalFailure) return reason[6];
-  if (a.synthetic && !options.includeSynthetic) return reason[7];
-  if (a.mode == recorder::Mode::practice && !options.includePractice) return reason[8];
-  if (!a.parent.empty() && !options.includeBranches) return reason[9];
-  if (a.purpose == "golden") return reason[10];
-  const std::string group = groupOf(a, options.grouping);
-  if (group.empty() && !everybody) return reason[11];
-  if (options.protocol) {
-    if (std::string why = whyOutByProtocol(a, group, *options.protocol); !why.empty()) return why;
+    return {ofCohort, "not in the named cohort: " + options.cohort->name};
+  for (const LeftOut& out : a.leftOut) {
+    if (!isWaived(out.rule, options)) return {out.position, out.reason};
   }
-  if (!options.key.empty() && a.comparabilityKey != options.key) return reason[12];
+  const std::string group = groupOf(a, options.grouping);
+  if (group.empty() && !everybody) return {ofGroup, "no group"};
+  if (options.protocol) {
+    const std::vector<std::string>& reasons = protocolReasons();
+    if (const std::string why = whyOutByProtocol(a, group, *options.protocol); !why.empty())
+      return {ofProtocol + (std::find_if(reasons.begin(), reasons.end(),
+                                         [&](const std::string& reason) { return why.rfind(reason, 0) == 0; }) -
+                            reasons.begin()),
+              why};
+  }
+  if (!options.key.empty() && a.comparabilityKey != options.key) return {ofKey, "not comparable (another key)"};
   return {};
 }
 
 }  // namespace
 
 std::string unitOf(const AttemptRow& a) { return a.participant.empty() ? "attempt " + a.uuid : a.participant; }
+
+bool isUnfinished(const AttemptRow& a) {
+  using recorder::Outcome;
+  if (a.outcome == Outcome::stopped) return a.operatorKind != recorder::OperatorKind::kinematics;
+  return a.outcome == Outcome::timeLimit || a.outcome == Outcome::abandoned;
+}
+
+std::string unfinishedRemark(std::span<const AttemptRow* const> attempts, std::span<const std::string> groups,
+                             Grouping grouping, const std::string& figures) {
+  std::string counts;
+  const auto all =
+      std::count_if(attempts.begin(), attempts.end(), [](const AttemptRow* a) { return isUnfinished(*a); });
+  for (const std::string& group : groups) {
+    const auto isOne = [&](const AttemptRow* a) { return isUnfinished(*a) && groupOf(*a, grouping) == group; };
+    counts += fmt::format("{}{} {}", counts.empty() ? " (" : ", ",
+                          std::count_if(attempts.begin(), attempts.end(), isOne), group);
+  }
+  if (all == 0) return {};
+  return fmt::format(
+      "Warning: {} of {} attempts were not finished{}. Their values are of a part of the task, and a short attempt "
+      "looks good{}.",
+      all, attempts.size(), counts.empty() ? counts : counts + ")", figures.empty() ? figures : ": " + figures);
+}
+
+std::optional<Hypothesis> hypothesisOf(Direction direction, const std::string& better,
+                                       std::span<const std::string> groups) {
+  if (direction == Direction::none || better.empty() || groups.size() != 2) return std::nullopt;
+  return (better == groups[0]) == (direction == Direction::higher) ? Hypothesis::firstLarger : Hypothesis::firstSmaller;
+}
 
 const std::string& stratumOf(const AttemptRow& a, const std::string& strata) {
   return strata == "arm" ? a.arm : a.site;
@@ -76,26 +98,21 @@ const std::string& stratumOf(const AttemptRow& a, const std::string& strata) {
 IncludedAttempts includedAttempts(const std::vector<AttemptRow>& recruited, const StudyOptions& options,
                                   const std::string& strata, bool everybody) {
   IncludedAttempts included;
-  std::map<std::string, std::uint64_t> out;
+  std::map<std::pair<std::int64_t, std::string>, std::uint64_t> out;
   std::uint64_t withoutStratum = 0;
   for (const AttemptRow& a : recruited) {
-    if (const std::string reason = whyOut(a, options, everybody); !reason.empty()) {
+    if (const auto reason = whyOut(a, options, everybody); !reason.second.empty()) {
       ++out[reason];
+      included.reasons[unitOf(a)].insert(reason.second);
     } else if (!strata.empty() && stratumOf(a, strata).empty()) {
       ++withoutStratum;
+      included.reasons[unitOf(a)].insert("no " + strata);
     } else {
       ++included.present[groupOf(a, options.grouping)];
       included.taken.push_back(&a);
     }
   }
-  for (const std::string reason : exclusionReasons) {
-    for (const auto& [why, count] : out) {
-      if (why == reason || why.rfind(reason + ": ", 0) == 0) included.flow.push_back({why, count});
-    }
-  }
-  for (const std::string& reason : protocolReasons()) {
-    if (const auto at = out.find(reason); at != out.end()) included.flow.push_back({reason, at->second});
-  }
+  for (const auto& [reason, count] : out) included.flow.push_back({reason.second, count});
   if (withoutStratum > 0) included.flow.push_back({"no " + strata, withoutStratum});
   return included;
 }

@@ -21,11 +21,26 @@ std::string groupOf(const AttemptRow& attempt, Grouping grouping);
 /// Unit of analysis: a participant's pseudonym, or "attempt UUID" for one performer's run.
 std::string unitOf(const AttemptRow& attempt);
 
+/// The attempt ended before its goal: time limit reached, abandoned, or stopped. A motion file that only ends (its
+/// outcome "stopped" is what import takes where none is declared) counts as neither finished nor unfinished.
+bool isUnfinished(const AttemptRow& attempt);
+
+/// "2 expert and 3 novice attempts were not finished", with what that means for their values; empty if all were.
+/// @param figures that have values of them, a list
+std::string unfinishedRemark(std::span<const AttemptRow* const> attempts, std::span<const std::string> groups,
+                             Grouping grouping, const std::string& figures);
+
+/// The figure's direction and the group that is expected to do better, as one hypothesis about the values of two
+/// groups; none where one of them is not known. The same for every design.
+std::optional<Hypothesis> hypothesisOf(Direction direction, const std::string& better,
+                                       std::span<const std::string> groups);
+
 /// Attempts that may be analysed, and why the others may not, in the order in which reasons are checked.
 struct IncludedAttempts {
   std::vector<const AttemptRow*> taken;
   std::map<std::string, std::uint64_t> present;  ///< number of them by group
   std::vector<FlowRow> flow;
+  std::map<std::string, std::set<std::string>> reasons;  ///< of units of which attempts stay out
 };
 /// @param strata "site" or "arm", which an attempt must have; or empty
 /// @param everybody having no group excludes nobody

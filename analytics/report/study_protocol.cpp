@@ -11,7 +11,9 @@
 #include <map>
 #include <utility>
 
+#include "analytics/report/report_document.h"
 #include "analytics/report/study_output.h"
+#include "analytics/report/study_population.h"
 #include "analytics/statistics/rank_tests.h"
 #include "recorder/loop.h"
 #include "sim/scene/version.h"
@@ -26,12 +28,29 @@ bool matches(const DirectedHypothesis& h, const StudyRow& row) {
   return figureOf(h) == figureOfRow(row) && (h.sha256.empty() || h.sha256 == row.source);
 }
 
-std::string whyExploratory(const StudyProtocol& protocol, bool unknownStart) {
+/// Evidence that Calot holds: hash and time of the registration, the time of import, and a start within the chain of a
+/// recording, which a station may have signed.
+std::string whyExploratory(const StudyProtocol& protocol, const std::vector<const AttemptRow*>& data) {
   if (protocol.registeredUtc.empty()) return "the protocol is not registered in this cohort (calot protocol register)";
-  if (unknownStart) return "the start of an attempt is not known, so nothing shows that the protocol came first";
-  if (instant(protocol.firstAttemptUtc) > instant(protocol.registeredUtc)) return {};
-  return fmt::format("the protocol was registered on {}, the first attempt is of {}", protocol.registeredUtc,
-                     protocol.firstAttemptUtc);
+  const std::string registered = instant(protocol.registeredUtc);
+  if (protocol.starts.count("unknown") > 0)
+    return "the start of an attempt is not known, so nothing shows that the protocol came first";
+  if (instant(protocol.firstAttemptUtc) <= registered) {
+    return fmt::format("the protocol was registered on {}, the first attempt is of {}", protocol.registeredUtc,
+                       protocol.firstAttemptUtc);
+  }
+  for (const AttemptRow* a : data) {
+    if (instant(a->importedUtc) < registered || instant(a->importedUtc) < instant(a->startUtc))
+      return fmt::format(
+          "attempt {} came into the cohort on {}, before it started or before the protocol was registered", a->uuid,
+          a->importedUtc);
+  }
+  const auto stated = protocol.starts.find("stated");
+  if (stated == protocol.starts.end()) return {};
+  return fmt::format(
+      "the start of {} of {} attempts is stated, not recorded, so nothing shows that the protocol came "
+      "first",
+      stated->second, data.size());
 }
 
 void listVersions(StudyProtocol& report, const std::vector<RegisteredProtocol>& registered) {
@@ -44,7 +63,8 @@ void listVersions(StudyProtocol& report, const std::vector<RegisteredProtocol>& 
 }
 
 /// Exclusions by hand for reasons that the protocol does not name; keys chosen or mixed.
-void listDeviations(StudyProtocol& report, const std::vector<const AttemptRow*>& data, const StudyOptions& options) {
+void listDeviations(StudyProtocol& report, const Study& study, const std::vector<const AttemptRow*>& data,
+                    const StudyOptions& options) {
   const std::vector<std::string>& allowed = options.protocol->protocol.exclusionReasons;
   for (const AttemptRow* a : data) {
     // The database answers with "REASON (WHO)".
@@ -62,6 +82,16 @@ void listDeviations(StudyProtocol& report, const std::vector<const AttemptRow*>&
         fmt::format("Only participants of the named cohort \"{}\" were taken.", options.cohort->name));
   if (!options.key.empty())
     report.deviations.push_back(fmt::format("Only attempts of the key \"{}\" were taken.", options.key));
+  const Protocol& protocol = options.protocol->protocol;
+  for (std::size_t g = 0; g < 2; ++g) {
+    const std::uint32_t planned = protocol.populations[g].planned;
+    if (planned > 0 && planned != study.participants[g])
+      report.deviations.push_back(fmt::format("{} {} were planned and {} are analysed.", planned,
+                                              protocol.populations[g].group, study.participants[g]));
+  }
+  if (!protocol.covariates.empty())
+    report.deviations.push_back(fmt::format("The comparison is not adjusted for the declared covariates: {}.",
+                                            fmt::join(protocol.covariates, ", ")));
   if (options.mixKeys) report.deviations.emplace_back("Comparability keys or checkpoint versions were allowed to mix.");
 }
 
@@ -82,6 +112,7 @@ void chooseByProtocol(StudyChoices& choices, const Protocol& protocol) {
   choices.groups = {protocol.populations[0].group, protocol.populations[1].group};
   choices.better = protocol.better;
   choices.attemptRule = protocol.attemptRule;
+  choices.unequalSpread = protocol.unequalSpread;
   choices.family.clear();
 }
 
@@ -104,11 +135,25 @@ const std::vector<std::string>& protocolReasons() {
   return reasons;
 }
 
+namespace {
+
+std::string sceneOf(const AttemptRow& attempt) { return fmt::format("{}/{}", attempt.scene, attempt.sceneMajor); }
+
+}  // namespace
+
+std::size_t attemptsUnder(const Protocol& protocol, const std::vector<AttemptRow>& attempts) {
+  return static_cast<std::size_t>(std::count_if(attempts.begin(), attempts.end(), [&](const AttemptRow& a) {
+    const std::string group = groupOf(a, protocol.performers ? Grouping::performer : Grouping::group);
+    return (protocol.scene.empty() || protocol.scene == sceneOf(a)) &&
+           (group == protocol.populations[0].group || group == protocol.populations[1].group);
+  }));
+}
+
 std::string whyOutByProtocol(const AttemptRow& attempt, const std::string& group, const ProtocolInUse& use) {
   static const std::map<std::string, std::string> nothing;
   const Protocol& protocol = use.protocol;
-  if (!protocol.scene.empty() && protocol.scene != fmt::format("{}/{}", attempt.scene, attempt.sceneMajor))
-    return protocolReasons()[0];
+  if (const std::string scene = sceneOf(attempt); !protocol.scene.empty() && protocol.scene != scene)
+    return fmt::format("{}: {} in place of {}", protocolReasons()[0], scene, protocol.scene);
   const auto& outcomes = protocol.excludedOutcomes;
   if (std::find(outcomes.begin(), outcomes.end(), attempt.outcome) != outcomes.end()) return protocolReasons()[1];
   const auto experience = use.experience.find(attempt.participant);
@@ -123,18 +168,17 @@ void describeProtocol(Study& study, const std::vector<const AttemptRow*>& data, 
   const Protocol& protocol = options.protocol->protocol;
   StudyProtocol report{protocol};
   for (const RegisteredProtocol& r : options.protocol->registered) {
-    if (r.sha256 == protocol.sha256) report.registeredUtc = r.registeredUtc;
+    if (r.sha256 == protocol.sha256 && r.withdrawnUtc.empty()) report.registeredUtc = r.registeredUtc;
   }
-  bool unknownStart = false;
   for (const AttemptRow* a : data) {
-    unknownStart = unknownStart || a->startUtc.empty();
+    ++report.starts[startEvidence(*a)];
     if (a->startUtc.empty()) continue;
     if (report.firstAttemptUtc.empty() || a->startUtc < report.firstAttemptUtc) report.firstAttemptUtc = a->startUtc;
   }
   listVersions(report, options.protocol->registered);
-  listDeviations(report, data, options);
+  listDeviations(report, study, data, options);
   report.masked = options.masked;
-  report.whyExploratory = whyExploratory(report, unknownStart);
+  report.whyExploratory = whyExploratory(report, data);
   study.heading = report.whyExploratory.empty() ? "confirmatory" : "exploratory";
   study.protocol = std::move(report);
 }
@@ -160,20 +204,49 @@ void declareRow(StudyRow& row, const Study& study, const Protocol& protocol) {
   for (const DirectedHypothesis& h : protocol.hypotheses) {
     if (!matches(h, row)) continue;
     row.role = h.primary ? Role::primary : Role::secondary;
-    if (!study.protocol->masked)
-      row.hypothesis = h.larger == study.groups[0] ? Hypothesis::firstLarger : Hypothesis::firstSmaller;
+    if (study.protocol->masked) continue;
+    row.claim = h.claim;
+    row.margin = h.margin;
+    row.hypothesis = h.larger == study.groups[0] ? Hypothesis::firstLarger : Hypothesis::firstSmaller;
   }
 }
+
+namespace {
+
+/// No test where somebody did not complete, who has no value to shift by the margin.
+Expected<double> marginTestOf(const StudyRow& row) {
+  if (!row.worstRanked[0].empty() || !row.worstRanked[1].empty()) return NoResult{"participants did not complete"};
+  const std::size_t larger = row.hypothesis == Hypothesis::firstLarger ? 0 : 1;
+  return marginTest(row.values[larger], row.values[1 - larger], *row.margin, row.claim == Claim::equivalence);
+}
+
+/// Answer to a claim with a margin.
+std::string marginSentence(const Study& study, const StudyRow& row) {
+  const std::size_t larger = row.hypothesis == Hypothesis::firstLarger ? 0 : 1;
+  const std::optional<double>& adjusted = row.role == Role::primary ? row.holm : row.benjaminiHochberg;
+  return fmt::format("{}: {}{} within {:g} {} is {} ({}).", figureOfRow(row), nameOf(row.claim),
+                     row.claim == Claim::equivalence ? "" : fmt::format(" of {}", study.groups[larger]), *row.margin,
+                     row.unit, row.supported.value_or(false) ? "shown" : "not shown",
+                     row.marginP && adjusted
+                         ? fmt::format("one-sided p {}, adjusted {}", pText(*row.marginP), pText(*adjusted))
+                         : "no test, " + row.marginP.reason());
+}
+
+}  // namespace
 
 void adjustByProtocol(Study& study, const Protocol& protocol) {
   std::vector<double> family, rest, smallestOfFamily, smallestOfRest;
   std::vector<StudyRow*> primary, others;
   for (StudyRow& row : study.rows) {
-    if (!row.test) continue;
+    if (row.role == Role::exploratory) continue;
+    if (row.margin) row.marginP = marginTestOf(row);
+    if (row.margin ? !row.marginP : !row.test) continue;
     const bool isPrimary = row.role == Role::primary;
     (isPrimary ? primary : others).push_back(&row);
-    (isPrimary ? family : rest).push_back(row.test->p);
-    (isPrimary ? smallestOfFamily : smallestOfRest).push_back(row.test->smallestP);
+    (isPrimary ? family : rest).push_back(row.margin ? *row.marginP : row.test->p);
+    (isPrimary ? smallestOfFamily : smallestOfRest)
+        .push_back(row.margin ? 0.5 * smallestRankTestP(row.values[0].size(), row.values[1].size())
+                              : row.test->smallestP);
   }
   const auto declared = static_cast<std::size_t>(
       std::count_if(protocol.hypotheses.begin(), protocol.hypotheses.end(), [](const auto& h) { return h.primary; }));
@@ -190,7 +263,10 @@ void adjustByProtocol(Study& study, const Protocol& protocol) {
     if (row.role != Role::primary && row.role != Role::secondary) continue;
     if (study.protocol->masked || isOutOfReach(row, protocol.level)) continue;
     const std::optional<double>& p = row.role == Role::primary ? row.holm : row.benjaminiHochberg;
-    if (p) row.supported = *p <= protocol.level && row.asHypothesised.value_or(false);
+    if (p) row.supported = *p <= protocol.level && (row.margin || row.asHypothesised.value_or(false));
+  }
+  for (const StudyRow& row : study.rows) {
+    if (row.margin) study.remarks.push_back(marginSentence(study, row));
   }
   for (const DirectedHypothesis& h : protocol.hypotheses) {
     if (std::any_of(study.rows.begin(), study.rows.end(), [&](const StudyRow& r) { return matches(h, r); })) continue;
@@ -200,9 +276,10 @@ void adjustByProtocol(Study& study, const Protocol& protocol) {
                                         h.primary ? "primary" : "secondary"));
   }
   study.family = fmt::format(
-      "Holm: adjusted over the {} primary hypotheses of the protocol{}. BH: Benjamini-Hochberg over the "
-      "{} other rank tests, of secondary hypotheses and exploratory figures.",
-      declared, untested == 0 ? "" : fmt::format(" ({} without a test: counted as p = 1)", untested), rest.size());
+      "Holm: adjusted over the {} primary hypotheses of the protocol{}.{} Exploratory figures have no p.", declared,
+      untested == 0 ? "" : fmt::format(" ({} without a test: counted as p = 1)", untested),
+      rest.empty() ? ""
+                   : fmt::format(" BH: Benjamini-Hochberg over the {} tests of secondary hypotheses.", rest.size()));
 }
 
 namespace {
@@ -254,6 +331,7 @@ Study makeMaskedStudy(const CohortDatabase& database, const StudyOptions& option
     std::string& group = protocol.performers ? a.profile : a.group;
     group = maskedName(group, protocol, swapped);
   }
+  for (Participant& p : masked.people) p.group = maskedName(p.group, protocol, swapped);
   Study study = makeStudy(attempts, database.allValues(), masked, database.path(), progress);
   addRatings(study, database);
   for (StudyRow& row : study.rows) {
@@ -263,6 +341,7 @@ Study makeMaskedStudy(const CohortDatabase& database, const StudyOptions& option
     }
   }
   study.publishedSource.clear();
+  study.people.clear();  // experience and site would name the groups
   study.remarks.emplace_back(
       "Groups are masked: their names are drawn, and directions, verdicts and published values are left out until the "
       "analysis is locked (calot protocol lock). The groups' sizes remain and may tell them apart.");
@@ -302,6 +381,12 @@ Study makeProtocolStudy(const CohortDatabase& database, const StudyOptions& opti
   Study study = makeStudy(database, options, progress);
   addRatings(study, database);
   if (lock) describeLock(study, *lock, presentAnalysis(database, options));
+  try {
+    study.protocol->runsBeforeLock =
+        studyRuns(path, sha256, lock ? "" : study.heading + "\n" + analysisOptions(options));
+  } catch (const Error& e) {
+    study.remarks.push_back(fmt::format("This run before the lock could not be noted in the audit: {}.", e.fault()));
+  }
   return study;
 }
 
@@ -326,6 +411,9 @@ std::string analysisDigest(const CohortDatabase& database) {
   for (const AttemptRow& a : database.listAttempts()) {
     add(a.uuid, a.participant, a.group, a.profile, a.startUtc, a.comparabilityKey, static_cast<int>(a.outcome),
         static_cast<int>(a.mode), static_cast<int>(a.verification.verdict), a.complete, a.excluded, a.exclusionReason);
+    for (const LeftOut& out : a.leftOut) {
+      if (out.rule == "consent") add(out.rule);  // the other rules follow from the cells above
+    }
   }
   for (const Participant& p : database.participants()) {
     add(p.pseudonym, p.group, p.experience.size());

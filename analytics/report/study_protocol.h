@@ -3,6 +3,7 @@
 // and what is fixed when its analysis is locked.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -14,9 +15,11 @@ namespace calot::analytics {
 /// Replaces the study's choices by those of the protocol. @pre there is a protocol.
 StudyOptions byProtocol(const StudyOptions& options);
 
-/// Reason why the protocol excludes an attempt, one of protocolReasons(): another scene, an outcome that it excludes, a
-/// participant who is not of the population of `group`; or empty.
+/// Reason why the protocol excludes an attempt, one of protocolReasons(), details behind a colon: another scene, an
+/// outcome that it excludes, a participant who is not of the population of `group`; or empty.
 std::string whyOutByProtocol(const AttemptRow& attempt, const std::string& group, const ProtocolInUse& protocol);
+/// Attempts of the protocol's groups in its scene, whether a study takes them or not.
+std::size_t attemptsUnder(const Protocol& protocol, const std::vector<AttemptRow>& attempts);
 /// In the order in which they are asked, for the flow.
 const std::vector<std::string>& protocolReasons();
 
@@ -30,8 +33,9 @@ std::string figureOf(const DirectedHypothesis& hypothesis);
 /// deviations.
 void describeProtocolOfTable(Study& study, const Protocol& protocol);
 
-/// Fills `study.protocol` and the heading: confirmatory where the protocol was registered before the first attempt of
-/// the data, else exploratory, with the reason. Lists versions, what changed, and what deviates.
+/// Fills `study.protocol` and the heading: confirmatory where the registered hash, the times of import and recorded
+/// starts show that the protocol came before the data, else exploratory, with the reason. Lists versions, what changed,
+/// and what deviates.
 /// @param data attempts that are analysed, or were excluded by hand
 void describeProtocol(Study& study, const std::vector<const AttemptRow*>& data, const StudyOptions& options);
 
@@ -39,7 +43,7 @@ void describeProtocol(Study& study, const std::vector<const AttemptRow*>& data, 
 void declareRow(StudyRow& row, const Study& study, const Protocol& protocol);
 
 /// Holm's adjustment over the primary hypotheses alone, one without a test counting as p = 1; Benjamini-Hochberg over
-/// all other rows. Hypotheses that no row answers to become remarks.
+/// secondary ones; exploratory figures have no adjusted p. Hypotheses that no row answers to become remarks.
 void adjustByProtocol(Study& study, const Protocol& protocol);
 
 /// The study of a protocol with "group 1" and "group 2" in place of its groups: without directions, verdicts on

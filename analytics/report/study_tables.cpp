@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "analytics/report/plots.h"
+#include "analytics/report/study_people.h"
 #include "analytics/report/study_rows.h"
 
 namespace calot::analytics {
@@ -20,27 +21,20 @@ using ShownRows = std::vector<const StudyRow*>;
 
 // Texts of cells of a row's tree.
 std::string figureText(const ValueTree& row) {
-  return figureName(row["checkpoint"], row["subject"]) + (row.contains("source_sha256") ? " (external)" : "");
+  return figureName(row["checkpoint"], row["subject"]) + (row.contains("source_sha256") ? " (external)" : "") +
+         (row["unfinished"][0] != 0 || row["unfinished"][1] != 0 ? " *" : "");
 }
 std::string withUnit(const ValueTree& row) {
   const std::string unit = row["unit"];
   return unit.empty() || unit == "1" ? figureText(row) : fmt::format("{} ({})", figureText(row), unit);
 }
+/// Empty without a hypothesis, which an adjusted p belongs to.
+std::string adjustedText(const ValueTree& p) { return p.is_null() ? "" : pValue(p); }
 std::string betterText(const ValueTree& direction) { return direction == "none" ? "" : plain(direction); }
 /// "~" for a p by approximation.
 std::string testText(const ValueTree& test) {
+  if (test.contains("p") && test["p_holm"].is_null() && test["p_benjamini_hochberg"].is_null()) return {};
   return pValue(test.value("p", ValueTree())) + (test.value("method", "") == "asymptotic" ? "~" : "");
-}
-/// No word about the expected direction beside a p that prints as 1.
-std::string expectedText(const ValueTree& row) {
-  double p = 1.0;
-  for (const char* key : {"p", "p_benjamini_hochberg", "p_holm"}) {
-    const ValueTree value = row["mann_whitney"].value(key, ValueTree());
-    if (value.is_number()) p = value;
-  }
-  if (row["hypothesis"].is_null() || !row["area"].contains("a") || p > 0.99995) return {};
-  const ValueTree& expected = row["hypothesis"]["as_expected"];
-  return expected.is_null() ? "neither" : expected.get<bool>() ? "yes" : "no";
 }
 std::string sumText(const ValueTree& n) { return fmt::format("{} + {}", n[0].dump(), n[1].dump()); }
 std::string sizesText(const ValueTree& groups) {
@@ -68,9 +62,20 @@ ReportTable valuesTable(const Study& study, const std::string& title, const Show
   return table;
 }
 
+/// A row's tree with the test that answers its hypothesis: of a claim with a margin the one-sided test.
+ValueTree shownTree(const Study& study, const StudyRow& row) {
+  ValueTree tree = rowTree(study, row);
+  if (row.margin && row.marginP)
+    tree["mann_whitney"].update({{"p", *row.marginP},
+                                 {"p_holm", row.holm},
+                                 {"p_benjamini_hochberg", row.benjaminiHochberg},
+                                 {"method", "exact"}});
+  return tree;
+}
+
 ReportTable comparisonTable(const Study& study, const std::string& title, const ShownRows& shown) {
   ValueTree rows = ValueTree::array();
-  for (const StudyRow* row : shown) rows.push_back(rowTree(study, *row));
+  for (const StudyRow* row : shown) rows.push_back(shownTree(study, *row));
   std::vector<TreeColumn> columns{{"=checkpoint", "", figureText},
                                   {"=better", "/direction", betterText},
                                   {"shift", "/shift/hodges_lehmann", digits4},
@@ -78,9 +83,8 @@ ReportTable comparisonTable(const Study& study, const std::string& title, const 
                                   {"A", "/area/a", share3},
                                   {"95 %", "/area/interval", shares3},
                                   {"p", "/mann_whitney", testText},
-                                  {"Holm", "/mann_whitney/p_holm", pValue}};
-  if (study.protocol) columns.push_back({"BH", "/mann_whitney/p_benjamini_hochberg", pValue});
-  columns.push_back({"=expected", "", expectedText});
+                                  {"Holm", "/mann_whitney/p_holm", adjustedText},
+                                  {"BH", "/mann_whitney/p_benjamini_hochberg", adjustedText}};
   return tableOf(title, rows, columns);
 }
 
@@ -91,7 +95,6 @@ ReportTable furtherTable(const Study& study, const ValueTree& rows) {
       {"=checkpoint", "", figureText}, {"g", "/hedges/g", digits3}, {"95 %", "/hedges/interval", range3}};
   if (known) {
     columns.push_back({"rho (duration)", "/spearman_with_duration/rho", signed3});
-    columns.push_back({"p", "/spearman_with_duration/p", pValue});
     columns.push_back({"n", "/spearman_with_duration/n", wholeOrDash});
   }
   return tableOf("Further", rows, columns);
@@ -141,22 +144,6 @@ std::string rowName(const StudyRow& row) { return figureOfRow(row) + (row.source
 
 std::string figureOfRow(const StudyRow& row) { return figureName(row.checkpoint, row.subject); }
 
-ReportTable flowTable(const AnalysedData& data, const std::string& whom) {
-  ReportTable table = tableOf("Flow", {data.counted, "="});
-  table.rows.push_back({fmt::format("{}", data.recruited), "in the " + data.source});
-  for (const FlowRow& row : data.flow)
-    table.rows.push_back({fmt::format("{}", row.attempts), "left out: " + row.reason});
-  table.rows.push_back({fmt::format("{}", data.analysed), fmt::format("analysed: {}; {}", whom, data.attemptRule)});
-  return table;
-}
-
-ReportTable flowTable(const Study& study) {
-  const auto group = [&](std::size_t g) {
-    return fmt::format("{} {} ({} {})", study.participants[g], study.groups[g], study.attempts[g], study.counted);
-  };
-  return flowTable(study, group(0) + ", " + group(1));
-}
-
 bool hasNoValue(const StudyRow& row) { return row.group[0].n == 0 && row.group[1].n == 0; }
 
 std::vector<ReportTable> appendixTables(const Study& study) {
@@ -178,7 +165,9 @@ std::vector<ReportTable> appendixTables(const Study& study) {
     shown.push_back(&row);
   }
   for (const auto& [family, rows] : families) {
-    const std::string of = family ? ": " + nameOf(*family) : "";
+    // The paper's table is of the paper's task.
+    const bool elsewhere = family == CheckpointFamily::paper && study.publishedSource.empty();
+    const std::string of = !family ? "" : elsewhere ? ": time, path and tissue" : ": " + nameOf(*family);
     add(valuesTable(study, "Values" + of, rows));
     add(comparisonTable(study, "Comparison" + of, rows));
   }
@@ -207,7 +196,8 @@ std::string supportText(const Study& study, const StudyRow& row) {
   if (!row.supported) return "out of reach";
   if (!*row.supported) return "no";
   const CoverageRow* coverage = coverageOf(study, row);
-  return coverage != nullptr && coverageDiffers(*coverage) ? "yes, but coverage differs" : "yes";
+  if (coverage == nullptr || !samplingDiffers(study, *coverage)) return "yes";
+  return coverageDiffers(*coverage) ? "yes, but coverage differs" : "yes, but trackers differ";
 }
 
 /// The study says which values its hypotheses expect to be larger.
@@ -218,8 +208,10 @@ std::string resultTitle(const Study& study) {
   const bool table2 = std::all_of(study.rows.begin(), study.rows.end(), [](const StudyRow& row) {
     return !row.leading || familyOf(row.checkpoint) == CheckpointFamily::paper;
   });
-  return table2 ? "Figures of the paper's Table 2" : "Outcomes";
+  return table2 && !study.publishedSource.empty() ? "Figures of the paper's Table 2" : "Outcomes";
 }
+
+double levelOf(const Study& study) { return study.protocol ? study.protocol->level : usualLevel; }
 
 /// @param adjusted where the adjusted p is: by Holm for what leads, by Benjamini and Hochberg for secondary hypotheses
 template <class IsShown>
@@ -227,26 +219,30 @@ ReportTable resultTable(const Study& study, const std::string& title, const Tree
   ValueTree rows = ValueTree::array();
   for (const StudyRow& row : study.rows) {
     if (!isShown(row)) continue;
-    rows.push_back(rowTree(study, row));
-    rows.back()["larger"] = study.groups[row.hypothesis == Hypothesis::firstLarger ? 0 : 1];
+    rows.push_back(shownTree(study, row));
+    rows.back()["expected"] = row.claim == Claim::equivalence             ? "="
+                              : row.hypothesis == Hypothesis::firstLarger ? ">"
+                              : row.hypothesis                            ? "<"
+                                                                          : "";
     rows.back()["support"] = supportText(study, row);
+    if (!isOutOfReach(row, levelOf(study))) rows.back()["attainable_p"] = nullptr;
   }
   std::vector<TreeColumn> columns{{study.protocol ? "=hypothesis" : "=figure", "", withUnit}};
-  if (isDirected(study)) columns.push_back({"=larger", "/larger", plain});
   columns.push_back({"n", "/groups", sizesText});
-  if (!isDirected(study)) {
-    columns.push_back({cutTo(study.groups[0], 10), "/groups/0/median", digits3});
-    columns.push_back({cutTo(study.groups[1], 10), "/groups/1/median", digits3});
-  }
+  columns.push_back({cutTo(study.groups[0], 10), "/groups/0/median", digits3});
+  if (isDirected(study)) columns.push_back({"H", "/expected", plain});
+  columns.push_back({cutTo(study.groups[1], 10), "/groups/1/median", digits3});
   columns.insert(columns.end(), {{"shift", "/shift/hodges_lehmann", digits3},
                                  {"95 %", "/shift_interval", range3},
                                  {"A", "/area/a", share2},
                                  {"95 %", "/area/interval", shares2},
                                  {"p", "/mann_whitney", testText},
                                  adjusted,
-                                 {"smallest", "/attainable_p", pValue}});
+                                 {"smallest", "/attainable_p", adjustedText}});
   if (isDirected(study)) columns.push_back({"=supported", "/support", plain});
-  return tableOf(title, rows, columns);
+  ReportTable table = tableOf(title, rows, columns);
+  dropEmptyColumns(table);
+  return table;
 }
 
 std::string resultLegend(const Study& study) {
@@ -257,16 +253,32 @@ std::string resultLegend(const Study& study) {
                         study.protocol ? "directions are masked" : "nobody said who is expected to do better")
           : fmt::format("that one of {} is better than one of {}, by {}", study.better, study.better == a ? b : a,
                         study.protocol ? "the hypothesis" : "the figure's own direction");
+  std::string undirected;
+  bool tested = false, beyond = false, claimed = false;
+  for (const StudyRow& row : study.rows) {
+    if (!row.leading) continue;
+    tested = tested || row.attainableP;
+    claimed = claimed || row.margin;
+    beyond = beyond || isOutOfReach(row, levelOf(study));
+    if (!row.hypothesis && row.area && !study.better.empty())
+      undirected += (undirected.empty() ? "" : ", ") + rowName(row);
+  }
   return fmt::format(
-      "{}shift: {} - {}, Hodges-Lehmann. A: probability {}, ties half. p: Mann-Whitney, two-sided. {} smallest: least "
-      "adjusted p that groups of these sizes and these ties can give.",
-      isDirected(study) ? "larger: the group whose values are expected to be larger. "
-                        : fmt::format("{}, {}: medians. ", a, b),
-      a, b, superiority, study.family);
+      "{}, {}: medians{}. shift: {} - {}, Hodges-Lehmann. A: probability {}, ties half{}. Intervals hold for each "
+      "figure "
+      "by itself, not for all at once (not simultaneous). {}{}{}",
+      a, b, isDirected(study) ? "; H: which is expected to be larger" : "", a, b, superiority,
+      undirected.empty()
+          ? ""
+          : fmt::format("; that one of {} has the larger value for {}, which has no direction", a, undirected),
+      tested ? fmt::format("p: {}, two-sided{}. ", study.unequalSpread ? "Brunner-Munzel" : "Mann-Whitney",
+                           claimed ? "; of claims with a margin one-sided" : "")
+             : "",
+      study.family, beyond ? " smallest: least adjusted p that groups of these sizes and these ties can give." : "");
 }
 
 std::string reachWarning(const Study& study) {
-  const double level = study.protocol ? study.protocol->level : usualLevel;
+  const double level = levelOf(study);
   std::size_t tested = 0, beyond = 0;
   double least = 1.0;
   for (const StudyRow& row : study.rows) {
@@ -299,7 +311,7 @@ std::string simulationWarning(const Study& study) {
 }  // namespace
 
 ReportTable primaryTable(const Study& study) {
-  return resultTable(study, resultTitle(study), {"Holm", "/mann_whitney/p_holm", pValue},
+  return resultTable(study, resultTitle(study), {"Holm", "/mann_whitney/p_holm", adjustedText},
                      [](const StudyRow& row) { return row.leading; });
 }
 
@@ -312,7 +324,8 @@ std::vector<std::string> primaryNotes(const Study& study) {
   std::vector<std::string> notes{resultLegend(study)};
   if (std::string text = reachWarning(study); !text.empty()) notes.push_back(std::move(text));
   if (std::string text = simulationWarning(study); !text.empty()) notes.push_back(std::move(text));
-  for (std::string& note : coverageWarnings(study)) notes.push_back(std::move(note));
+  for (auto& warnings : {peopleWarnings(study), coverageWarnings(study)})
+    notes.insert(notes.end(), warnings.begin(), warnings.end());
   for (std::string& warning : intervalWarnings(study, true)) notes.push_back(std::move(warning));
   notes.insert(notes.end(), study.remarks.begin(), study.remarks.end());
   if (study.protocol) {
@@ -323,19 +336,25 @@ std::vector<std::string> primaryNotes(const Study& study) {
   return notes;
 }
 
-std::optional<Drawing> forestOf(const Study& study) {
-  ForestPlot plot{.title = resultTitle(study) + ": A with its 95 % interval",
-                  .below = study.better.empty() ? study.groups[1] + " larger" : "against the hypothesis",
-                  .above = study.better.empty() ? study.groups[0] + " larger" : study.better + " better, as expected",
-                  .rows = {},
-                  .synthetic = study.synthetic};
-  if (isDirected(study)) plot.above = "as the hypothesis says";
-  for (const StudyRow& row : study.rows) {
-    if (row.leading && row.area)
-      plot.rows.push_back({rowName(row), row.area->value.a, row.area->a.lower, row.area->a.upper});
+std::vector<Drawing> forestsOf(const Study& study) {
+  const std::string title = resultTitle(study) + ": A with its 95 % interval";
+  const std::string& worse = study.groups[study.better == study.groups[0] ? 1 : 0];
+  ForestPlot directed{title, worse + " better", study.better + " better", {}, study.synthetic};
+  if (isDirected(study)) {
+    directed.below = "against the hypothesis";
+    directed.above = "as the hypothesis says";
   }
-  if (plot.rows.empty()) return std::nullopt;
-  return drawForest(plot);
+  ForestPlot other{title, study.groups[1] + " larger", study.groups[0] + " larger", {}, study.synthetic};
+  for (const StudyRow& row : study.rows) {
+    if (!row.leading || !row.area) continue;
+    (row.hypothesis ? directed : other)
+        .rows.push_back({rowName(row), row.area->value.a, row.area->a.lower, row.area->a.upper});
+  }
+  std::vector<Drawing> drawings;
+  for (const ForestPlot* plot : {&directed, &other}) {
+    if (!plot->rows.empty()) drawings.push_back(drawForest(*plot));
+  }
+  return drawings;
 }
 
 }  // namespace calot::analytics

@@ -154,6 +154,7 @@ Study makeTableStudy(const CsvTable& table, const TableStudyOptions& asked) {
   const RowsByGroup byGroup = rowsByGroup(records);
   study.groups = chooseGroups(byGroup.present, options, table.path, byGroup.left);
   study.better = betterOf(study.groups, options);
+  study.unequalSpread = options.unequalSpread;
   if (options.protocol) {
     study.synthetic = options.protocol->performers;
     describeProtocolOfTable(study, *options.protocol);
@@ -195,7 +196,11 @@ Study makeTableStudy(const CsvTable& table, const TableStudyOptions& asked) {
                           {"later row of a participant (the first counts)", later}});
   for (std::size_t g = 0; g < 2; ++g) {
     study.participants[g] = rows[g].size();
-    for (const auto& [person, list] : rows[g]) study.attempts[g] += list.size();
+    for (const auto& [person, list] : rows[g]) {
+      study.attempts[g] += list.size();
+      study.people[person] = {g, list.size()};
+    }
+    study.analysedPeople[study.groups[g]] = rows[g].size();
     study.analysed += study.attempts[g];
   }
   if (!options.occasion.empty()) study.remarks.push_back(fmt::format("Compared at occasion {}.", options.occasion));

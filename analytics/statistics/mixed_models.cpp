@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -200,76 +201,52 @@ Expected<RandomIntercept> randomIntercept(std::span<const ModelAttempt> attempts
 
 namespace {
 
-std::string repeatedObjection(std::span<const OccasionValue> values, const std::set<double>& occasions,
-                              OccasionKind kind) {
-  std::map<std::size_t, bool> group;
-  std::map<double, std::set<bool>> at;
-  bool anyX = false, anyY = false;
-  for (const OccasionValue& v : values) {
-    if (!std::isfinite(v.value) || !std::isfinite(v.occasion)) return "a value is not finite";
-    if (group.try_emplace(v.participant, v.inX).first->second != v.inX) return "a participant is in both groups";
-    (v.inX ? anyX : anyY) = true;
-    at[v.occasion].insert(v.inX);
+using Means = std::map<double, std::vector<double>>;  ///< values by occasion
+
+std::optional<double> slopeOf(const Means& at) {
+  std::vector<double> times, values;
+  for (const auto& [occasion, list] : at) {
+    times.insert(times.end(), list.size(), occasion);
+    values.insert(values.end(), list.begin(), list.end());
   }
-  if (!anyX) return "the first group is empty";
-  if (!anyY) return "the second group is empty";
-  if (occasions.size() < 2) return "there is one occasion only";
-  if (group.size() < 4) return "fewer than four participants";
-  for (const auto& item : at) {
-    if (kind == OccasionKind::named && item.second.size() < 2) return "at an occasion there is one group only";
+  if (at.size() < 2) return std::nullopt;
+  const double centre = *mean(times), level = *mean(values);
+  double products = 0.0, squares = 0.0;
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    products += (times[i] - centre) * (values[i] - level);
+    squares += (times[i] - centre) * (times[i] - centre);
   }
-  return {};
+  return products / squares;
 }
 
 }  // namespace
 
-Expected<RepeatedGroups> repeatedGroups(std::span<const OccasionValue> values, OccasionKind kind,
-                                        std::span<const std::size_t> sites, double level) {
+std::vector<std::vector<ParticipantValue>> personalChanges(std::span<const OccasionValue> values, OccasionKind kind) {
   std::set<double> occasions;
-  for (const OccasionValue& v : values) occasions.insert(v.occasion);
-  if (const std::string reason = repeatedObjection(values, occasions, kind); !reason.empty()) return NoResult{reason};
-  if (!sites.empty() && sites.size() != values.size()) return NoResult{"the columns have different lengths"};
-  const std::set<std::size_t> siteSet(sites.begin(), sites.end());
-  const std::size_t steps = kind == OccasionKind::number ? 1 : occasions.size() - 1;
-  const std::size_t strata = siteSet.empty() ? 0 : siteSet.size() - 1;
-  std::vector<std::vector<double>> columns(2 + 2 * steps + strata);
-  std::vector<std::size_t> whose;
-  std::vector<double> y;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    const OccasionValue& v = values[i];
-    const double x = v.inX ? 1.0 : 0.0;
-    whose.push_back(v.participant);
-    y.push_back(v.value);
-    columns[0].push_back(1.0);
-    columns[1].push_back(x);
-    auto later = std::next(occasions.begin());
-    for (std::size_t s = 0; s < steps; ++s, ++later) {
-      const double step = kind == OccasionKind::number ? v.occasion - *occasions.begin()
-                          : v.occasion == *later       ? 1.0
-                                                       : 0.0;
-      columns[2 + s].push_back(step);
-      columns[2 + steps + s].push_back(x * step);
+  std::map<std::size_t, Means> people;
+  for (const OccasionValue& v : values) {
+    if (!std::isfinite(v.value) || !std::isfinite(v.occasion)) return {};
+    occasions.insert(v.occasion);
+    people[v.participant][v.occasion].push_back(v.value);
+  }
+  std::vector<std::vector<ParticipantValue>> changes;
+  for (auto later = occasions.begin(); later != occasions.end(); ++later) {
+    if (later == occasions.begin()) continue;
+    std::vector<ParticipantValue>& list = changes.emplace_back();
+    for (const auto& [person, at] : people) {
+      std::optional<double> change;
+      std::size_t attempts = 0;
+      for (const auto& item : at) attempts += item.second.size();
+      if (kind == OccasionKind::number) {
+        change = slopeOf(at);
+      } else if (at.count(*occasions.begin()) > 0 && at.count(*later) > 0) {
+        change = *mean(at.at(*later)) - *mean(at.at(*occasions.begin()));
+      }
+      if (change && std::isfinite(*change)) list.push_back({person, *change, attempts});
     }
-    if (strata == 0) continue;
-    std::size_t column = 2 + 2 * steps;
-    for (auto site = std::next(siteSet.begin()); site != siteSet.end(); ++site)
-      columns[column++].push_back(sites[i] == *site ? 1.0 : 0.0);
+    if (kind == OccasionKind::number) break;
   }
-  const Expected<InterceptModel> model = fitInterceptModel(columns, whose, y);
-  if (!model) return NoResult{model.reason()};
-  const double people = static_cast<double>(model->participants);
-  const double outer = people - 2.0 - static_cast<double>(strata);
-  const double inner = static_cast<double>(model->attempts) - people - 2.0 * static_cast<double>(steps);
-  if (outer < 1.0 || inner < 1.0) return NoResult{"too few attempts for the model"};
-  RepeatedGroups result;
-  result.group = termOf(*model, 1, outer, level);
-  for (std::size_t s = 0; s < steps; ++s) {
-    result.occasion.push_back(termOf(*model, 2 + s, inner, level));
-    result.interaction.push_back(termOf(*model, 2 + steps + s, inner, level));
-  }
-  static_cast<ModelVariances&>(result) = *model;
-  result.occasions = occasions.size();
-  return result;
+  return changes;
 }
 
 }  // namespace calot::analytics

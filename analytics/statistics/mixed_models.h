@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Repeated attempts: the random-intercept model, and two groups over several occasions.
+// Repeated attempts: the random-intercept model, and each participant's change over occasions.
 #pragma once
 
 #include <cstddef>
 #include <span>
 #include <vector>
 
+#include "analytics/statistics/descriptive.h"
 #include "analytics/statistics/regression.h"
 
 namespace calot::analytics {
@@ -50,32 +51,19 @@ Expected<RandomIntercept> randomIntercept(std::span<const ModelAttempt> attempts
 
 struct OccasionValue {
   std::size_t participant = 0;
-  bool inX = false;      ///< group; one for all attempts of a participant
   double occasion = 0.0; /**< number of the attempt, or the place of a named occasion: 0, 1, ... */
   double value = 0.0;
 };
 
 enum class OccasionKind {
-  number,  ///< one slope over the occasion, counted from the first
+  number,  ///< one slope over the occasion
   named    ///< each occasion against the first
 };
 
-/// Effects of the group are of x less y.
-struct RepeatedGroups : ModelVariances {
-  ModelTerm group;                     ///< difference of the groups at the first occasion
-  std::vector<ModelTerm> occasion;     ///< of y: change for each step, or at each later occasion against the first
-  std::vector<ModelTerm> interaction;  ///< by how much that of x differs
-  std::size_t occasions = 0;
-};
-
-/// value = a + b [x] + c occasion + d [x] occasion + u_participant + e by restricted maximum likelihood
-/// (fitInterceptModel()). Student's t with the degrees of freedom of inner and outer terms (Pinheiro and Bates
-/// 2000, 2.4): the group's has participants - 2, terms of the occasion attempts - participants - their number. Each
-/// site is a constant of its own where `sites` names more than one, which takes their number less one from the group's.
-/// No answer for an empty group, a participant in two groups, fewer than two occasions, a named occasion without both
-/// groups, fewer than four participants, or as fitInterceptModel().
-/// @param sites of each value, as many as values, or empty
-Expected<RepeatedGroups> repeatedGroups(std::span<const OccasionValue> values, OccasionKind kind,
-                                        std::span<const std::size_t> sites = {}, double level = 0.95);
+/// How each participant changes, by ascending participant; those of whom it cannot be known are left out. Their changes
+/// are independent whatever the attempts of one person have in common, also where people learn at different speeds.
+/// number: the least-squares slope over the occasion. named: for each later occasion the difference from the first one
+/// (means, where there are several values at one). As many lists as there are changes; none for a value not finite.
+std::vector<std::vector<ParticipantValue>> personalChanges(std::span<const OccasionValue> values, OccasionKind kind);
 
 }  // namespace calot::analytics

@@ -102,14 +102,14 @@ std::vector<double> adjusted(const std::vector<double>& p, Adjustment adjustment
   return p;
 }
 
-SimulatedShare share(std::size_t hits, std::size_t of) {
+}  // namespace
+
+SimulatedShare wilsonShare(std::size_t hits, std::size_t of) {
   const double n = static_cast<double>(of), p = static_cast<double>(hits) / n, z = normalQuantile(0.975);
   const double centre = (p + z * z / (2.0 * n)) / (1.0 + z * z / n);
   const double half = z / (1.0 + z * z / n) * std::sqrt(p * (1.0 - p) / n + z * z / (4.0 * n * n));
   return {p, {std::max(0.0, centre - half), std::min(1.0, centre + half), 0.95, "Wilson"}};
 }
-
-}  // namespace
 
 std::vector<PlannedCheckpoint> shifts(const std::vector<double>& effects) {
   std::vector<PlannedCheckpoint> checkpoints;
@@ -153,9 +153,9 @@ Expected<Power> simulatePower(const PowerPlan& plan) {
     if (found > 0) ++any;
     if (effects > 0 && found == effects) ++all;
   }
-  for (const std::size_t hits : rejected) power.ofCheckpoint.push_back(share(hits, plan.simulations));
-  power.anyEffect = share(any, plan.simulations);
-  power.allEffects = share(all, plan.simulations);
+  for (const std::size_t hits : rejected) power.ofCheckpoint.push_back(wilsonShare(hits, plan.simulations));
+  power.anyEffect = wilsonShare(any, plan.simulations);
+  power.allEffects = wilsonShare(all, plan.simulations);
   power.seed = plan.seed;
   return power;
 }

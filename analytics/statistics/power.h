@@ -49,11 +49,13 @@ struct PowerPlan {
   std::uint64_t seed = 1;
 };
 
-/// A share of the simulations, with Wilson's score interval for what chance in the simulation itself leaves open.
+/// A share of counted cases, of simulations or of people, with Wilson's score interval.
 struct SimulatedShare {
   double value = 0.0;
   Interval interval;
 };
+/// @pre hits <= of, of > 0
+SimulatedShare wilsonShare(std::size_t hits, std::size_t of);
 
 struct Power {
   std::vector<SimulatedShare> ofCheckpoint;  ///< rejected after adjustment; where the effect is 0, an error rate

@@ -5,10 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "analytics/statistics/descriptive.h"
 #include "analytics/statistics/distributions.h"
+#include "analytics/statistics/resampling.h"
 #include "analytics/statistics/two_groups.h"
 
 namespace calot::analytics {
@@ -78,6 +81,92 @@ Expected<std::vector<DunnPair>> dunn(std::span<const std::vector<double>> groups
   const Expected<std::vector<double>> adjusted = holm(p);
   for (std::size_t i = 0; i < pairs.size(); ++i) pairs[i].adjusted = (*adjusted)[i];
   return pairs;
+}
+
+namespace {
+
+/// Pooled values in order: the end of each set of equal values.
+using TieEnds = std::vector<std::size_t>;
+
+/// Twice the placements are whole numbers: no rounding decides which assignments are as far out.
+BrunnerMunzel studentised(const std::vector<char>& inX, const TieEnds& ends, double nx, double ny) {
+  double ofX = 0.0, ofY = 0.0, squaresX = 0.0, squaresY = 0.0, belowX = 0.0, belowY = 0.0;
+  std::size_t i = 0;
+  for (const std::size_t end : ends) {
+    double hereX = 0.0;
+    const double here = static_cast<double>(end - i);
+    for (; i < end; ++i) hereX += inX[i];
+    const double hereY = here - hereX, x = 2.0 * belowY + hereY, y = 2.0 * belowX + hereX;
+    ofX += hereX * x;
+    ofY += hereY * y;
+    squaresX += hereX * x * x;
+    squaresY += hereY * y * y;
+    belowX += hereX;
+    belowY += hereY;
+  }
+  const double x = (nx * squaresX - ofX * ofX) / (nx - 1.0), y = (ny * squaresY - ofY * ofY) / (ny - 1.0);
+  const double distance = ofX - nx * ny;
+  BrunnerMunzel result;
+  if (distance != 0.0) result.statistic = distance / std::sqrt(x + y);
+  if (x + y > 0.0) result.df = (x + y) * (x + y) / (x * x / (nx - 1.0) + y * y / (ny - 1.0));
+  return result;
+}
+
+/// Assignments of the values, as many as are as far out as the statistic.
+double shareOfAssignments(std::vector<char> inX, const TieEnds& ends, double nx, double ny, double statistic,
+                          bool all) {
+  constexpr double rounding = 1e-12;
+  const double edge = std::abs(statistic) * (1.0 - rounding);
+  const auto isFar = [&] { return std::abs(studentised(inX, ends, nx, ny).statistic) >= edge ? 1.0 : 0.0; };
+  double far = 0.0, count = 0.0;
+  if (all) {
+    std::sort(inX.begin(), inX.end());
+    do {
+      far += isFar();
+      ++count;
+    } while (std::next_permutation(inX.begin(), inX.end()));
+    return far / count;
+  }
+  RandomStream random(1);
+  for (std::size_t draw = 0; draw < brunnerMunzelAssignments; ++draw) {
+    for (std::size_t i = inX.size(); i > 1; --i) std::swap(inX[i - 1], inX[random.below(i)]);
+    far += isFar();
+  }
+  return (far + 1.0) / (static_cast<double>(brunnerMunzelAssignments) + 1.0);
+}
+
+}  // namespace
+
+Expected<BrunnerMunzel> brunnerMunzel(std::span<const double> x, std::span<const double> y, RankTest method) {
+  if (const std::string reason = twoGroupObjection(x, y); !reason.empty()) return NoResult{reason};
+  if (x.size() < 2 || y.size() < 2) return NoResult{"a group of one value has no spread"};
+  std::vector<std::pair<double, char>> values;
+  for (const double v : x) values.emplace_back(v, 1);
+  for (const double v : y) values.emplace_back(v, 0);
+  std::sort(values.begin(), values.end());
+  if (values.front().first == values.back().first) return NoResult{"all values are equal"};
+  std::vector<char> inX;
+  TieEnds ends;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    inX.push_back(values[i].second);
+    if (i + 1 == values.size() || values[i].first != values[i + 1].first) ends.push_back(i + 1);
+  }
+  const double nx = static_cast<double>(x.size()), ny = static_cast<double>(y.size());
+  BrunnerMunzel result = studentised(inX, ends, nx, ny);
+  result.exact = method == RankTest::exact || (method == RankTest::automatic && values.size() <= exactRankTestLimit);
+  if (result.exact) {
+    double assignments = 1.0;  // the binomial coefficient of nx + ny and nx
+    for (double i = 1.0; i <= nx; ++i) assignments *= (ny + i) / i;
+    const bool all = method == RankTest::exact || assignments <= static_cast<double>(brunnerMunzelAssignments) + 0.5;
+    result.p = shareOfAssignments(std::move(inX), ends, nx, ny, result.statistic, all);
+    if (method == RankTest::exact || result.df == 0.0) return result;
+  } else if (result.df == 0.0) {
+    return NoResult{"the groups do not overlap"};
+  } else {
+    result.p = 0.0;
+  }
+  result.p = std::max(result.p, studentTwoSided(result.statistic, result.df));
+  return result;
 }
 
 namespace {

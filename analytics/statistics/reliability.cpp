@@ -137,19 +137,36 @@ DecisionStudy Generalizability::at(std::size_t k) const {
   return {share(relative), share(absolute), std::sqrt(relative), std::sqrt(absolute)};
 }
 
-Expected<Generalizability> generalizability(const RatingTable& table) {
-  if (const std::string reason = objection(table); !reason.empty()) return NoResult{reason};
-  const MeanSquares m = meanSquares(table);
+Expected<Generalizability> generalizability(std::span<const RatingTable> groups) {
   Generalizability result;
-  result.people = table.subjects;
-  result.levels = table.raters;
-  const auto component = [&result](double difference, std::size_t count) {
+  result.groups = groups.size();
+  double people = 0.0, residual = 0.0, levels = 0.0, df1 = 0.0;
+  for (const RatingTable& table : groups) {
+    if (const std::string reason = objection(table); !reason.empty()) return NoResult{reason};
+    const MeanSquares m = meanSquares(table);
+    const double df = static_cast<double>(table.subjects) - 1.0;
+    people += df * m.subjects;
+    residual += df * m.residual;
+    levels += m.raters / static_cast<double>(groups.size());
+    df1 += df;
+    result.people += table.subjects;
+    result.levels = table.raters;
+  }
+  people /= df1;
+  residual /= df1;
+  const auto component = [&result](double difference, double count) {
     if (difference < 0.0) result.truncated = true;
-    return difference < 0.0 ? 0.0 : difference / static_cast<double>(count);
+    return difference < 0.0 ? 0.0 : difference / count;
   };
-  result.person = component(m.subjects - m.residual, table.raters);
-  result.facet = component(m.raters - m.residual, table.subjects);
-  result.residual = m.residual;
+  const double k = static_cast<double>(result.levels), p = 0.975;
+  result.person = component(people - residual, k);
+  result.facet = component(levels - residual, static_cast<double>(result.people) / static_cast<double>(result.groups));
+  result.residual = residual;
+  const double f = people / residual, df2 = df1 * (k - 1.0);
+  result.gInterval = residual > 0.0 && people > 0.0
+                         ? Expected<Interval>(Interval{1.0 - fisherQuantile(p, df1, df2) / f,
+                                                       1.0 - 1.0 / (f * fisherQuantile(p, df2, df1)), 0.95, "F"})
+                         : NoResult{"people or levels do not differ"};
   return result;
 }
 

@@ -76,11 +76,12 @@ struct DecisionStudy {
 };
 
 struct Generalizability {
-  std::size_t people = 0, levels = 0;
-  double person = 0.0;     ///< variance p of people
-  double facet = 0.0;      ///< variance f of the raters' leniency, or of occasions
-  double residual = 0.0;   ///< variance e of interaction and error
-  bool truncated = false;  ///< a negative estimate was set to 0
+  std::size_t groups = 1, people = 0, levels = 0;
+  double person = 0.0;                                      ///< variance p of people
+  double facet = 0.0;                                       ///< variance f of the raters' leniency, or of occasions
+  double residual = 0.0;                                    ///< variance e of interaction and error
+  bool truncated = false;                                   ///< a negative estimate was set to 0
+  Expected<Interval> gInterval = NoResult{"not computed"};  ///< of G with all levels, by the F distribution
 
   [[nodiscard]] DecisionStudy at(std::size_t k) const;  ///< @pre k > 0
 };
@@ -88,7 +89,11 @@ struct Generalizability {
 /// Variance components of a complete table by the analysis of variance (Brennan 2001, Generalizability Theory, 3.2):
 /// with mean squares S of people, R of raters and E of the rest, p = (S - E) / k, f = (R - E) / n, e = E. With all k
 /// raters G is ICC(3,k) and Phi is ICC(2,k). No answer as objection(table).
-Expected<Generalizability> generalizability(const RatingTable& table);
+///
+/// With several tables, people nested in groups: mean squares are pooled within groups, so that differences between
+/// groups are no differences between people; f holds what a level changes in each group. @pre all have the same levels
+Expected<Generalizability> generalizability(std::span<const RatingTable> groups);
+inline Expected<Generalizability> generalizability(const RatingTable& table) { return generalizability({&table, 1}); }
 
 struct MeasurementError {
   std::size_t people = 0, attempts = 0;  ///< with two attempts or more

@@ -127,6 +127,12 @@ class RankSumDistribution {
                     between(0, centre_ - distance) + between(centre_ + distance, static_cast<long>(count_.size())));
   }
 
+  /// P(S >= sum), or P(S <= sum).
+  [[nodiscard]] double tail(double sum, bool upper) const {
+    const long at = std::lround(2.0 * sum);
+    return std::min(1.0, upper ? between(at, static_cast<long>(count_.size())) : between(0, at));
+  }
+
  private:
   /// Probability of half-rank sums in [lower, upper].
   [[nodiscard]] double between(long lower, long upper) const {
@@ -166,6 +172,7 @@ Expected<MannWhitney> mannWhitney(std::span<const double> x, std::span<const dou
     const std::size_t fewer = byX ? x.size() : y.size(), more = x.size() + y.size() - fewer;
     const RankSumDistribution distribution(r.ranks, fewer);
     result.p = distribution.asFarAs(byX ? r.sumX : whole - r.sumX);
+    result.greater = distribution.tail(byX ? r.sumX : whole - r.sumX, byX);
     result.smallestP = std::min(distribution.asFarAs(lowestSum(fewer)), distribution.asFarAs(whole - lowestSum(more)));
     return result;
   }
@@ -175,8 +182,23 @@ Expected<MannWhitney> mannWhitney(std::span<const double> x, std::span<const dou
   };
   const double least = nx * (nx + 1.0) / 2.0;
   result.p = asymptotic(r.u);
+  result.greater = 0.5 * std::erfc((r.u - nx * ny / 2.0 - 0.5) / std::sqrt(2.0 * variance));
   result.smallestP = std::min(asymptotic(lowestSum(x.size()) - least), asymptotic(whole - lowestSum(y.size()) - least));
   return result;
+}
+
+Expected<double> marginTest(std::span<const double> larger, std::span<const double> other, double margin,
+                            bool bothSides) {
+  const auto below = [margin](std::span<const double> x, std::span<const double> y) -> Expected<double> {
+    std::vector<double> shifted(y.begin(), y.end());
+    for (double& v : shifted) v += margin;
+    const Expected<MannWhitney> test = mannWhitney(shifted, x);
+    if (!test) return NoResult{test.reason()};
+    return test->greater;
+  };
+  const Expected<double> one = below(larger, other), two = bothSides ? below(other, larger) : one;
+  if (!one || !two) return one ? two : one;
+  return std::max(*one, *two);
 }
 
 double smallestRankTestP(std::size_t nx, std::size_t ny) {

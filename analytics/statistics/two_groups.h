@@ -21,8 +21,9 @@ inline constexpr std::size_t exactRankTestLimit = 80;
 inline constexpr std::size_t exactShiftLimit = 300;
 
 struct MannWhitney {
-  double u = 0.0;  ///< of x
-  double p = 1.0;  ///< two-sided
+  double u = 0.0;        ///< of x
+  double p = 1.0;        ///< two-sided
+  double greater = 1.0;  ///< one-sided: P(U >= u)
   /// Smallest p of all assignments of these values to groups of these sizes: no difference between the groups could
   /// have given less.
   double smallestP = 1.0;
@@ -36,6 +37,12 @@ struct MannWhitney {
 /// group, values that are not finite, or when all values are tied.
 Expected<MannWhitney> mannWhitney(std::span<const double> x, std::span<const double> y,
                                   RankTest method = RankTest::automatic);
+
+/// p of the claim that `larger` exceeds `other` by less than the margin: `greater` of `other` shifted by it. With
+/// `bothSides` the larger p of both directions: equivalence by two one-sided tests (Schuirmann 1987), of ranks.
+/// @pre margin > 0
+Expected<double> marginTest(std::span<const double> larger, std::span<const double> other, double margin,
+                            bool bothSides);
 
 /// p of mannWhitney() where groups of these sizes are separated completely, without ties: 2 / C(nx + ny, nx), at most
 /// 1, up to exactRankTestLimit values. Ties make it larger. @pre nx, ny > 0

@@ -23,7 +23,7 @@
 #include "recorder/base/errors.h"
 #include "recorder/base/files.h"
 #include "recorder/compliance_cache.h"
-#include "recorder/kept/engine_folders.h"
+#include "recorder/kept/kept_engine.h"
 #include "recorder/prepared_scene.h"
 #include "recorder/recording/probe.h"
 #include "recorder/recording/reader.h"

@@ -29,8 +29,9 @@
 #include "gui/trainer/training_session.h"
 #include "recorder/base/dates.h"
 #include "recorder/base/errors.h"
+#include "recorder/base/files.h"
 #include "recorder/compliance_cache.h"
-#include "recorder/kept/engine_folders.h"
+#include "recorder/kept/kept_engine.h"
 #include "recorder/prepared_scene.h"
 #include "recorder/sources/devices/mouse_device.h"
 
@@ -261,7 +262,8 @@ void onMessage(QtMsgType type, const QMessageLogContext& context, const QString&
 int run(const Options& o, int argc, char** argv) {
   stopOnSignals();
   recorder::useComplianceCache(recorder::userCacheFolder());
-  recorder::useEngines(enginePlaces());
+  const recorder::ProgramFiles files = recorder::ProgramFiles::ofThisProgram();
+  recorder::useEngines(recorder::userEnginePlaces(files.programs(), files.assetRoots()));
   std::optional<recorder::LoadedScene> scene = sceneOf(o.scene);
   gui::TrainerSetup setup = setUp(o, scene);
   std::vector<std::string> faults;

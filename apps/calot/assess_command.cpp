@@ -9,7 +9,7 @@
 #include "analytics/uncertainty/uncertainty.h"
 #include "apps/calot/command.h"
 #include "apps/calot/replay_report.h"
-#include "gui/words/attempt_tables.h"
+#include "gui/words/attempt_summary.h"
 #include "recorder/recording/probe.h"
 #include "recorder/replay.h"
 

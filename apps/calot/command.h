@@ -51,6 +51,7 @@ using Run = std::function<int()>;
   X(Rate)                     \
   X(Norm)                     \
   X(Grade)                    \
+  X(Dossier)                  \
   X(Participant)              \
   X(Attempt)                  \
   X(Regrade)                  \

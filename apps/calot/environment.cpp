@@ -10,7 +10,6 @@
 #include <chrono>
 #include <csignal>
 #include <cstdio>
-#include <map>
 #include <system_error>
 
 #include "recorder/base/errors.h"
@@ -31,23 +30,9 @@ static_assert(std::atomic<bool>::is_always_lock_free);  // a signal's handler ma
 
 std::vector<std::filesystem::path> assetFolders() { return recorder::ProgramFiles::ofThisProgram().assetRoots(); }
 
-recorder::EnginePlaces enginePlaces() {
-  const recorder::ProgramFiles files = recorder::ProgramFiles::ofThisProgram();
-  return recorder::userEnginePlaces(files.programs(), files.assetRoots());
-}
-
-std::vector<std::filesystem::path> listAssets(const std::string& folder, const std::string& ending) {
-  namespace fs = std::filesystem;
-  std::map<std::string, fs::path> byName;
-  for (const fs::path& root : assetFolders()) {
-    std::error_code fault;
-    for (fs::directory_iterator it(root / folder, fault), end; !fault && it != end; it.increment(fault)) {
-      if (it->path().extension() == ending) byName.emplace(it->path().stem().string(), it->path());
-    }
-  }
-  std::vector<fs::path> files;
-  files.reserve(byName.size());
-  for (const auto& entry : byName) files.push_back(entry.second);
+std::vector<std::filesystem::path> listAssets(const std::string& folder, const char* ending) {
+  std::vector<std::filesystem::path> files;
+  for (const auto& [name, file] : recorder::filesIn(assetFolders(), folder, ending)) files.push_back(file);
   return files;
 }
 

@@ -12,21 +12,16 @@
 #include <string>
 #include <vector>
 
-#include "recorder/kept/engine_folders.h"
-
 namespace calot::apps {
 
 /// Folders that may hold scenes, organs and performers (recorder::ProgramFiles of this program).
 std::vector<std::filesystem::path> assetFolders();
 
-/// Folders of engines of other simulation versions.
-recorder::EnginePlaces enginePlaces();
-
 /// A JSON file of the assets by its name ("goals"), or any file by its path ("mine/goals.json").
 /// @param folder of the assets: "forms". @param what messages call it: "form". @throws Error (invalid)
 std::filesystem::path findAsset(const std::string& name, const std::string& folder, const std::string& what);
 /// All of them, by name, or those of another ending.
-std::vector<std::filesystem::path> listAssets(const std::string& folder, const std::string& ending = ".json");
+std::vector<std::filesystem::path> listAssets(const std::string& folder, const char* ending = ".json");
 
 /// A line that is drawn again and again on a terminal; nothing in a pipe or with --json.
 class Progress {

@@ -9,7 +9,7 @@
 #include "recorder/recording/layout.h"
 #include "recorder/recording/probe.h"
 #include "recorder/recording/recorded_columns.h"
-#include "recorder/sources/tracked_motion.h"
+#include "recorder/sources/column_map.h"
 
 namespace calot::apps {
 

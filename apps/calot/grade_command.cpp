@@ -10,7 +10,6 @@
 #include "apps/calot/command.h"
 #include "apps/calot/study_command.h"
 #include "recorder/base/files.h"
-#include "recorder/base/text_words.h"
 #include "recorder/recording/probe.h"
 #include "recorder/recording/reader.h"
 
@@ -25,21 +24,6 @@ struct GradeOptions {
   unsigned version = 0;
   bool mixKeys = false, withReplay = false, json = false, force = false;
 };
-
-/// The attempt of this uuid, or the only one whose uuid begins so.
-analytics::AttemptRow attemptOf(const std::vector<analytics::AttemptRow>& attempts, const GradeOptions& o) {
-  const analytics::AttemptRow* found = nullptr;
-  for (const analytics::AttemptRow& a : attempts) {
-    if (a.uuid.rfind(o.attempt, 0) != 0) continue;
-    if (found != nullptr)
-      throw Error(ErrorKind::invalid,
-                  fmt::format("grade: --attempt {}: several attempts begin so", recorder::shown(o.attempt)));
-    found = &a;
-  }
-  if (found == nullptr || o.attempt.empty())
-    throw Error(ErrorKind::refused, fmt::format("{}: no attempt {}", o.database, recorder::shown(o.attempt)));
-  return *found;
-}
 
 /// The named norm, or the only one that there is.
 analytics::Norm normOf(const analytics::CohortDatabase& database, const GradeOptions& o) {
@@ -107,7 +91,7 @@ void grade(const GradeOptions& o) {
   analytics::refuseUnsound(o.database);
   const analytics::CohortDatabase cohort(o.database, Access::read);
   const std::vector<analytics::AttemptRow> attempts = cohort.listAttempts();
-  const analytics::AttemptRow attempt = attemptOf(attempts, o);
+  const analytics::AttemptRow attempt = *cohort.attempt(cohort.attemptNamed(o.attempt));
   const analytics::Norm norm = normOf(cohort, o);
   analytics::Grade result = analytics::gradeAttempt(attempt, attempts, cohort.allValues(), norm, o.mixKeys, o.database);
   const fs::path recording = recordingOf(attempt, o);

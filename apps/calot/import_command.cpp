@@ -10,9 +10,9 @@
 #include "analytics/intake/manifests.h"
 #include "apps/calot/command.h"
 #include "apps/calot/replay_report.h"
-#include "gui/words/attempt_tables.h"
+#include "gui/words/attempt_summary.h"
 #include "recorder/base/errors.h"
-#include "recorder/sources/tracked_motion.h"
+#include "recorder/sources/column_map.h"
 
 namespace calot::apps {
 
@@ -74,11 +74,19 @@ Json failuresJson(const analytics::MetricOutcomes& outcomes) {
 
 recorder::TrackedMotion readMotion(const std::filesystem::path& file, const recorder::ColumnMap* map) {
   if (map != nullptr) return recorder::readCsvMotion(file, *map);
-  if (file.extension() == ".csv") {
+  if (recorder::isKinematicsFile(file)) return recorder::trackedMotion(recorder::readKinematics(file));
+  const recorder::GuessedMap guess = recorder::guessColumns(file);
+  if (!guess.open.empty()) {
     throw Error(ErrorKind::invalid, Where{file.string()},
-                "a CSV file needs --columns MAP.json, which says what is in it");
+                fmt::format("seems to be a {} that does not say {}: calot import --guess writes a map of its columns; "
+                            "fill it in and name it with --columns",
+                            guess.source, fmt::join(guess.open, ", ")));
   }
-  return recorder::trackedMotion(recorder::readKinematics(file));
+  const std::string name = file.filename().string();
+  recorder::TrackedMotion motion =
+      recorder::readCsvMotion(file, recorder::parseColumnMap(std::as_bytes(std::span(guess.json)), name));
+  motion.notes.insert(motion.notes.begin(), "read as " + guess.source);
+  return motion;
 }
 
 ExitCode refuseRows(const std::vector<Error>& faults) {
@@ -101,7 +109,7 @@ struct ImportOptions {
   analytics::MotionDeclaration declaration;
   MetricOptions metrics;
   double cutoff = 0.0;
-  bool json = false;
+  bool json = false, guess = false;
 };
 
 /// Result for one file.
@@ -122,6 +130,7 @@ Json fileJson(const std::string& file, const ImportedFile& result) {
     row["rows"] = result.motion->time.size();
     row["seconds"] = result.motion->time.back();
   }
+  if (result.motion && !result.motion->notes.empty()) row["notes"] = result.motion->notes;
   row["checkpoints"] = jsonOf(result.values);
   if (!result.external.failures.empty()) row["failed_metrics"] = failuresJson(result.external);
   return row;
@@ -170,8 +179,7 @@ struct Import {
       analytics::StoredMotion stored = analytics::storeMotion(*database, *file.motion, declaration);
       file.how = importedName(stored.imported);
       file.values = std::move(stored.values);
-      const std::string attempt = analytics::recordOf(*file.motion, declaration).uuid;
-      if (analytics::storeExternal(*database, attempt, file.external, metrics) &&
+      if (analytics::storeExternal(*database, stored.attempt, file.external, metrics) &&
           stored.imported == analytics::Imported::unchanged)
         file.how = importedName(analytics::Imported::extended);
     } else {
@@ -195,6 +203,7 @@ ExitCode importFiles(const ImportOptions& o) {
     if (!o.json && result.error.empty()) {
       fmt::print("{}: {}, {:.2f} s, {} rows\n", file, o.cohort.empty() ? "shown" : result.how,
                  result.motion->time.back(), result.motion->time.size());
+      for (const std::string& note : result.motion->notes) fmt::print("  {}\n", note);
       if (o.files.size() == 1 || o.cohort.empty()) {
         gui::printValues(result.values, {}, std::cout);
         std::cout << '\n';
@@ -284,6 +293,11 @@ ExitCode importMotion(ImportOptions& o) {
   analytics::declareMotion(o.declaration, "outcome", o.outcome);
   if (o.files.empty() && o.manifest.empty())
     throw Error(ErrorKind::invalid, "import: name motion files, or a table of them with --manifest");
+  if (o.guess) {
+    if (o.files.size() != 1) throw Error(ErrorKind::invalid, "import: --guess is for one file");
+    fmt::print("{}\n", recorder::guessColumns(o.files.front()).json);
+    return ExitCode::yes;
+  }
   if (o.manifest.empty()) return importFiles(o);
   if (o.cohort.empty() || o.cutoff > 0.0)
     throw Error(ErrorKind::invalid, "import: --manifest stores what it names: give --cohort, and no --cutoff");
@@ -303,17 +317,27 @@ void addImport(CLI::App& app, Run& run) {
       "--manifest", o->manifest,
       "A CSV table instead of files: a row each with file, participant, group, task, start, outcome, experience and "
       "what the options below say; these stand for what it leaves out");
-  command->add_option("files", o->files, "two-handed motion, 76 columns at 30 Hz; or CSV files with --columns")
+  command
+      ->add_option(
+          "files", o->files,
+          "two-handed motion, 76 columns at 30 Hz; CSV files of Motive, Vicon, NDI or ROS; others with --columns")
       ->excludes(manifest);
   addStoring(*command, o->cohort, o->cutoff);
   addMetrics(*command, o->metrics);
   command->add_option("--columns", o->columns, "a JSON file that says what the columns of the CSV files are");
+  command
+      ->add_flag("--guess", o->guess,
+                 "prints a map of the columns of one file, as far as the file says; stores nothing")
+      ->excludes(manifest);
   command->add_option("--task", o->declaration.task, "what was done; attempts of different tasks are never compared")
       ->check(wordOf("task"))
       ->capture_default_str();
   command->add_option("--participant", o->declaration.participant, "pseudonym")->check(wordOf("participant"));
   addChoice(*command, "--mode", o->mode, "practice or assessment", {"practice", "assessment"});
-  addChoice(*command, "--purpose", o->declaration.purpose, "training, study, demo", {"training", "study", "demo"});
+  command
+      ->add_option("--purpose", o->declaration.purpose,
+                   "training, study, demo (default: study with a consent to study or research, else training)")
+      ->check(wordOf("purpose"));
   addChoice(*command, "--handedness", o->declaration.handedness, "right, left, unknown", {"right", "left", "unknown"});
   addChoice(*command, "--outcome", o->outcome, "completed, abandoned, stopped", {"completed", "abandoned", "stopped"});
   command->add_option("--start", o->declaration.startUtc, "when it began: 2026-01-31T12:00:00Z")

@@ -2,7 +2,9 @@
 #include <algorithm>
 
 #include "apps/calot/command.h"
+#include "recorder/base/files.h"
 #include "recorder/compliance_cache.h"
+#include "recorder/kept/kept_engine.h"
 #include "recorder/loop.h"
 #include "recorder/prepared_scene.h"
 #include "sim/scene/version.h"
@@ -25,7 +27,8 @@ int main(int argc, char** argv) {
       app, argc, argv,
       [&run] {
         recorder::useComplianceCache(recorder::userCacheFolder());
-        recorder::useEngines(apps::enginePlaces());
+        const recorder::ProgramFiles files = recorder::ProgramFiles::ofThisProgram();
+        recorder::useEngines(recorder::userEnginePlaces(files.programs(), files.assetRoots()));
         return run();
       },
       [&](const CLI::ParseError& e) { return apps::wrongWord(app, words, e); });

@@ -20,7 +20,7 @@ struct ParticipantFilter {
 };
 
 struct WithdrawOptions {
-  std::string pseudonym, cohort, scope;
+  std::string pseudonym, cohort, scope, assessments;
   std::vector<std::string> folders;
   bool noFolders = false, dryRun = false;
 };
@@ -42,7 +42,7 @@ void addFilms(const analytics::Withdrawal& w, std::vector<fs::path>& remove) {
   const std::set<fs::path> known(remove.begin(), remove.end());
   for (const analytics::ExportRow& e : w.exports) {
     std::error_code ignored;
-    if (isFilm(e) && known.count(e.target) == 0 && fs::is_regular_file(e.target, ignored))
+    if (isFilm(e) && e.removed && known.count(e.target) == 0 && fs::is_regular_file(e.target, ignored))
       remove.emplace_back(e.target);
   }
 }
@@ -62,7 +62,12 @@ void printPlan(const WithdrawOptions& o, const analytics::Withdrawal& w, const a
   }
   for (const fs::path& file : files.naming)
     std::cout << "still names it: " << file.string() << "; not removed, look into it\n";
-  if (w.scope != analytics::WithdrawalScope::all) return;
+  for (const auto& [uuid, mode] : w.staying) fmt::print("stays: attempt {}, {} of purpose training\n", uuid, mode);
+  if (w.scope != analytics::WithdrawalScope::all) {
+    if (w.known)
+      fmt::print("stays: participant {}, with experience and site; no study takes the attempts\n", w.pseudonym);
+    return;
+  }
   fmt::print("the name behind {} is not kept by Calot: remove it where it is\n", o.pseudonym);
   std::vector<std::string> words = w.attempts;
   words.insert(words.end(), files.unknown.begin(), files.unknown.end());
@@ -75,23 +80,39 @@ void withdraw(const WithdrawOptions& o) {
   if (o.folders.empty() != o.noFolders)
     throw Error(ErrorKind::invalid, "withdraw: name the folders of recordings (--recordings), or say --no-recordings");
   const auto scope = o.scope == "all" ? analytics::WithdrawalScope::all : analytics::WithdrawalScope::research;
-  analytics::Withdrawal w = analytics::planWithdrawal(o.cohort, o.pseudonym, scope);
+  const std::optional<bool> keep = o.assessments.empty() ? std::nullopt : std::optional(o.assessments == "keep");
+  analytics::Withdrawal w = analytics::planWithdrawal(o.cohort, o.pseudonym, scope, keep);
+  if (!w.undecided.empty()) {
+    throw Error(
+        ErrorKind::invalid, Where{o.cohort},
+        fmt::format("{} attempts of {} are assessments of purpose training, which studies analyse, and there is "
+                    "no consent to a study: say --assessments keep or remove ({})",
+                    w.undecided.size(), o.pseudonym, fmt::join(w.undecided, ", ")));
+  }
   const std::vector<fs::path> folders(o.folders.begin(), o.folders.end());
-  std::vector<fs::path> keep{o.cohort, o.cohort + "-wal", o.cohort + "-shm"};
-  for (const std::string& backup : analytics::backupsOf(o.cohort)) keep.emplace_back(backup);
-  analytics::WithdrawalFiles files = analytics::findFiles(w, o.cohort, folders, keep);
+  std::vector<fs::path> untouched{o.cohort, o.cohort + "-wal", o.cohort + "-shm"};
+  for (const std::string& backup : analytics::backupsOf(o.cohort)) untouched.emplace_back(backup);
+  analytics::WithdrawalFiles files = analytics::findFiles(w, o.cohort, folders, untouched);
   addFilms(w, files.remove);
   if (!w.known && files.remove.empty())
     throw Error(ErrorKind::refused,
                 fmt::format("{}: no participant \"{}\", and nothing left of one", o.cohort, o.pseudonym));
+  const bool nothing = w.attempts.empty() && files.remove.empty();
+  if (nothing && scope == analytics::WithdrawalScope::research && !w.earlierUtc.empty()) {
+    throw Error(
+        ErrorKind::refused, Where{o.cohort},
+        fmt::format("{} withdrew from research on {}, and nothing is left to remove", o.pseudonym, w.earlierUtc));
+  }
   printPlan(o, w, files);
+  if (nothing) std::cout << "no attempt and no file is there to remove\n";
   if (o.dryRun) {
     std::cout << "nothing was changed (--dry-run)\n";
     return;
   }
-  // The database last: until its rows are gone, running again finds everything that is left.
-  for (const fs::path& file : files.remove) removeFile(file);
+  // The rows last: until they are gone, running again finds everything that is left.
   w.attempts.insert(w.attempts.end(), files.unknown.begin(), files.unknown.end());
+  analytics::announceWithdrawal(o.cohort, w);
+  for (const fs::path& file : files.remove) removeFile(file);
   if (w.known) {
     const std::string tombstone = analytics::withdraw(o.cohort, w);
     fmt::print("{}: {} attempts and {} files removed; tombstone {}\n", o.cohort, w.attempts.size(), files.remove.size(),
@@ -113,6 +134,11 @@ void addWithdraw(CLI::App& participant, Run& run) {
   command->add_option("--scope", o->scope, "research: all but training goes, the participant stays; all: everything")
       ->check(oneOf({"research", "all"}))
       ->required();
+  command
+      ->add_option("--assessments", o->assessments,
+                   "Assessments of purpose training, in scope research: keep or remove (default: remove with a consent "
+                   "to a study)")
+      ->check(oneOf({"keep", "remove"}));
   command->add_option("--recordings", o->folders, "Folder with recordings and films; may be repeated")
       ->allow_extra_args(false);
   command->add_flag("--no-recordings", o->noFolders, "There is no such folder");

@@ -80,7 +80,8 @@ void drawFrom(PlannedStudy& planned, StudySource& source) {
   const analytics::Study study = studyOf(source);
   std::vector<const analytics::StudyRow*> rows;
   for (const analytics::StudyRow& row : study.rows) {
-    const bool inFamily = study.protocol ? row.role == analytics::Role::primary : row.holm.has_value();
+    const bool inFamily =
+        study.protocol ? row.role == analytics::Role::primary : row.holm.has_value() || source.choices.family.empty();
     if (inFamily && row.test) rows.push_back(&row);
   }
   if (rows.empty()) throw Error(ErrorKind::refused, fmt::format("{}: no figure has a test to plan for", study.where));
@@ -93,6 +94,11 @@ void drawFrom(PlannedStudy& planned, StudySource& source) {
         auto& person = people[g][rows[c]->participants[g][i]];
         person.resize(rows.size());
         person[c] = rows[c]->values[g][i];
+      }
+      for (const std::string& name : rows[c]->worstRanked[g]) {
+        auto& person = people[g][name];
+        person.resize(rows.size());
+        person[c] = rows[c]->worst;
       }
     }
   }

@@ -9,6 +9,7 @@
 
 #include "analytics/assessment/rating_form.h"
 #include "analytics/cohort/blinding.h"
+#include "analytics/cohort/registers.h"
 #include "analytics/cohort/withdraw.h"
 #include "analytics/intake/manifests.h"
 #include "analytics/interchange/folder_output.h"
@@ -32,7 +33,7 @@ using Given = std::vector<std::pair<std::string, std::string>>;
 
 struct RateOptions {
   std::string database, form, attempt, rater, participant, answersFile, manifest, taken;
-  std::vector<std::string> answers;
+  std::vector<std::string> answers, described;
   bool forms = false, json = false, force = false;
 };
 
@@ -79,12 +80,13 @@ Given readAnswers(const std::string& file) {
   return given;
 }
 
-Given readAnswers(const std::vector<std::string>& items) {
+/// "ITEM=SCORE" of each. @param form as messages show it
+Given readItems(const std::vector<std::string>& items, const char* option, const char* form) {
   Given given;
   for (const std::string& item : items) {
     const std::size_t at = item.find('=');
     if (at == std::string::npos || at == 0 || at + 1 == item.size())
-      fail(fmt::format("--answer {}: ITEM=SCORE is expected", recorder::shown(item)));
+      fail(fmt::format("{} {}: {} is expected", option, recorder::shown(item), form));
     given.emplace_back(item.substr(0, at), item.substr(at + 1));
   }
   return given;
@@ -101,13 +103,21 @@ void storeAnswers(const RateOptions& o) {
   rating.attempt = o.attempt;
   rating.rater = o.rater;
   rating.participant = o.participant;
-  rating.answers =
-      analytics::answersOf(form, o.answersFile.empty() ? readAnswers(o.answers) : readAnswers(o.answersFile));
+  rating.answers = analytics::answersOf(
+      form, o.answersFile.empty() ? readItems(o.answers, "--answer", "ITEM=SCORE") : readAnswers(o.answersFile));
   analytics::CohortDatabase database(o.database, Access::write);
   database.storeRating({form.name, form.version, form.sha256, form.text}, rating, o.force);
   fmt::print("{}: {} version {} of {}, {} of {} items answered\n", o.database, form.name, form.version,
              form.ofAttempts ? "attempt " + o.attempt : "participant " + o.participant, rating.answers.size(),
              form.items().size());
+}
+
+void describeRater(const RateOptions& o) {
+  if (o.rater.empty() || !(o.form + o.attempt + o.participant + o.answersFile).empty() || !o.answers.empty())
+    fail("--describe goes with --rater alone");
+  const analytics::CohortDatabase database(o.database, Access::write);  // it is there
+  analytics::setRater(o.database, o.rater, readItems(o.described, "--describe", "CRITERION=TEXT"));
+  fmt::print("{}: rater {} described\n", o.database, o.rater);
 }
 
 void showRatings(const RateOptions& o) {
@@ -185,10 +195,12 @@ bool isRecordingOf(const fs::path& file, const std::string& attempt) {
   return recorder::Recording(file).header().attempt == attempt;
 }
 
-std::optional<FilmOrigin> filmIn(const fs::path& folder, const AttemptRow& attempt) {
+/// @param recordings films do not serve
+std::optional<FilmOrigin> filmIn(const fs::path& folder, const AttemptRow& attempt, bool recordings) {
   std::error_code ignored;
   const std::string stem = fs::path(attempt.fileName).stem().string();
   for (const std::string& name : {attempt.uuid, stem}) {
+    if (recordings) break;
     for (const char* ending : {".mp4", ".mkv", ".webm", ".mov"}) {
       const fs::path film = folder / (name + ending);
       if (!name.empty() && fs::is_regular_file(film, ignored)) return FilmOrigin{attempt.uuid, film, false};
@@ -209,7 +221,9 @@ std::vector<std::string> attemptsOf(const analytics::CohortDatabase& cohort, con
   }
   if (chosen.empty()) {
     for (const AttemptRow& a : cohort.listAttempts()) {
-      if (!a.excluded) uuids.push_back(a.uuid);
+      const bool consented =
+          std::none_of(a.leftOut.begin(), a.leftOut.end(), [](const auto& out) { return out.rule == "consent"; });
+      if (!a.excluded && consented) uuids.push_back(a.uuid);
     }
   }
   return uuids;
@@ -253,16 +267,22 @@ std::vector<FilmOrigin> filmsInTable(const analytics::CohortDatabase& cohort, co
 /// Films of attempts.
 /// @param films a folder, in which a film has the uuid or the name of the recording or motion file (`.mp4`, `.mkv`,
 /// `.webm`, `.mov`), and recordings without a film are rendered; or a CSV table with the columns `attempt` and `film`
-/// @param chosen uuids or their beginnings; empty: every attempt that is not excluded, or every row of the table
+/// @param chosen uuids or their beginnings; empty: every attempt that is neither excluded nor without consent, or every
+/// row of the table
+/// @param doublets recordings alone, of attempts whose critical view was scored
 /// @throws calot::Error (damaged) for an attempt without film, or a wrong row; (refused) for an attempt that is not
 /// there
 std::vector<FilmOrigin> findFilms(const analytics::CohortDatabase& cohort, const fs::path& films,
-                                  const std::vector<std::string>& chosen) {
+                                  const std::vector<std::string>& chosen, bool doublets) {
   std::error_code ignored;
   if (!fs::is_directory(films, ignored)) return filmsInTable(cohort, films, chosen);
   std::vector<FilmOrigin> found;
   for (const std::string& uuid : attemptsOf(cohort, chosen)) {
-    const std::optional<FilmOrigin> film = filmIn(films, *cohort.attempt(uuid));
+    const std::vector<analytics::CheckpointValue> values = cohort.values(uuid);
+    if (doublets &&
+        std::none_of(values.begin(), values.end(), [](const auto& v) { return v.name == "critical-view" && v.value; }))
+      continue;
+    const std::optional<FilmOrigin> film = filmIn(films, *cohort.attempt(uuid), doublets);
     if (!film) {
       throw Error(ErrorKind::damaged, Where{films.string()},
                   fmt::format("there is neither a film nor the recording of attempt {} ({}); add it, or leave the "
@@ -294,13 +314,21 @@ void checkRaters(const std::vector<std::string>& raters) {
   }
 }
 
-void writeFilmTo(const fs::path& target, const FilmOrigin& origin) {
+void writeFilmTo(const fs::path& target, const FilmOrigin& origin, bool doublet) {
+  gui::FilmSettings settings;
+  settings.blinded = true;
+  if (doublet) {
+    settings.size = {1600, 600};
+    settings.quality = gui::Quality::film;
+    if (!origin.isRecording || !gui::writeDoublet(origin.file, target, settings))
+      throw Error(ErrorKind::refused, Where{origin.file.string()},
+                  "is no recording with a clip: its critical view cannot be shown");
+    return;
+  }
   if (!origin.isRecording) {
     gui::copyCleanFilm(origin.file, target);
     return;
   }
-  gui::FilmSettings settings;
-  settings.blinded = true;
   gui::writeFilm(origin.file, target, settings, [&](std::uint64_t, std::uint64_t) {
     if (stopRequested())
       throw Error(ErrorKind::failure, "rate: stopped before the pack was whole; nothing is left of it");
@@ -320,7 +348,7 @@ void packForRaters(const PackOptions& o) {
   const analytics::RatingForm form = analytics::readRatingForm(findAsset(o.form, "forms", "form"));
   if (!form.ofAttempts) throw Error(ErrorKind::invalid, fmt::format("rate: form {} is not about attempts", form.name));
   const std::vector<FilmOrigin> films =
-      findFilms(analytics::CohortDatabase(o.database, Access::read), o.films, o.attempts);
+      findFilms(analytics::CohortDatabase(o.database, Access::read), o.films, o.attempts, form.ofDoublets);
   std::vector<std::string> attempts;
   std::map<std::string, const FilmOrigin*> originOf;
   for (const FilmOrigin& film : films) {
@@ -342,9 +370,9 @@ void packForRaters(const PackOptions& o) {
       fs::create_directories(folder);
       for (const analytics::PackedFilm& film : rater.films) {
         progress.show(done++, pack.raters.size() * films.size());
-        const fs::path target = folder / (film.name + ".mp4");
+        const fs::path target = folder / (film.name + (form.ofDoublets ? ".png" : ".mp4"));
         if (const auto [at, isNew] = first.emplace(film.attempt, target); isNew) {
-          writeFilmTo(target, *originOf.at(film.attempt));
+          writeFilmTo(target, *originOf.at(film.attempt), form.ofDoublets);
         } else {
           fs::copy_file(at->second, target);
         }
@@ -360,9 +388,10 @@ void packForRaters(const PackOptions& o) {
   analytics::recordExport(o.database, "rating-pack", o.output, attempts);
   output.finish();
   fmt::print(
-      "{}: {} films for {} rater{} with {} version {}; give each the folder of their name, and "
+      "{}: {} {} for {} rater{} with {} version {}; give each the folder of their name, and "
       "store what comes back with calot rate {} --take answers-RATER.json\n",
-      o.output, films.size(), o.raters.size(), o.raters.size() == 1 ? "" : "s", form.name, form.version, o.database);
+      o.output, films.size(), (form.ofDoublets ? "doublet" : "film") + std::string(films.size() == 1 ? "" : "s"),
+      o.raters.size(), o.raters.size() == 1 ? "" : "s", form.name, form.version, o.database);
 }
 
 ExitCode rate(const RateOptions& o) {
@@ -373,6 +402,8 @@ ExitCode rate(const RateOptions& o) {
     fail("--manifest and --take say themselves what was rated, by whom and how");
   if (o.forms) {
     listForms(o);
+  } else if (!o.described.empty()) {
+    describeRater(o);
   } else if (!o.manifest.empty()) {
     return storeRatingManifest(o);
   } else if (byFile) {
@@ -407,6 +438,10 @@ void addRate(CLI::App& app, Run& run) {
   command->add_option("--manifest", o->manifest,
                       "A CSV table of completed forms: attempt, file or participant, rater, and one column an item");
   command->add_option("--take", o->taken, "The answers to a pack as the rater's page saved them");
+  command
+      ->add_option("--describe", o->described,
+                   "CRITERION=TEXT of a rater: experience, training and independence; may be repeated")
+      ->allow_extra_args(false);
   command->add_flag("--force", o->force, "Replace what the same rater or participant has given before");
   command->add_flag("--json", o->json, "Print JSON");
 

@@ -138,6 +138,8 @@ Json jsonOf(const std::vector<analytics::CheckpointValue>& values,
     }
     if (!v.note.empty()) row["note"] = v.note;
     if (v.coverage) row["coverage"] = *v.coverage;
+    if (v.rate) row["rate"] = *v.rate;
+    if (v.noise) row["noise"] = *v.noise;
     if (const analytics::ValueInterval* interval = analytics::findInterval(intervals, v))
       row["interval"] = intervalJson(*interval);
     list.push_back(row);

@@ -13,7 +13,7 @@
 #include "analytics/regrade.h"
 #include "apps/calot/command.h"
 #include "recorder/replay.h"
-#include "recorder/sources/tracked_motion.h"
+#include "recorder/sources/column_map.h"
 
 namespace calot::apps {
 

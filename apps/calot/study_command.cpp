@@ -21,7 +21,8 @@
 namespace calot::apps {
 namespace {
 
-void addCohortOptions(CLI::App& command, StudySource& options, CLI::Option& table) {
+/// @param table that excludes them, or null
+void addCohortOptions(CLI::App& command, StudySource& options, CLI::Option* table) {
   CLI::Option* cohort = addCohortOption(command, options.database);
   command.add_option("--protocol", options.protocol,
                      "The study's protocol, a file or the name of one that comes with the program; it makes the "
@@ -39,11 +40,12 @@ void addCohortOptions(CLI::App& command, StudySource& options, CLI::Option& tabl
                    "The checkpoints of each phase of the procedure, too (else the phases' durations, and what --family "
                    "or the protocol names)");
   command.add_option("--key", options.cohort.key, "Only attempts of this comparability key");
-  command.add_flag("--mix-keys", options.cohort.mixKeys, "Compare across scenes, devices and versions, and say so");
-  cohort->excludes(&table);
+  command.add_flag("--mix-keys", options.cohort.mixKeys,
+                   "Compare across scenes, devices, trackers and versions, and say so");
+  if (table != nullptr) cohort->excludes(table);
   for (const char* name : {"--cohort-name", "--group-by", "--include-synthetic", "--include-practice",
                            "--include-branches", "--phases", "--key", "--mix-keys"})
-    command.get_option(name)->excludes(&table);
+    if (table != nullptr) command.get_option(name)->excludes(table);
   for (const char* name : {"--group-by", "--include-synthetic", "--include-practice", "--include-branches"})
     command.get_option(name)->excludes(command.get_option("--protocol"));
 }
@@ -71,17 +73,16 @@ void settle(StudySource& source) {
 }
 
 analytics::Study plainStudyOf(StudySource& options, const analytics::StudyProgress& progress) {
-  settle(options);
   if (!options.table.empty()) {
+    settle(options);
     static_cast<analytics::StudyChoices&>(options.elsewhere) = options.choices;
     if (!options.protocol.empty())
       options.elsewhere.protocol = analytics::readProtocol(findAsset(options.protocol, "protocols", "protocol"));
     return analytics::makeTableStudy(readCsvTable(options.table), options.elsewhere);
   }
   if (options.database.empty()) throw Error(ErrorKind::invalid, "name a cohort database, or a table with --table");
-  static_cast<analytics::StudyChoices&>(options.cohort) = options.choices;
   const analytics::CohortDatabase cohort(options.database, analytics::CohortDatabase::Access::read);
-  if (!options.protocol.empty()) options.cohort = protocolStudyOptions(options, cohort);
+  options.cohort = cohortStudyOptions(options, cohort);
   if (options.cohort.protocol) return analytics::makeProtocolStudy(cohort, options.cohort, options.masked, progress);
   if (options.masked) throw Error(ErrorKind::invalid, "study: --masked needs the --protocol whose groups are masked");
   analytics::Study study = analytics::makeStudy(cohort, options.cohort, progress);
@@ -100,20 +101,28 @@ analytics::StudyOptions protocolStudyOptions(const StudySource& source, const an
   return options;
 }
 
+analytics::StudyOptions cohortStudyOptions(StudySource& source, const analytics::CohortDatabase& database) {
+  settle(source);
+  static_cast<analytics::StudyChoices&>(source.cohort) = source.choices;
+  return source.protocol.empty() ? source.cohort : protocolStudyOptions(source, database);
+}
+
 analytics::Study studyOf(StudySource& options, const analytics::StudyProgress& progress) {
   analytics::Study study = plainStudyOf(options, progress);
   if (study.better.empty() && !(study.protocol && study.protocol->masked))
     study.remarks.emplace_back("--better GROUP says which group is expected to do better.");
+  if (study.source == "cohort" && !study.protocol && options.choices.family.empty())
+    study.remarks.emplace_back("--family NAME,... declares hypotheses, --protocol registered ones: these are tested.");
   for (std::string& remark : study.remarks) {
     if (study.phasesLeftOut && remark.ends_with("single phases are left out.")) remark += " --phases takes them in.";
   }
   return study;
 }
 
-void addStudySource(CLI::App& command, StudySource& source) {
-  CLI::Option* table = command.add_option("--table", source.table, "A CSV file instead of a cohort");
-  addCohortOptions(command, source, *table);
-  addTableOptions(command, source, *table);
+void addStudySource(CLI::App& command, StudySource& source, bool tables) {
+  CLI::Option* table = tables ? command.add_option("--table", source.table, "A CSV file instead of a cohort") : nullptr;
+  addCohortOptions(command, source, table);
+  if (tables) addTableOptions(command, source, *table);
   addList(command, "--groups", source.choices.groups, "The two groups to compare, A,B");
   command.add_option("--better", source.choices.better, "The group that is expected to do better (the hypothesis)");
   command
@@ -282,13 +291,17 @@ std::vector<std::string> attemptsIn(const analytics::Study& study, const std::st
   return attempts;
 }
 
-void printStudy(const analytics::Study& study, bool all) {
-  analytics::printStudy(study, std::cout, all ? analytics::StudyDetail::all : analytics::StudyDetail::first);
-  if (all) return;
+analytics::StudyDetail detailOf(const StudyCommandOptions& options) {
+  return options.all ? analytics::StudyDetail::all : analytics::StudyDetail::first;
+}
+
+void printStudy(const analytics::Study& study, analytics::StudyDetail detail) {
+  analytics::printStudy(study, std::cout, detail);
+  if (detail == analytics::StudyDetail::all) return;
   const auto others = std::count_if(study.rows.begin(), study.rows.end(), [](const analytics::StudyRow& row) {
     return !row.leading && !analytics::hasNoValue(row);
   });
-  fmt::print("{} more figures, and the methods: --all; as a report: --pdf, --html\n", others);
+  fmt::print("{} more figures, and the methods: --all; with or without it as a report: --pdf, --html\n", others);
 }
 
 void runTwoGroups(StudyCommandOptions& options) {
@@ -296,15 +309,17 @@ void runTwoGroups(StudyCommandOptions& options) {
   const analytics::Study study = studyOf(options.source, [&](double share, const char*) { progress.showShare(share); });
   Progress::erase();
   if (!options.csv.empty()) analytics::writeStudyCsv(study, options.csv, options.force);
-  writeReport(analytics::studyDocument(study), options.html, options.pdf, options.force);
+  writeReport(analytics::studyDocument(study, detailOf(options)), options.html, options.pdf, options.force);
   if (isExported(options)) noteExports(options, attemptsIn(study, options.source.database));
-  options.json ? printResult("study", analytics::studyTree(study)) : printStudy(study, options.all);
+  options.json ? printResult("study", analytics::studyTree(study)) : printStudy(study, detailOf(options));
 }
 
 void runDesign(StudyCommandOptions& options) {
   if (!options.csv.empty())
     throw Error(ErrorKind::invalid, "study: --csv belongs to --design two-groups; the others have --json");
   if (options.source.masked) throw Error(ErrorKind::invalid, "study: --masked belongs to --design two-groups");
+  if (options.source.choices.unequalSpread)
+    throw Error(ErrorKind::invalid, "study: --unequal-spread belongs to --design two-groups");
   const analytics::DesignReport report = designReportOf(options.design, options.source);
   writeReport(analytics::designDocument(report), options.html, options.pdf, options.force);
   if (isExported(options)) noteExports(options, report.attempts);
@@ -331,10 +346,15 @@ void addStudy(CLI::App& app, Run& run) {
   addStudySource(*command, options->source);
   command->add_flag("--masked", options->source.masked,
                     "Call the protocol's groups \"group 1\" and \"group 2\" until its analysis is locked");
+  command
+      ->add_flag("--unequal-spread", options->source.choices.unequalSpread,
+                 "Test by Brunner and Munzel in place of Mann and Whitney, for groups that may scatter differently")
+      ->excludes("--protocol");
   addDesignOptions(*command, options->design);
   command->add_flag("--json", options->json, "Print JSON");
-  command->add_flag("--all", options->all, "Print every figure and the methods, not only the first result");
-  command->add_option("--csv", options->csv, "Write study.csv, values.csv, flow.csv and coverage.csv into this folder");
+  command->add_flag("--all", options->all, "Every figure, in reports too, not only the first result");
+  command->add_option("--csv", options->csv,
+                      "Write study.csv, values.csv, attempts.csv, flow.csv and coverage.csv into this folder");
   command->add_option("--html", options->html, "Write one self-contained page with figures");
   command->add_option("--pdf", options->pdf, "Write the same on A4 pages");
   command->add_flag("--force", options->force, "Replace files that are there");

@@ -20,11 +20,14 @@ struct StudySource {
   analytics::TableStudyOptions elsewhere;
 };
 
-/// Adds the cohort or --table, and who and what of it is compared.
-void addStudySource(CLI::App& command, StudySource& source);
+/// Adds the cohort or, with `tables`, --table, and who and what of it is compared.
+void addStudySource(CLI::App& command, StudySource& source, bool tables = true);
 
 /// The cohort's study as its protocol and the options choose it. @pre there are a cohort and a protocol
 analytics::StudyOptions protocolStudyOptions(const StudySource& source, const analytics::CohortDatabase& database);
+
+/// The same of a source with or without a protocol.
+analytics::StudyOptions cohortStudyOptions(StudySource& source, const analytics::CohortDatabase& database);
 
 /// @throws Error as makeStudy() and makeTableStudy(); (invalid) where neither a cohort nor a table is named.
 analytics::Study studyOf(StudySource& source, const analytics::StudyProgress& progress = {});

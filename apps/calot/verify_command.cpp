@@ -7,7 +7,7 @@
 #include "analytics/intake/intake.h"
 #include "apps/calot/command.h"
 #include "apps/calot/replay_report.h"
-#include "recorder/kept/engine_folders.h"
+#include "recorder/kept/kept_engine.h"
 
 namespace calot::apps {
 namespace {

@@ -11,7 +11,7 @@
 #include "gui/view/thread_rank.h"
 #include "gui/words/problem_words.h"
 #include "recorder/base/errors.h"
-#include "recorder/kept/engine_folders.h"
+#include "recorder/kept/kept_engine.h"
 #include "recorder/recorded_results.h"
 #include "sim/scene/version.h"
 

@@ -17,7 +17,6 @@ namespace calot::gui {
 using analytics::AttemptRow;
 using analytics::AttemptValue;
 using analytics::CheckpointValue;
-using analytics::Verdict;
 
 std::vector<std::string> comparabilityKeysOf(const std::vector<AttemptRow>& attempts) {
   std::map<std::string, int> count;
@@ -75,25 +74,27 @@ Comparison compare(const std::vector<AttemptRow>& attempts, const std::vector<At
   std::uint32_t newest = 0;
   for (const auto& entry : found) newest = std::max(newest, entry.second->version);
   std::map<std::string, ComparisonGroup> groups;
+  std::map<std::pair<std::int64_t, std::string>, int> leftOut;
+  const auto whyOut = [&](const AttemptRow& attempt, const CheckpointValue* value) {
+    std::pair<std::int64_t, std::string> why;
+    if (attempt.comparabilityKey != request.comparabilityKey) return why = {0, "of another comparability key"};
+    for (const analytics::LeftOut& out : attempt.leftOut) {
+      const bool waived =
+          out.rule == "practice" || out.rule == "group" || (out.rule == "synthetic" && request.includeSynthetic);
+      if (!waived) return why = {out.position, out.reason};
+    }
+    if (value != nullptr && value->version != newest) return why = {100, "with another version of the checkpoint"};
+    if (value == nullptr || !value->value) why = {101, "without a value"};
+    return why;
+  };
   // The display unit depends on definition and unit alone, which are looked up when the unit changes.
   const std::string* unit = nullptr;
   double factor = 1.0;
   for (const AttemptRow& attempt : attempts) {
     const auto entry = found.find(attempt.uuid);
     const CheckpointValue* const value = entry == found.end() ? nullptr : entry->second;
-    const Verdict verdict = attempt.verification.verdict;
-    if (attempt.comparabilityKey != request.comparabilityKey) {
-      ++result.otherKey;
-    } else if (attempt.excluded) {
-      ++result.excluded;
-    } else if (verdict == Verdict::diverged || verdict == Verdict::damaged) {
-      ++result.notTrusted;
-    } else if (attempt.synthetic && !request.includeSynthetic) {
-      ++result.syntheticLeftOut;
-    } else if (value != nullptr && value->version != newest) {
-      ++result.otherVersion;
-    } else if (value == nullptr || !value->value) {
-      ++result.withoutValue;
+    if (const auto why = whyOut(attempt, value); !why.second.empty()) {
+      ++leftOut[why];
     } else {
       if (unit == nullptr || *unit != value->unit) {
         const DisplayedValue shown = scaleOf(*value);
@@ -109,6 +110,7 @@ Comparison compare(const std::vector<AttemptRow>& attempts, const std::vector<At
       group.point.push_back({attempt.uuid, *value->value * factor, attempt.synthetic});
     }
   }
+  for (const auto& [why, count] : leftOut) result.leftOut.emplace_back(why.second, count);
   for (auto& entry : groups) {
     std::ranges::sort(entry.second.point, {}, [](const ComparisonPoint& p) { return std::tie(p.value, p.attempt); });
     result.group.push_back(std::move(entry.second));
@@ -118,15 +120,8 @@ Comparison compare(const std::vector<AttemptRow>& attempts, const std::vector<At
 
 std::string captionOf(const Comparison& comparison) {
   std::string leftOut;
-  const auto add = [&](int count, const char* why) {
-    if (count > 0) leftOut += (leftOut.empty() ? "" : ", ") + std::to_string(count) + " " + why;
-  };
-  add(comparison.otherKey, "of another comparability key");
-  add(comparison.excluded, "excluded from studies");
-  add(comparison.notTrusted, "diverged or damaged");
-  add(comparison.syntheticLeftOut, "synthetic");
-  add(comparison.otherVersion, "with another version of the checkpoint");
-  add(comparison.withoutValue, "without a value");
+  for (const auto& [why, count] : comparison.leftOut)
+    leftOut += (leftOut.empty() ? "" : ", ") + std::to_string(count) + " " + why;
   std::string text = std::to_string(comparison.shown) + (comparison.shown == 1 ? " attempt." : " attempts.");
   if (!leftOut.empty()) text += " Left out: " + leftOut + ".";
   return text;

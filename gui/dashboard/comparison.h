@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "analytics/cohort/cohort_database.h"
@@ -43,16 +44,16 @@ struct ComparisonGroup {
 };
 
 struct Comparison {
-  std::vector<ComparisonGroup> group;  ///< by name
-  std::string unit;                    ///< displayed one
-  bool synthetic = false;              ///< at least one point was made by a performer
-  int shown = 0;                       ///< attempts with a point
-  int otherKey = 0, excluded = 0, notTrusted = 0, withoutValue = 0, otherVersion = 0,
-      syntheticLeftOut = 0;  ///< left out
+  std::vector<ComparisonGroup> group;                ///< by name
+  std::string unit;                                  ///< displayed one
+  bool synthetic = false;                            ///< at least one point was made by a performer
+  int shown = 0;                                     ///< attempts with a point
+  std::vector<std::pair<std::string, int>> leftOut;  ///< reasons in the order in which they are asked, and attempts
 };
 
-/// Left out, in this order: another comparability key, excluded from studies, diverged or damaged, synthetic (unless
-/// included), another version of the checkpoint than the newest present, no value.
+/// Left out, in this order: another comparability key; what studies leave out (AttemptRow::leftOut), but for practice,
+/// which a key says, attempts without group, and synthetic ones if included; another version of the checkpoint than the
+/// newest present; no value.
 [[nodiscard]] Comparison compare(const std::vector<analytics::AttemptRow>& attempts,
                                  const std::vector<analytics::AttemptValue>& values, const ComparisonRequest& request);
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "analytics/assessment/grade.h"
+#include "analytics/cohort/blinding.h"
 #include "gui/attempt/figure_text.h"
 #include "gui/dashboard/plot_view.h"
 #include "gui/words/attempt_summary.h"
@@ -74,9 +75,17 @@ void ComparePage::redraw() {
     caption_->clear();
     return;
   }
+  const auto by = static_cast<GroupBy>(groupBy_->currentIndex());
+  try {
+    if (by == GroupBy::group) analytics::refuseWhileMasked(document_->path(), "");
+  } catch (const Error& e) {
+    chart_->clear("Groups are masked");
+    caption_->setText(QString::fromStdString(e.fault()));
+    return;
+  }
   const auto index = static_cast<std::size_t>(figure);
-  const ComparisonRequest request{values_->figures()[index], static_cast<GroupBy>(groupBy_->currentIndex()),
-                                  key_->currentText().toStdString(), synthetic_->isChecked()};
+  const ComparisonRequest request{values_->figures()[index], by, key_->currentText().toStdString(),
+                                  synthetic_->isChecked()};
   const Comparison comparison = compare(document_->attempts(), values_->of(index), request);
   const QString title = figure_->currentText();
   chart_->show(

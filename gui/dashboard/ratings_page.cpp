@@ -10,6 +10,7 @@
 
 #include "gui/dashboard/dialogs.h"
 #include "recorder/base/errors.h"
+#include "recorder/base/files.h"
 
 namespace calot::gui {
 
@@ -152,15 +153,8 @@ void RatingPage::connectParts() {
 }
 
 void RatingPage::readForms(const std::vector<fs::path>& folders) {
-  std::map<std::string, fs::path> byName;
-  for (const fs::path& root : folders) {
-    std::error_code fault;
-    for (fs::directory_iterator it(root / "forms", fault), end; !fault && it != end; it.increment(fault)) {
-      if (it->path().extension() == ".json") byName.emplace(it->path().stem().string(), it->path());
-    }
-  }
   QStringList titles;
-  for (const auto& entry : byName) {
+  for (const auto& entry : recorder::filesIn(folders, "forms")) {
     const QString fault = faultOf([&] {
       const analytics::RatingForm& form = forms_.emplace_back(analytics::readRatingForm(entry.second));
       titles += QString::fromStdString(form.name + ": " + form.title);

@@ -30,7 +30,7 @@ QString effectText(const analytics::StudyRow& row) {
     parts += QString("A = %1 [%2, %3]")
                  .arg(numberText(row.area->value.a), numberText(row.area->a.lower), numberText(row.area->a.upper));
   if (row.hedges) parts += QString("Hedges' g = %1").arg(numberText(row.hedges->g));
-  if (row.test) parts += QString("p = %1").arg(numberText(row.test->p));
+  if (row.test && row.attainableP) parts += QString("p = %1").arg(numberText(row.test->p));
   if (row.holm) parts += QString::fromUtf8("Holm‑adjusted p = %1").arg(numberText(*row.holm));
   if (parts.isEmpty()) return "No effect size: " + QString::fromStdString(row.area.reason()) + '.';
   // A line ends between figures, not within one (nor at the hyphen above).
@@ -59,17 +59,18 @@ Comparison comparisonOf(const analytics::Study& study, const analytics::StudyRow
   return made;
 }
 
-/// The study's forest plot, shown under forestAddress; null where the study has none. Any thread.
+/// The study's first forest plot, shown under forestAddress; null where the study has none. Any thread.
 QImage forestPicture(const analytics::Study& study, const QFont& font, double ratio) {
-  const std::optional<analytics::Drawing> forest = analytics::forestOf(study);
-  if (!forest) return {};
-  QImage image(static_cast<int>(std::ceil(forest->width * ratio)), static_cast<int>(std::ceil(forest->height * ratio)),
+  const std::vector<analytics::Drawing> forests = analytics::forestsOf(study);
+  if (forests.empty()) return {};
+  const analytics::Drawing& forest = forests.front();
+  QImage image(static_cast<int>(std::ceil(forest.width * ratio)), static_cast<int>(std::ceil(forest.height * ratio)),
                QImage::Format_ARGB32_Premultiplied);
   image.setDevicePixelRatio(ratio);
   image.fill(Qt::white);
   QPainter painter(&image);
   painter.setRenderHint(QPainter::Antialiasing);
-  paintDrawing(painter, *forest, QRectF(0.0, 0.0, forest->width, forest->height), {font});
+  paintDrawing(painter, forest, QRectF(0.0, 0.0, forest.width, forest.height), {font});
   return image;
 }
 
@@ -204,9 +205,11 @@ void StudyPage::fillProtocols() {
   const QVariant before = protocol_->currentData();
   protocol_->clear();
   protocol_->addItem("none", QString());
-  for (const analytics::RegisteredProtocol& p : document_->assessment().protocols())
+  for (const analytics::RegisteredProtocol& p : document_->assessment().protocols()) {
+    if (!p.withdrawnUtc.empty()) continue;
     protocol_->addItem(QString("%1, version %2").arg(QString::fromStdString(p.name)).arg(p.version),
                        QString::fromStdString(p.sha256));
+  }
   protocol_->setCurrentIndex(std::max(0, protocol_->findData(before)));
   protocol_->setEnabled(protocol_->count() > 1);
   allowChoices();

@@ -10,6 +10,7 @@
 #include "analytics/design/design_report.h"
 #include "analytics/report/report_document.h"
 #include "analytics/report/study_output.h"
+#include "analytics/report/study_people.h"
 #include "analytics/report/study_protocol.h"
 #include "analytics/report/study_rows.h"
 #include "gui/words/problem_words.h"
@@ -119,14 +120,16 @@ std::string studyText(const analytics::Study& study) {
   html += "<h2>" + analytics::escaped(analytics::studyTitle(study)) + "</h2>";
   html +=
       "<p><b>" + analytics::escaped(registrationText(study)) + "</b></p>" + tableText(analytics::primaryTable(study));
-  if (analytics::forestOf(study)) html += std::string("<p><img src=\"") + forestAddress + "\"></p>";
+  if (!analytics::forestsOf(study).empty()) html += std::string("<p><img src=\"") + forestAddress + "\"></p>";
   const analytics::ReportTable coverage = analytics::coverageTable(study);
   if (!study.coverage.empty())
     html += coverage.rows.empty() ? paragraph(analytics::coverageNote(study)) : tableText(coverage);
   for (const std::string& note : analytics::primaryNotes(study)) html += paragraph(note);
   html += "<h3>Population</h3>";
   for (const std::string& line : analytics::studyHead(study)) html += paragraph(line);
-  html += tableText(analytics::flowTable(study));
+  html += tableText(analytics::flowTable(study, study.groups));
+  if (const analytics::ReportTable people = analytics::peopleTable(study); !people.rows.empty())
+    html += tableText(people);
   html += "<h3>Methods</h3>" + paragraph(analytics::studyMethods(study)) + "<h2>Appendix</h2>";
   for (const std::string& note : analytics::appendixNotes(study)) html += paragraph(note);
   for (const analytics::ReportTable& table : analytics::appendixTables(study)) {

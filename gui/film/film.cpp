@@ -16,7 +16,7 @@
 #include "gui/render/image.h"
 #include "gui/render/renderer.h"
 #include "recorder/base/errors.h"
-#include "recorder/kept/engine_folders.h"
+#include "recorder/kept/kept_engine.h"
 #include "recorder/prepared_scene.h"
 #include "recorder/recording/layout.h"
 #include "recorder/replay.h"
@@ -169,7 +169,7 @@ class Cutter {
     for (std::size_t s = 0; s < scenes.size(); ++s) {
       Image image =
           renderer_.render(scenes[s].view, width, height, {.quality = settings_.quality}, scenes[s].moment.smoke);
-      Captions captions = captions_[s];
+      Captions captions = captions_[std::min(s, captions_.size() - 1)];
       captions.doubt = scenes[s].doubt.empty() ? settings_.doubt : scenes[s].doubt;
       letters_.paint(image, settings_.overlays, scenes[s].moment, scenes[s].view, captions);
       if (scenes.size() == 1) return image;
@@ -274,6 +274,46 @@ ShownMoment writeMoment(const std::filesystem::path& recording, const std::files
   const Cutter::Scenes scenes = cutter.at(settings.from);
   writePng(cutter.draw(scenes), output);
   return {scenes[0].view.step - 1, scenes[0].view.time};
+}
+
+namespace {
+
+constexpr double behind = -1.4;  // rad; farther round, the liver is in the way
+
+/// Number and event of the first clip's step, at which the judge scores the critical view.
+std::optional<std::pair<std::uint64_t, Event>> firstClip(const std::filesystem::path& path) {
+  recorder::Recording recording(path);
+  recorder::RecordedJudge judge(recording.header());
+  for (std::uint64_t n = 0; n < recording.stepCount(); ++n) {
+    if (!judge.observe(recording.step(n)).criticalViewFrozen) continue;
+    const std::vector<Event>& events = recording.step(n).result.events;
+    const auto at =
+        std::find_if(events.begin(), events.end(), [](const Event& e) { return e.kind == EventKind::clipSet; });
+    if (at != events.end()) return std::pair(n, *at);
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<ShownMoment> writeDoublet(const std::filesystem::path& recording, const std::filesystem::path& output,
+                                        const FilmSettings& settings) {
+  checkMoment(recording, settings);
+  const auto found = firstClip(recording);
+  if (!found) return std::nullopt;
+  const auto& [step, clip] = *found;
+  Cutter cutter(recording, settings);
+  const recorder::AttemptHeader header = recorder::Recording(recording).header();
+  const double before = static_cast<double>(std::max<std::uint64_t>(step, 1) - 1);
+  Cutter::Scenes scenes = cutter.at(before * header.tickSeconds * header.ticksPerStep);
+  if (clip.hand < handCount) scenes[0].view.instrument[clip.hand] = {};
+  FilmSource::Scene& back = scenes.emplace_back(scenes[0]);
+  const Quat turn(Eigen::AngleAxisd(behind, -back.view.down));
+  CameraSample& camera = back.view.camera;
+  camera.position = clip.position + turn * (camera.position - clip.position);
+  camera.orientation = turn * camera.orientation;
+  writePng(cutter.draw(scenes), output);
+  return ShownMoment{scenes[0].view.step - 1, scenes[0].view.time};
 }
 
 }  // namespace calot::gui

@@ -66,4 +66,11 @@ struct ShownMoment {
 ShownMoment writeMoment(const std::filesystem::path& recording, const std::filesystem::path& output,
                         const FilmSettings& settings);
 
+/// Writes the doublet of a recording's critical view (docs/how-to/ratings.md) as one PNG: left the endoscope's view,
+/// right the same place from the patient's right, both before the step at which the judge scored the view, that of the
+/// first clip, and without the instrument that set it. None, and nothing is written, where no clip was set.
+/// @throws calot::Error as writeFilm()
+std::optional<ShownMoment> writeDoublet(const std::filesystem::path& recording, const std::filesystem::path& output,
+                                        const FilmSettings& settings);
+
 }  // namespace calot::gui

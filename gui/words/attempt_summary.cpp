@@ -3,12 +3,14 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-
 #include <algorithm>
+#include <map>
+#include <string>
 #include <string_view>
 #include <utility>
 
 #include "analytics/checkpoints/checkpoint.h"
+#include "analytics/report/report_document.h"
 
 namespace calot::gui {
 namespace {
@@ -126,6 +128,138 @@ NextGoal nextGoal(const analytics::Grade& grade) {
                       next->mark.direction == analytics::Direction::higher ? "at least" : "at most",
                       shown(*next->mark.cut), shown(*next->value)),
           next->mark.checkpoint, next->mark.subject};
+}
+
+namespace {
+
+using ValuesOfAttempts = std::map<std::string, std::vector<analytics::CheckpointValue>>;
+
+/// One column of the closing table.
+struct SummaryColumn {
+  const analytics::CheckpointDefinition* definition = nullptr;
+  std::string subject;
+  std::string title;  ///< "elapsed s", "path L mm", "liver burned %"
+};
+
+std::string columnTitle(const analytics::CheckpointEntry& entry, const std::string& subject) {
+  const analytics::CheckpointDefinition& d = entry.definition;
+  const std::string_view word = entry.place.summaryTitle;
+  if (subject.empty()) return fmt::format("{} {}", word, d.displayUnit);
+  if (d.aggregation != analytics::Aggregation::hand) return fmt::format("{} {} {}", subject, word, d.displayUnit);
+  return fmt::format("{} {} {}", word, subject == handNames[0] ? "L" : "R", d.displayUnit);
+}
+
+/// The checkpoints that ask for columns, for every subject that some attempt has a value of.
+std::vector<SummaryColumn> summaryColumns(const ValuesOfAttempts& values) {
+  std::vector<SummaryColumn> columns;
+  for (const analytics::CheckpointEntry& entry : analytics::checkpointRegistry()) {
+    if (entry.place.summaryTitle.empty()) continue;
+    std::vector<std::pair<std::string, bool>> subjects;  // in the order of values, and whether one has a value
+    for (const auto& attempt : values) {
+      for (const analytics::CheckpointValue& v : attempt.second) {
+        if (v.name != entry.definition.name) continue;
+        const auto same = [&](const auto& subject) { return subject.first == v.subject; };
+        auto known = std::find_if(subjects.begin(), subjects.end(), same);
+        if (known == subjects.end()) known = subjects.insert(known, {v.subject, false});
+        known->second = known->second || v.value.has_value();
+      }
+    }
+    for (const auto& [subject, any] : subjects) {
+      if (any) columns.push_back({&entry.definition, subject, columnTitle(entry, subject)});
+    }
+  }
+  return columns;
+}
+
+std::string figureText(const std::vector<analytics::CheckpointValue>& values, const SummaryColumn& column) {
+  for (const analytics::CheckpointValue& v : values) {
+    if (v.name != column.definition->name || v.subject != column.subject) continue;
+    if (!v.value)
+      return v.availability == analytics::Availability::notApplicable ||
+                     v.availability == analytics::Availability::absentHand
+                 ? "n/a"
+                 : "-";
+    return analytics::significant(*v.value * column.definition->displayFactor);
+  }
+  return "-";
+}
+
+/// A value's interval, and its parts: what step and mesh change, and the spread by constants. Empty where there is
+/// none.
+struct IntervalTexts {
+  std::string interval;
+  std::string parts;   ///< what step, mesh and constants add
+  std::string remark;  ///< why there is no interval
+};
+
+IntervalTexts intervalTexts(const std::vector<analytics::ValueInterval>& intervals,
+                            const analytics::CheckpointValue& of, double factor) {
+  const analytics::ValueInterval* found = analytics::findInterval(intervals, of);
+  if (found == nullptr) return {};
+  if (!found->lower) return {"none", "", "no interval: " + found->reason};
+  if (*found->lower == *found->upper) return {"exact", "", ""};
+  const auto shown = [&](double si) { return analytics::significant(si * factor); };
+  const auto change = [&](double si) {
+    return fmt::format("{}{}", si > 0.0 ? "+" : "", analytics::significant(si * factor, 2));
+  };
+  return {fmt::format("[{}, {}]", shown(*found->lower), shown(*found->upper)),
+          fmt::format("{}, {}, {}", change(found->stepEffect), change(found->meshEffect),
+                      analytics::significant(found->constantsSpread * factor, 2)),
+          ""};
+}
+
+}  // namespace
+
+void printValues(const std::vector<analytics::CheckpointValue>& values,
+                 const std::vector<analytics::ValueInterval>& intervals, std::ostream& out) {
+  analytics::ReportTable table =
+      analytics::tableOf("", {"=checkpoint", "value", "interval", "=unit", "step, mesh, constants", "=origin", "="});
+  for (const analytics::CheckpointValue& v : values) {
+    const analytics::CheckpointDefinition* definition = analytics::definitionOf(v);
+    const std::string name = v.subject.empty() ? v.name : fmt::format("{} {}", v.name, v.subject);
+    if (!v.value) {
+      table.rows.push_back({name, "-", "", "", "", "", fmt::format("{}: {}", nameOf(v.availability), v.reason)});
+      continue;
+    }
+    const double factor = definition != nullptr ? definition->displayFactor : 1.0;
+    const auto [interval, parts, remark] = intervalTexts(intervals, v, factor);
+    table.rows.push_back({name, analytics::significant(*v.value * factor), interval,
+                          definition != nullptr ? definition->displayUnit : v.unit, parts, nameOf(v.origin),
+                          v.note + (v.note.empty() || remark.empty() ? "" : "; ") + remark});
+  }
+  if (!table.rows.empty()) table.print(out, 120);  // reasons go on below
+}
+
+void printAttempts(const analytics::CohortDatabase& database, std::ostream& out) {
+  ValuesOfAttempts values;
+  for (analytics::AttemptValue& v : database.allValues()) values[v.attempt].push_back(std::move(v.value));
+  analytics::ReportTable table =
+      analytics::tableOf("", {"=attempt", "=who", "=scene", "=mode", "=outcome", "=verification", "=recording"});
+  const std::vector<SummaryColumn> figures = summaryColumns(values);
+  for (const SummaryColumn& figure : figures) table.columns.emplace_back(figure.title, analytics::Align::right);
+  table.columns.emplace_back("", analytics::Align::left);
+  std::size_t synthetic = 0;
+  for (const analytics::AttemptRow& a : database.listAttempts()) {
+    std::string who = a.participant;
+    if (who.empty()) who = a.profile.empty() ? wordFor(a.operatorKind) : a.profile;
+    std::vector<std::string> cells{a.uuid.substr(0, 8),
+                                   who,
+                                   fmt::format("{}/{}", a.scene, a.sceneMajor),
+                                   wordFor(a.mode),
+                                   a.complete ? wordFor(a.outcome) : "incomplete",
+                                   nameOf(a.verification.verdict),
+                                   a.fileName};
+    for (const SummaryColumn& figure : figures) cells.push_back(figureText(values[a.uuid], figure));
+    cells.push_back(fmt::format("{}{}", a.synthetic ? "SYNTHETIC" : "", a.excluded ? " excluded" : ""));
+    synthetic += a.synthetic ? 1 : 0;
+    table.rows.push_back(std::move(cells));
+  }
+  if (table.rows.empty()) {
+    out << "no attempts\n";
+    return;
+  }
+  table.print(out);
+  out << fmt::format("{} attempts, {} of them synthetic\n", table.rows.size(), synthetic);
 }
 
 }  // namespace calot::gui

@@ -27,6 +27,8 @@ class Value:
     reason: str
     note: str
     coverage: Optional[float]
+    rate: Optional[float]
+    noise: Optional[float]
 
 
 @dataclass(frozen=True)

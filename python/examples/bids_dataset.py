@@ -2,13 +2,14 @@
 # %% [markdown]
 # # Hand motion as a BIDS data set
 #
-# `bids_dataset.py OUT R.h5...` writes the motion of recordings as a data set of the Brain Imaging Data Structure 1.9.0, modality "motion"
+# `bids_dataset.py OUT [--cohort C.db [--key KEY]] R.h5...` writes the motion of recordings as a data set of the Brain Imaging Data Structure 1.9.0, modality "motion"
 # (Jeung et al. 2024, Scientific Data 11:716). Without arguments it makes three recordings of performers and a data set of them, in a
 # folder that goes away.
 #
 # A row is a tick each 10 ms: position of each mounted instrument's tip (m, world frame) and its orientation (unit quaternion), as they were
 # recorded; n/a where the sample is not valid. Labels are letters and digits, as BIDS asks; two names that become one label are refused.
-# Runs are numbered by start. Dates and uuids are left out.
+# Runs are numbered by start. Dates and uuids are left out. With a cohort, only attempts that `calot study` analyses are written, and the
+# export is registered there; without one, consent and withdrawal are not known.
 
 # %%
 import json
@@ -104,8 +105,22 @@ def write_json(path: pathlib.Path, value: object) -> None:
 
 
 # %%
-def write_dataset(out: pathlib.Path, files: list[pathlib.Path]) -> None:
+def analysed(recordings: list[calot.Recording], cohort: str, key: str) -> list[calot.Recording]:
+    """Those in the cohort's analysis set, of one comparability key."""
+    known = calot.Cohort(cohort).attempts(frame=False, key=key)
+    keys = dict(zip(known["attempt"], known["key"]))
+    kept = [r for r in recordings if r.header["attempt_uuid"] in keys]
+    several = sorted({keys[r.header["attempt_uuid"]] for r in kept})
+    if len(several) != 1:
+        fail(f"{cohort}: the recordings in its analysis set have {len(several)} comparability keys, one is expected: {'; '.join(several)}")
+    print(f"{len(kept)} of {len(recordings)} recordings are in the analysis set of {cohort}", file=sys.stderr)
+    return kept
+
+
+def write_dataset(out: pathlib.Path, files: list[pathlib.Path], cohort: str = "", key: str = "") -> None:
     recordings = [calot.open(file) for file in files]
+    if cohort:
+        recordings = analysed(recordings, cohort, key)
     for recording in recordings:
         if not recording.chain_intact:
             fail(f"{recording.path}: its content was changed since it was recorded")
@@ -133,16 +148,29 @@ def write_dataset(out: pathlib.Path, files: list[pathlib.Path]) -> None:
     write_json(out / "dataset_description.json", {"Name": "Instrument motion of laparoscopic tasks", "BIDSVersion": "1.9.0", "DatasetType": "raw",
                                                   "GeneratedBy": [{"Name": "calot", "Version": calot.__version__}]})
     (out / "README").write_text(README, encoding="utf-8")
+    if cohort:
+        calot.record_export(cohort, "bids", out, [str(r.header["attempt_uuid"]) for r in recordings])
 
 
 # %%
+def option(name: str) -> str:
+    """Takes an option and its value off the command line; empty: not given."""
+    if name not in sys.argv[:-1]:
+        return ""
+    at = sys.argv.index(name)
+    value = sys.argv[at + 1]
+    del sys.argv[at:at + 2]
+    return value
+
+
+COHORT, KEY = option("--cohort"), option("--key")
 if len(sys.argv) > 2:
     try:
-        write_dataset(pathlib.Path(sys.argv[1]), [pathlib.Path(f) for f in sys.argv[2:]])
+        write_dataset(pathlib.Path(sys.argv[1]), [pathlib.Path(f) for f in sys.argv[2:]], COHORT, KEY)
     except (calot.Error, OSError) as error:
         fail(str(error))
 elif len(sys.argv) == 2:
-    fail("usage: bids_dataset.py OUT R.h5...")
+    fail("usage: bids_dataset.py OUT [--cohort C.db [--key KEY]] R.h5...")
 else:
     with tempfile.TemporaryDirectory(prefix="calot-") as name:
         made = []

@@ -38,7 +38,7 @@ def pressed_share(recording: calot.Recording, hand: str) -> float:
 
 
 # %%
-attempts = calot.Cohort(cohort).attempts(frame=False)
+attempts = calot.Cohort(cohort).attempts(frame=False, include=("synthetic", "practice"))
 shares: dict[str, list[float]] = {}
 for file, profile in zip(attempts["file"], attempts["profile"]):
     recording = calot.open(folder / file)
@@ -48,7 +48,7 @@ for file, profile in zip(attempts["file"], attempts["profile"]):
 # Beside it a checkpoint of the cohort, read the same way.
 
 # %%
-values = calot.Cohort(cohort).values(frame=False, name="path-length")
+values = calot.Cohort(cohort).values(frame=False, include=("synthetic", "practice"), name="path-length")
 for profile, numbers in sorted(shares.items()):
     lengths = values["value"][values["profile"] == profile]
     print(f"{profile:<10} {len(numbers)} hands: {100 * np.median(numbers):.1f} % of the path pressed (median), path length {np.median(lengths):.2f} m")

@@ -70,12 +70,12 @@ def write_statements(database: pathlib.Path, home: str, out: pathlib.Path, synth
     if not re.fullmatch(r"https?://[^\s\"<>\\^`{|}?#/][^\s\"<>\\^`{|}?#]*", home):
         fail(f"\"{home}\" is not a home page: give the site's own, such as https://training.example.org")
     cohort = calot.Cohort(database)
-    attempts = [a for a in rows(cohort.attempts(frame=False))
-                if (a["participant"] or (a["synthetic"] and a["profile"])) and (synthetic or not a["synthetic"])]
+    attempts = [a for a in rows(cohort.attempts(frame=False, analysed=False))
+                if not a["excluded"] and (a["participant"] or (a["synthetic"] and a["profile"])) and (synthetic or not a["synthetic"])]
     if not attempts:
         fail(f"{database}: no attempt is of a participant and neither excluded nor synthetic")
     values: dict[str, list[dict]] = {}
-    for row in rows(cohort.values(frame=False)):
+    for row in rows(cohort.values(frame=False, analysed=False)):
         row["value"] = None if row["value"] is None or row["value"] != row["value"] else row["value"]
         values.setdefault(row["attempt"], []).append(row)
     with open(out, "x", encoding="utf-8") as file:

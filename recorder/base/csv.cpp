@@ -99,52 +99,6 @@ class Records {
   std::size_t line_ = 1;
 };
 
-constexpr std::size_t maxRows = 1000000;
-constexpr std::size_t maxColumns = 10000;
-constexpr std::size_t maxNamesShown = 12;
-
-std::string_view withoutBlanks(std::string_view cell) {
-  while (!cell.empty() && (cell.front() == ' ' || cell.front() == '\r')) cell.remove_prefix(1);
-  while (!cell.empty() && (cell.back() == ' ' || cell.back() == '\r')) cell.remove_suffix(1);
-  return cell;
-}
-
-void split(std::string_view line, char delimiter, std::vector<std::string_view>& cells) {
-  cells.clear();
-  for (;;) {
-    const std::size_t end = std::min(line.find(delimiter), line.size());
-    cells.push_back(withoutBlanks(line.substr(0, end)));
-    if (end == line.size()) return;
-    line.remove_prefix(end + 1);
-  }
-}
-
-std::string_view unquoted(std::string_view name) {
-  return name.size() >= 2 && name.front() == '"' && name.back() == '"' ? name.substr(1, name.size() - 2) : name;
-}
-
-/// Places of the wanted names in the first line.
-std::vector<std::size_t> placesOf(const std::vector<std::string_view>& names, std::span<const std::string> wanted,
-                                  const std::string& file) {
-  std::vector<std::size_t> places;
-  for (const std::string& name : wanted) {
-    const auto same = [&](std::string_view cell) { return unquoted(cell) == name; };
-    const auto found = std::find_if(names.begin(), names.end(), same);
-    if (found == names.end()) {
-      std::string there;
-      for (std::size_t i = 0; i < std::min(names.size(), maxNamesShown); ++i)
-        there += fmt::format("{}{}", i == 0 ? "" : ", ", recorder::shown(unquoted(names[i])));
-      fail(file, 1,
-           fmt::format("no column \"{}\"; there are {}{}", recorder::shown(name), there,
-                       names.size() > maxNamesShown ? fmt::format(" and {} more", names.size() - maxNamesShown) : ""));
-    }
-    if (std::find_if(found + 1, names.end(), same) != names.end())
-      fail(file, 1, fmt::format("column \"{}\" is there twice", recorder::shown(name)));
-    places.push_back(static_cast<std::size_t>(found - names.begin()));
-  }
-  return places;
-}
-
 }  // namespace
 
 bool CsvTable::has(const std::string& name) const {
@@ -202,46 +156,6 @@ CsvTable readCsvTable(const std::string& path) {
   const std::string text((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
   if (file.bad()) throw Error(ErrorKind::damaged, Where{path}, "cannot be read");
   return parseCsvTable(text, path);
-}
-
-CsvNumbers readCsvNumbers(std::span<const std::byte> bytes, const std::string& file, char delimiter,
-                          std::span<const std::string> wanted) {
-  std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  skipByteOrderMark(text);
-  if (text.empty()) throw Error(ErrorKind::damaged, Where{file}, "the file is empty");
-  std::vector<std::string_view> cells;
-  split(recorder::takeLine(text), delimiter, cells);
-  if (cells.size() > maxColumns) fail(file, 1, fmt::format("more than {} columns", maxColumns));
-  const std::size_t columns = cells.size();
-  const std::vector<std::size_t> places = placesOf(cells, wanted, file);
-
-  CsvNumbers numbers;
-  numbers.column.resize(wanted.size());
-  std::size_t line = 1, blank = 0;
-  std::string fault;
-  while (!text.empty()) {
-    const std::string_view row = recorder::takeLine(text);
-    ++line;
-    if (withoutBlanks(row).empty()) {
-      if (blank == 0) blank = line;
-      continue;
-    }
-    // Empty lines may end a file; between rows they could hide missing rows.
-    if (blank != 0) fail(file, blank, "an empty line between rows");
-    if (numbers.line.size() == maxRows) fail(file, line, fmt::format("more than {} rows", maxRows));
-    split(row, delimiter, cells);
-    if (cells.size() != columns) {
-      fail(file, line, fmt::format("{} cells; the {} columns of line 1 are expected", cells.size(), columns));
-    }
-    for (std::size_t i = 0; i < places.size(); ++i) {
-      const double value = recorder::readFiniteNumber(cells[places[i]], fault);
-      if (!fault.empty()) fail(file, line, fmt::format("column \"{}\": {}", recorder::shown(wanted[i]), fault));
-      numbers.column[i].push_back(value);
-    }
-    numbers.line.push_back(line);
-  }
-  if (numbers.line.empty()) throw Error(ErrorKind::damaged, Where{file}, "no row below the names of line 1");
-  return numbers;
 }
 
 std::string csvQuoted(const std::string& text) {

@@ -8,7 +8,6 @@
 #include <filesystem>
 #include <iterator>
 #include <memory>
-#include <span>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -41,22 +40,6 @@ CsvTable readCsvTable(const std::string& path);
 
 /// The same of text at hand.
 CsvTable parseCsvTable(std::string_view text, const std::string& path);
-
-/// Numbers of some columns of a long CSV file.
-struct CsvNumbers {
-  std::vector<std::vector<double>> column;  ///< one for each wanted name; all as long
-  std::vector<std::size_t> line;            ///< of each row in the file, from 1
-};
-
-/// Reads the wanted columns of a CSV file: a line of names, then one row a line. Cells may have blanks around them,
-/// names may stand in double quotes; other columns may hold anything but the delimiter. Locale plays no part.
-/// @param file the name that messages use.
-/// @param delimiter a comma, a semicolon or a tab.
-/// @throws Error (damaged) naming file and line: no names, a name that is wanted and missing or there twice, a row with
-/// another number of cells (one that was cut off), a wanted cell that is no finite number, an empty line between rows,
-/// no row, more than a million rows.
-CsvNumbers readCsvNumbers(std::span<const std::byte> bytes, const std::string& file, char delimiter,
-                          std::span<const std::string> wanted);
 
 /// A cell of text, quoted where it holds a comma, quote or line break.
 std::string csvQuoted(const std::string& text);

@@ -192,12 +192,13 @@ void writeText(const fs::path& path, std::string_view text, bool force) {
   made.publish();
 }
 
-std::map<std::string, fs::path> jsonFilesIn(const std::vector<fs::path>& roots, const char* folder) {
+std::map<std::string, fs::path> filesIn(const std::vector<fs::path>& roots, const std::string& folder,
+                                        const char* ending) {
   std::map<std::string, fs::path> files;
   for (const fs::path& root : roots) {
     std::error_code fault;
     for (fs::directory_iterator it(root / folder, fault), end; !fault && it != end; it.increment(fault)) {
-      if (it->path().extension() == ".json") files.emplace(it->path().stem().string(), it->path());
+      if (it->path().extension() == ending) files.emplace(it->path().stem().string(), it->path());
     }
   }
   return files;
@@ -210,7 +211,7 @@ fs::path findJsonFile(const std::string& name, const std::vector<fs::path>& root
     if (fs::is_regular_file(name, ignored)) return name;
     throw Error(ErrorKind::invalid, Where{name}, fmt::format("there is no such {}", file));
   }
-  const std::map<std::string, fs::path> files = jsonFilesIn(roots, folder);
+  const std::map<std::string, fs::path> files = filesIn(roots, folder);
   if (const auto found = files.find(name); found != files.end()) return found->second;
   std::vector<std::string> known;
   known.reserve(files.size());

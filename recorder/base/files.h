@@ -90,9 +90,9 @@ class NewFile {
 /// @throws Error (invalid) as refuseOutput; (failure) where writing fails, with the temporary file removed.
 void writeText(const std::filesystem::path& path, std::string_view text, bool force);
 
-/// Files FOLDER/NAME.json under the roots by their names, the first root winning.
-std::map<std::string, std::filesystem::path> jsonFilesIn(const std::vector<std::filesystem::path>& roots,
-                                                         const char* folder);
+/// Files FOLDER/NAME.json under the roots by their names, or those of another ending; the first root wins.
+std::map<std::string, std::filesystem::path> filesIn(const std::vector<std::filesystem::path>& roots,
+                                                     const std::string& folder, const char* ending = ".json");
 
 /// One of these by its name, or a path that ends in ".json". @param what "scene" @param file "scene file", for messages
 /// @throws Error (invalid) where there is none, with the names that there are

@@ -58,11 +58,102 @@ std::string lowerCase(std::string_view text) {
   return out;
 }
 
+namespace {
+
+void appendUtf8(std::string& text, char32_t c) {
+  const auto byte = [&](char32_t value) { text += static_cast<char>(value); };
+  if (c < 0x80) return byte(c);
+  if (c < 0x800) {
+    byte(0xC0 | c >> 6U);
+  } else {
+    if (c < 0x10000) {
+      byte(0xE0 | c >> 12U);
+    } else {
+      byte(0xF0 | c >> 18U);
+      byte(0x80 | (c >> 12U & 0x3F));
+    }
+    byte(0x80 | (c >> 6U & 0x3F));
+  }
+  byte(0x80 | (c & 0x3F));
+}
+
+/// The first character of a text. @param[out] bytes that it takes; 0: no UTF-8
+char32_t utf8Character(std::string_view text, std::size_t& bytes) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  const unsigned char lead = byte(0);
+  bytes = lead < 0x80 ? 1 : lead < 0xC2 ? 0 : lead < 0xE0 ? 2 : lead < 0xF0 ? 3 : lead < 0xF5 ? 4 : 0;
+  if (bytes > text.size()) bytes = 0;
+  if (bytes < 2) return lead;
+  char32_t c = lead & (0x7FU >> bytes);
+  for (std::size_t i = 1; i < bytes; ++i) {
+    if ((byte(i) & 0xC0U) != 0x80U) bytes = 0;
+    if (bytes == 0) return lead;
+    c = c << 6U | (byte(i) & 0x3FU);
+  }
+  constexpr char32_t least[] = {0, 0, 0x80, 0x800, 0x10000};
+  if (c < least[bytes] || (c >= 0xD800 && c < 0xE000) || c > 0x10FFFF) bytes = 0;
+  return c;
+}
+
+bool isUtf8(std::string_view text) {
+  std::size_t bytes = 0;
+  while (!text.empty()) {
+    utf8Character(text, bytes);
+    if (bytes == 0) return false;
+    text.remove_prefix(bytes);
+  }
+  return true;
+}
+
+/// Letters and marks; not controls, blanks of other widths, changes of direction, private characters.
+bool isShown(char32_t c) {
+  return c < 0x80 ? c >= ' ' && c <= '~'
+                  : c > 0xA0 && c != 0xAD && (c < 0x2000 || c > 0x206F) && (c < 0xD800 || c > 0xF8FF) && c != 0x3000 &&
+                        c != 0xFEFF && c < 0xFFF0;
+}
+
+}  // namespace
+
 std::string shown(std::string_view word) {
-  std::string text(word.substr(0, 40));
-  std::replace_if(
-      text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
-  return word.size() > 40 ? text + "..." : text;
+  constexpr std::size_t most = 40;
+  std::string text;
+  for (std::size_t count = 0; !word.empty() && count < most; ++count) {
+    std::size_t bytes = 0;
+    const char32_t c = utf8Character(word, bytes);
+    text += bytes > 0 && isShown(c) ? std::string(word.substr(0, bytes)) : "?";
+    word.remove_prefix(std::max<std::size_t>(bytes, 1));
+  }
+  return word.empty() ? text : text + "...";
+}
+
+std::string_view decodedText(std::span<const std::byte> bytes, std::string& converted) {
+  std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  const auto at = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  const auto startsWith = [&](unsigned char a, unsigned char b) {
+    return text.size() >= 2 && at(0) == a && at(1) == b;
+  };
+  const bool little = startsWith(0xFF, 0xFE) || (text.size() >= 4 && at(0) != 0 && at(1) == 0 && at(3) == 0);
+  const bool big = startsWith(0xFE, 0xFF) || (text.size() >= 4 && at(0) == 0 && at(1) != 0 && at(2) == 0);
+  if (little || big) {
+    const auto unit = [&](std::size_t i) -> char32_t {
+      return little ? static_cast<char32_t>(at(i + 1) << 8U | at(i)) : static_cast<char32_t>(at(i) << 8U | at(i + 1));
+    };
+    for (std::size_t i = 0; i + 1 < text.size(); i += 2) {
+      char32_t c = unit(i);
+      if (c >= 0xD800 && c < 0xDC00 && i + 3 < text.size()) {
+        c = 0x10000 + ((c - 0xD800) << 10U) + ((unit(i + 2) - 0xDC00) & 0x3FFU);
+        i += 2;
+      }
+      appendUtf8(converted, c);
+    }
+    text = converted;
+  } else if (!isUtf8(text)) {
+    for (std::size_t i = 0; i < text.size(); ++i) appendUtf8(converted, at(i));
+    text = converted;
+  }
+  constexpr std::string_view mark = "\xEF\xBB\xBF";
+  if (text.starts_with(mark)) text.remove_prefix(mark.size());
+  return text;
 }
 
 double readFiniteNumber(std::string_view word, std::string& fault) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -28,8 +29,12 @@ std::string_view takeLine(std::string_view& text);
 /// With small letters for A to Z.
 std::string lowerCase(std::string_view text);
 
-/// A word for a message: short, and without control characters.
+/// A word for a message: short, its letters as they are, without control characters and what is not UTF-8.
 std::string shown(std::string_view word);
+
+/// Text of a file as UTF-8 without its byte order mark. UTF-16 (by its mark, or by the zeros of its first line) and
+/// what is not UTF-8 (read as Latin-1) are converted. @param converted holds the text where it was, and outlives it
+std::string_view decodedText(std::span<const std::byte> bytes, std::string& converted);
 
 /// A word as a finite number. A leading '+' is allowed, hexadecimal is not.
 /// @param[out] fault "\"x\" is not a number", or left as it is

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The engine that decides a recording: the simulation of one version, on one attempt. Replay, assessment, seeking and
 // drawing all go through this, whether the simulation is this program's own (LocalEngine) or another program's
-// (recorder/kept/engine_process.h, schemas/engine.md).
+// (recorder/kept/kept_engine.h, schemas/engine.md).
 #pragma once
 
 #include <array>

@@ -58,7 +58,7 @@ LoadedScene loadScene(const fs::path& sceneFile) {
 
 std::vector<fs::path> listScenes(const std::vector<fs::path>& roots) {
   std::vector<fs::path> files;
-  for (const auto& [name, file] : jsonFilesIn(roots, "scenes")) files.push_back(file);
+  for (const auto& [name, file] : filesIn(roots, "scenes")) files.push_back(file);
   return files;
 }
 

@@ -10,7 +10,7 @@
 #include "recorder/base/errors.h"
 #include "recorder/base/files.h"
 #include "recorder/engine/wire.h"
-#include "recorder/kept/engine_process.h"
+#include "recorder/kept/kept_engine.h"
 
 namespace calot::recorder {
 

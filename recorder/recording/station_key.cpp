@@ -96,6 +96,12 @@ Signature signHead(const StationKey& key, const std::array<std::uint8_t, 32>& he
   return signature;
 }
 
+std::array<std::uint8_t, 32> headOfText(std::string_view text) {
+  std::array<std::uint8_t, 32> head{};
+  readHex(sha256Hex(std::as_bytes(std::span(text))), std::as_writable_bytes(std::span(head)));
+  return head;
+}
+
 bool fits(const Signature& signature, const PublicKey& key, const std::array<std::uint8_t, 32>& head) {
   ready();
   return crypto_sign_verify_detached(signature.data(), head.data(), head.size(), key.data()) == 0;

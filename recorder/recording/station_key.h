@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 namespace calot::recorder {
 
@@ -37,6 +38,8 @@ StationKey readStationKey(const std::filesystem::path& file);
 
 /// The signature of 32 bytes: a chain head. The same bytes give the same signature.
 Signature signHead(const StationKey& key, const std::array<std::uint8_t, 32>& head);
+/// SHA-256 of a text, to be signed instead of it.
+std::array<std::uint8_t, 32> headOfText(std::string_view text);
 bool fits(const Signature& signature, const PublicKey& key, const std::array<std::uint8_t, 32>& head);
 
 }  // namespace calot::recorder

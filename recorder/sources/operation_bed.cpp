@@ -37,8 +37,8 @@ constexpr std::uint32_t maxStrokes = 400;
 /// A strand that is to go.
 struct WorkingMind::BedStrand {
   std::size_t index = 0;
-  double worth = 1.0;                               ///< of meeting it; those that are only to go later are worth less
-  Vec3 middle = Vec3::Zero(), span = Vec3::Zero();  ///< span: from its end on the specimen to that on the liver
+  double worth = 1.0;                              ///< of meeting it; less where it is only to go later
+  Vec3 cutAt = Vec3::Zero(), span = Vec3::Zero();  ///< span: from its end on the specimen to that on the liver
 };
 
 /// A stroke of the hook along the bed: its wire along the shaft, its way across it.
@@ -68,7 +68,7 @@ struct WorkingMind::BedStroke {
 void WorkingMind::BedStroke::follow(const std::vector<const BedStrand*>& near) {
   std::array<double, legs + 1> sum{}, count{};
   for (const BedStrand* s : near) {
-    const Vec3 d = s->middle - place;
+    const Vec3 d = s->cutAt - place;
     const double at = cornerOf(d);
     for (std::size_t c = 0; c <= legs; ++c) {
       const double weight = 1.0 - std::abs(at - static_cast<double>(c));
@@ -92,7 +92,7 @@ void WorkingMind::BedStroke::aim(const std::vector<BedStrand>& wanted) {
   for (const double tolerance : {offPlane, 0.5 * offPlane}) {
     near.clear();
     for (const BedStrand& s : wanted) {
-      const Vec3 d = s.middle - place;
+      const Vec3 d = s.cutAt - place;
       const double along = d.dot(shaft), at = cornerOf(d);
       if (along > deep || along < deep - wireLength || at < 0.0 || at > static_cast<double>(legs)) continue;
       if (std::abs(d.dot(through) - offAt(at)) < tolerance) near.push_back(&s);
@@ -101,7 +101,7 @@ void WorkingMind::BedStroke::aim(const std::vector<BedStrand>& wanted) {
   }
   met.clear();
   for (const BedStrand* s : near) {
-    const Vec3 d = s->middle - place;
+    const Vec3 d = s->cutAt - place;
     const double half = 0.5 * std::abs(through.dot(s->span));
     if (std::abs(d.dot(through) - offAt(cornerOf(d))) < half + wireRadius) met.push_back(s);
   }
@@ -112,7 +112,7 @@ void WorkingMind::BedStroke::aim(const std::vector<BedStrand>& wanted) {
 /// @pre one of `wanted` is worth 1
 WorkingMind::BedStroke WorkingMind::bestStroke(const std::vector<BedStrand>& wanted) const {
   const PerformerHand& hook = tools_.hand[hand_];
-  const auto inwards = [](const BedStrand& s) { return s.middle.x() + 0.2 * s.middle.y(); };
+  const auto inwards = [](const BedStrand& s) { return s.cutAt.x() + 0.2 * s.cutAt.y(); };
   double outermost = 1e300;
   for (const BedStrand& s : wanted) {
     if (s.worth == 1.0) outermost = std::min(outermost, inwards(s));
@@ -125,7 +125,7 @@ WorkingMind::BedStroke WorkingMind::bestStroke(const std::vector<BedStrand>& wan
   BedStroke best;
   for (std::size_t f = strokes_ % every; f < first.size(); f += every) {
     const BedStrand& strand = *first[f];
-    const Vec3& place = strand.middle;
+    const Vec3& place = strand.cutAt;
     const double in = inwards(strand) - outermost;
     BedStroke stroke;
     stroke.strand = strand.index;
@@ -157,22 +157,23 @@ void WorkingMind::runStroke(const BedStroke& stroke) {
   // in position and direction.
   const auto worth = [](const BedStrand* s) { return s->worth == 1.0; };
   const bool fine = tries >= fineAfter && std::count_if(stroke.met.begin(), stroke.met.end(), worth) <= few;
-  const double length = fine ? fineLength : sweepLength;
+  double last = 0.0;
+  for (const BedStrand* s : stroke.met) last = std::max(last, (s->cutAt - stroke.place).dot(stroke.across));
+  const double length = fine ? fineLength : std::min(sweepLength, sweepLead + last + profile.operation.overrun);
   const double lead = fine ? 0.5 * fineLength : sweepLead;
-  const std::size_t pieces = fine ? 1 : legs;
+  const double share = length / sweepLength;
+  const std::size_t pieces = fine ? 1 : static_cast<std::size_t>(std::ceil(share * static_cast<double>(legs)));
   const Vec3 across = fine && tries % 2U == 1 ? Vec3(-stroke.across) : stroke.across;
   const double deep = fine ? 0.002 + 0.002 * static_cast<double>(tries % 3U) : stroke.deep;
   const double aside = fineSpread * static_cast<double>(std::min(tries, 3U)) * random_.normal();
-  std::array<double, legs + 1> off = stroke.off;
-  if (fine) off.fill(0.0);
-  for (double& o : off) o += aside;
   if (fine || stroke.met.empty()) ++tried_[stroke.strand];
   if (!fine) {
     for (const BedStrand* s : stroke.met) ++tried_[s->index];
   }
   const auto corner = [&](std::size_t c) {
-    const double ahead = length * static_cast<double>(c) / static_cast<double>(pieces) - lead;
-    return Vec3(stroke.place + error_ + deep * stroke.shaft + ahead * across + off[c] * stroke.through);
+    const double along = static_cast<double>(c) / static_cast<double>(pieces);
+    const double off = aside + (fine ? 0.0 : stroke.offAt(along * share * static_cast<double>(legs)));
+    return Vec3(stroke.place + error_ + deep * stroke.shaft + (length * along - lead) * across + off * stroke.through);
   };
   HandMove move;
   move.aiming = HandMove::Aim::forward;
@@ -223,8 +224,8 @@ void WorkingMind::burn(const Sight& sight, bool lowerThird) {
     const SeenStrand& strand = sight.strand[s];
     if (!strand.attached) continue;
     if (!later) left += 1.0;
-    wanted.push_back(
-        {s, later ? laterWorth : 1.0, 0.5 * (strand.end[0] + strand.end[1]), strand.end[1] - strand.end[0]});
+    const Vec3 span = strand.end[1] - strand.end[0];
+    wanted.push_back({s, later ? laterWorth : 1.0, strand.end[0] + tools_.profile.operation.plane * span, span});
   }
   // A few strands of the lower third may wait until the rest of the bed is freed.
   if (left == 0.0 || (lowerThird && left < fewLeft * (1.0 - tools_.profile.operation.bareShare) * all)) {
@@ -302,6 +303,10 @@ void WorkingMind::clear(const Sight& sight) {
     return;
   }
   if (mount(InstrumentKind::hook, 0.0)) return;
+  if (searched_ < operation.searches) {
+    for (std::uint32_t i = 0; i < operation.series && searched_ < operation.searches; ++i) search(sight);
+    return;
+  }
   SeenVessel vessel = sight.vessel[vessel_];
   for (std::vector<std::uint32_t>& tried : fatTried_) tried.resize(vessel.centre.size(), 0);
   const double radius = tools_.anatomy.vessels()[vessel_].radius;
@@ -321,7 +326,7 @@ void WorkingMind::clear(const Sight& sight) {
   }
   if (made > 0) return;
   ++vessel_;
-  strokes_ = 0;
+  strokes_ = searched_ = 0;
   for (std::vector<std::uint32_t>& tried : fatTried_) tried.clear();
   clear(sight);
 }

@@ -23,8 +23,7 @@ constexpr double bedPull = 0.045;         // more pull as the bed comes free (m)
 constexpr double wholePull = 0.3;         // of that, while vessels hold it
 constexpr double pullMore = 0.012;        // at one decision (m)
 constexpr double easeOff = 0.006;         // at one decision (m)
-constexpr double lastShare = 0.06;        // of the bed: when no more is left it pulls this off,
-constexpr double lastPull = 0.03;         // by so much more (m)
+constexpr double lastPull = 0.03;         // more, to pull off what is left of the bed at the end (m)
 constexpr double stillTaut = 0.7;         // of what is too taut: no more pull
 constexpr double tautShare = 0.9;         // of the strands that still hold are no longer than what it goes by
 constexpr double vesselStretched = 0.12;  // a vessel looks this much longer than at rest: no more pull
@@ -59,7 +58,7 @@ double HoldingMind::wantedPull(const Sight& sight, double freed, bool divided) c
   const PerformerProfile::Operation& operation = tools_.profile.operation;
   const double wanted = (divided ? 2.5 : 1.0) * operation.pull + (divided ? 1.0 : wholePull) * bedPull * freed;
   // The last strands may tear.
-  if (divided && freed > 1.0 - lastShare) return std::min(pulled_ + pullMore, wanted + lastPull);
+  if (divided && freed > 1.0 - operation.pullOff) return std::min(pulled_ + pullMore, wanted + lastPull);
   // A few taut strands at an edge, or near the assistant's retraction, do not stop it from exposing the rest.
   std::vector<double> length;
   for (const SeenStrand& s : sight.strand) {

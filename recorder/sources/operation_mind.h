@@ -239,6 +239,9 @@ class WorkingMind {
   double highestFat(const SeenVessel& vessel, double radius, FatStroke& stroke) const;
   void runStroke(const FatStroke& stroke, const SeenVessel& vessel, double radius);
   void window(Sight sight);
+  void search(const Sight& sight);
+  /// Vessels that the hook keeps off: places of their centre lines, and radii (m).
+  [[nodiscard]] std::vector<std::pair<Vec3, double>> keptOff(const Sight& sight) const;
   bool thickestRow(const Sight& sight, std::size_t& first, std::size_t& last) const;
   void burn(const Sight& sight, bool lowerThird);
   void leaveBed(const Sight& sight, bool lowerThird);
@@ -268,7 +271,7 @@ class WorkingMind {
   Random random_;
   Stage stage_ = Stage::clear;
   std::size_t vessel_ = 0;
-  std::uint32_t strokes_ = 0, tries_ = 0, looks_ = 0;
+  std::uint32_t strokes_ = 0, tries_ = 0, looks_ = 0, searched_ = 0;
   std::array<std::uint32_t, 2> badClips_{0, 0};  ///< on the vessel at hand, on the side that stays and on the other
   std::size_t clipped_ = 0;                      ///< the side that the last clip was for
   bool failed_ = false, stirred_ = false;

@@ -141,6 +141,7 @@ constexpr double windowWire = 0.0006;           // its radius (m)
 constexpr double windowWireLength = 0.009;      // of it along the shaft, that burns (m)
 constexpr double windowClearance = 0.002;       // above the fat, on the way from one stroke to the next (m)
 constexpr double thin = 0.0010;                 // fat thinner than this is not gone for (m)
+constexpr std::size_t searchLength = 14;        // stations of a stroke beside a vessel
 constexpr std::size_t shortest = 2;             // columns of a stroke, at least
 constexpr std::size_t longest = 8;              // and at most
 constexpr std::uint32_t mostTriedOfColumn = 3;  // strokes through one column
@@ -181,14 +182,48 @@ bool WorkingMind::thickestRow(const Sight& sight, std::size_t& first, std::size_
   return most > 0.0;
 }
 
-void WorkingMind::window(Sight sight) {
-  const PerformerProfile::Operation& operation = tools_.profile.operation;
-  const std::vector<PerformerSight::ColumnPlan>& plan = tools_.anatomy.columns();
-  columnTried_.resize(plan.size(), 0);
+std::vector<std::pair<Vec3, double>> WorkingMind::keptOff(const Sight& sight) const {
   std::vector<std::pair<Vec3, double>> vessels = tools_.anatomy.spared();
   for (std::size_t v = 0; v < sight.vessel.size(); ++v) {
     for (const Vec3& centre : sight.vessel[v].centre) vessels.emplace_back(centre, tools_.anatomy.vessels()[v].radius);
   }
+  return vessels;
+}
+
+/// A stroke through the fat beside a vessel's course, where a hand that has not found the vessel supposes it.
+void WorkingMind::search(const Sight& sight) {
+  const PerformerProfile::Operation& operation = tools_.profile.operation;
+  const SeenVessel& vessel = sight.vessel[vessel_];
+  ++searched_;
+  newError();
+  error_ *= 0.25;
+  const double sign = random_.uniform() < 0.5 ? -1.0 : 1.0;
+  const double aside = operation.searchSpread * random_.uniform(0.5, 1.5);
+  const std::size_t stations = vessel.centre.size();
+  const std::size_t length = std::min(searchLength, stations - 1);
+  const auto begin = static_cast<std::size_t>(random_.uniform() * static_cast<double>(stations - length));
+  const std::vector<std::pair<Vec3, double>> vessels = keptOff(sight);
+  std::vector<Vec3> way;
+  Vec3 toe = Vec3::Zero();
+  double top = 0.0;
+  for (std::size_t k = 0; k <= 2; ++k) {
+    const std::size_t s = begin + length * k / 2;
+    const Vec3 shaft = hand().shaft(vessel.centre[s]);
+    toe = sign * shaft.cross(vessel.along[s]);
+    toe /= std::max(toe.norm(), 1e-9);
+    const Vec3 place = vessel.centre[s] + aside * toe;
+    way.emplace_back(place - notNegative(lowestAt(place, shaft, toe, windowWire + operation.keepOff, vessels)) * shaft +
+                     error_);
+    for (const double fat : vessel.fat[s]) top = std::max(top, fat);
+  }
+  strokeThrough(way, toe, top + windowClearance);
+}
+
+void WorkingMind::window(Sight sight) {
+  const PerformerProfile::Operation& operation = tools_.profile.operation;
+  const std::vector<PerformerSight::ColumnPlan>& plan = tools_.anatomy.columns();
+  columnTried_.resize(plan.size(), 0);
+  const std::vector<std::pair<Vec3, double>> vessels = keptOff(sight);
   const double off = windowWire + operation.keepOff;
   // Tissue that cannot be removed without harm to a vessel does not count.
   for (std::size_t c = 0; c < plan.size() && c < sight.column.size(); ++c) {

@@ -28,7 +28,7 @@ std::unique_ptr<SampleSource> makePerformer(const PerformerProfile& profile, con
 
 /// A synthetic operator in closed loop: it holds the specimen with one hand and with the other clears vessels of fat,
 /// frees the lower third of the bed, clips, cuts, and frees the rest, as far as the scene has these.
-/// docs/explanation/sources.md.
+/// docs/explanation/operating-performers.md.
 ///
 /// It observes when a hand is idle, and decides one reaction time later. It must therefore receive every step
 /// (watcher()); otherwise its hands stay still. The same profile, scene, seed and steps give the same samples. At real

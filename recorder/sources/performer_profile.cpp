@@ -97,6 +97,16 @@ std::vector<Field> PerformerProfile::Operation::fields() {
       {"window", at<S, &S::window>, "", within(0, 200),
        "Largest number of strokes to clear the triangle between the vessels"},
       {"patience", at<S, &S::patience>, "s", within(10, 3600), "Time after which the attempt is given up"},
+      optional("searches", at<S, &S::searches>, "", within(0, 50),
+               "Strokes through fat beside a vessel's course, before the vessel is found"),
+      optional("searchSpread", at<S, &S::searchSpread>, "m", within(0, 0.02),
+               "Mean distance of those strokes from the vessel's course"),
+      optional("overrun", at<S, &S::overrun>, "m", within(0, 0.024),
+               "Way of the energised hook in the bed beyond the last strand that it is to cut"),
+      optional("plane", at<S, &S::plane>, "1", within(0.2, 0.8),
+               "Where the hook cuts a strand of the bed: 0 at the specimen, 1 at the liver"),
+      optional("pullOff", at<S, &S::pullOff>, "1", within(0, 0.5),
+               "Share of the bed that the holding hand pulls off at the end"),
   };
 }
 

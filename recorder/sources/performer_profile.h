@@ -77,6 +77,11 @@ struct PerformerProfile {
     std::uint32_t series = 1;      ///< strokes through fat made by one picture
     std::uint32_t window = 0;      ///< strokes at most, to clear the triangle between the vessels
     double patience = 0.0;         ///< after which the attempt is given up (s)
+    std::uint32_t searches = 0;    ///< strokes through fat beside a vessel, before it is found
+    double searchSpread = 0.006;   ///< mean distance of those from the vessel's course (m)
+    double overrun = 0.024;        ///< of the energised hook in the bed, beyond the last strand (m)
+    double plane = 0.5;            ///< where it cuts a strand: 0 at the specimen, 1 at the liver
+    double pullOff = 0.06;         ///< share of the bed that the holding hand pulls off at the end
 
     static std::vector<Field> fields();
   } operation;

@@ -5,8 +5,6 @@
 // master left, master right, slave left, slave right; in each group tip position (3, m), rotation matrix (9, row by
 // row), linear velocity (3, m/s), angular velocity (3, rad/s), gripper angle (rad). The instruments' own motion is that
 // of the slave groups.
-// CSV files of instrument motion and the declaration of their columns: schemas/columns.schema.json defines such
-// maps, docs/explanation/sources.md explains them.
 #pragma once
 
 #include <array>
@@ -43,61 +41,49 @@ inline constexpr int kinematicsRowsPerSecond = 30;
 /// @throws Error (damaged) naming the file's base name and the line.
 KinematicsMotion readKinematics(const std::filesystem::path& file);
 
+/// Is it such a file, by its name and its first line? It has no separators but blanks.
+bool isKinematicsFile(const std::filesystem::path& file);
+
 /// The same from bytes.
 KinematicsMotion parseKinematics(std::span<const std::byte> bytes, const std::string& file);
 
 struct TrackedHand {
-  bool present = false;           ///< the file has this hand
-  bool oriented = false;          ///< and its orientation
-  std::vector<Vec3> position;     ///< p of the tip in the file's frame (m)
-  std::vector<Quat> orientation;  ///< unit; z along the shaft towards the tip. Identities where not oriented
+  bool present = false;            ///< the file has this hand
+  bool oriented = false;           ///< and its orientation
+  std::vector<Vec3> position;      ///< p of the tip in the file's frame (m); NaN where the file has none
+  std::vector<Quat> orientation;   ///< unit; z along the shaft towards the tip. Identities where not oriented
+  std::vector<bool> missing;       ///< rows that are no sample: not measured, or invalid (markInvalidSamples())
+  std::vector<std::size_t> jumps;  ///< rows from which the motion goes on elsewhere, in order
+  std::size_t leftOut = 0;         ///< rows that are missing because their sample is invalid
+
+  [[nodiscard]] bool isMissing(std::size_t row) const { return row < missing.size() && missing[row]; }
 };
 
 /// Every row of a file; what is present has as many.
 struct TrackedMotion {
-  std::string file;          ///< base name
-  std::string sha256;        ///< of the file's bytes, hexadecimal: the motion's identity
-  std::string device;        ///< class of tracker as declared, or empty
-  std::string frame;         ///< as declared, or empty
-  double rate = 0.0;         ///< rows a second (Hz); 0: each row has its time
-  std::vector<double> time;  ///< of each row since the first (s), increasing
+  std::string file;                ///< base name
+  std::string sha256;              ///< of the file's bytes, hexadecimal
+  std::string device;              ///< class of tracker as declared, or empty
+  std::string frame;               ///< as declared, or empty
+  double rate = 0.0;               ///< rows a second (Hz); 0: each row has its time
+  std::vector<double> time;        ///< of each row since the first (s), increasing
+  std::vector<std::string> notes;  ///< a line each on what was left out, or how the file was read
   std::array<TrackedHand, handCount> hand;
 };
 
 /// The slave instruments of a kinematics file.
 TrackedMotion trackedMotion(const KinematicsMotion& motion);
 
-struct HandColumns {
-  std::array<std::string, 3> position;   ///< x y z
-  std::vector<std::string> orientation;  ///< none; 4: quaternion w x y z; 9: rotation matrix row by row
-  Quat axis = Quat::Identity();          ///< rotates z onto the instrument's axis in its own frame, towards the tip
+/// Finds samples that no hand gives and marks them as missing, with a note each:
+/// - positions beyond a jump (a step that is longer than the steps before and after it by more than 2 mm, 50 m/s^2 and
+///   ten times the median second difference, or faster than 5 m/s) for less than half a second, or at the origin;
+///   motion that goes on elsewhere after a jump is divided there;
+/// - a pose that is repeated for longer than 0.1 s and three of the tracker's intervals, and left with a jump of more
+///   than 1 mm, 10 m/s^2 and ten times the median second difference: held while the tracker saw nothing.
+void markInvalidSamples(TrackedMotion& motion);
 
-  static std::vector<Field> fields();
-};
-
-/// Columns of a CSV file, their units and frame.
-struct ColumnMap {
-  std::string device;  ///< class of tracker, or empty
-  std::string frame;
-  char delimiter = ',';
-  double metres = 1.0;   ///< of a unit of length
-  double rate = 0.0;     ///< rows a second (Hz); 0: `time` is a column
-  std::string time;      ///< column
-  double seconds = 1.0;  ///< of a unit of time
-  std::array<std::optional<HandColumns>, handCount> hand;
-
-  static std::vector<Field> fields();
-};
-
-/// @throws Error (damaged) naming file and place.
-ColumnMap readColumnMap(const std::filesystem::path& file);
-ColumnMap parseColumnMap(std::span<const std::byte> bytes, const std::string& file);
-
-/// Reads a CSV file by its map.
-/// @throws Error (damaged) naming the file's base name and the line: as readCsvNumbers(); times that do not increase,
-/// or go beyond 1e6 s; positions beyond 5 m; invalid orientations (quaternions of a length off 1 by more than
-/// 1e-2, matrices off a rotation by more than 1e-3); one row alone.
-TrackedMotion readCsvMotion(const std::filesystem::path& file, const ColumnMap& map);
-TrackedMotion parseCsvMotion(std::span<const std::byte> bytes, const std::string& file, const ColumnMap& map);
+/// @throws Error (damaged) where rows are more than 1 s or less than 50 us apart, or the faster hand is slower than
+/// 5 mm/s, or faster than 2 m/s, for 95 % of the time: units are wrong. Motions of less than 5 s pass.
+void checkUnits(const TrackedMotion& motion);
 
 }  // namespace calot::recorder

@@ -166,7 +166,7 @@ class Ratings(Assessment):
                      self.write("a.json", [1, 2]), names=("a.json",))
         self.refused(2, "rate", self.database, "--rater", "R1", names=("--form",))
         self.refused(4, "rate", self.path("none.db"), names=("none.db",))
-        self.assertEqual(len(json.loads(self.well("rate", "--forms", "--json").out)["forms"]), 4)
+        self.assertEqual(len(json.loads(self.well("rate", "--forms", "--json").out)["forms"]), 5)
 
 
 class Angoff(program.ProgramTest):
@@ -263,7 +263,7 @@ class Grades(Assessment):
         self.refused(2, *self.make("--checkpoints", "nothing"), names=("nothing",))
         self.well(*self.make())
         self.refused(3, "grade", self.database, "--attempt", attempt, "--norm", "other", names=("pipeline 1",))
-        self.refused(3, "grade", self.database, "--attempt", "z\nz", names=(self.database, "attempt z"))
+        self.refused(3, "grade", self.database, "--attempt", "z\nz", names=(self.database, "z?z"))
         self.refused(4, "norm", "evidence", self.database, "pipeline", "--file", self.path("none"), "--statement", "x", "--by", "t",
                      names=("none",))
         self.assertEqual(len(json.loads(self.well("norm", "list", self.database, "--json").out)["norms"]), 1)

@@ -215,8 +215,18 @@ class Masked(Blinded):
         # Once masked, it stays so for who doesn't ask.
         self.assertEqual(json.loads(self.well(*self.study, "--json").out)["groups"], ["group 1", "group 2"])
 
+        # Nor is it unmasked by another analysis of the same cohort.
+        other = self.path("other.json")
+        other.write_text(json.dumps({**PROTOCOL, "name": "other"}))
+        for more in (("study", self.cohort), ("study", self.cohort, "--protocol", other), ("study", self.cohort, "--design", "reliability"),
+                     ("study", self.cohort, "--design", "strata", "--strata", "site")):
+            with self.subTest(" ".join(map(str, more[2:]))):
+                self.refused(3, *more, names=(self.cohort, "masked", "tremor version 1"))
+
         locked = self.well("protocol", "lock", self.protocol, self.cohort, "--by", "me").out
         self.assertIn("locked on", locked)
+        self.well("study", self.cohort)
+        self.well("study", self.cohort, "--protocol", other)
         self.assertIn("was locked on", self.well("protocol", "lock", self.protocol, self.cohort, "--by", "you").out)
         for more in ((), ("--masked",)):
             named = json.loads(self.well(*self.study, *more, "--json").out)

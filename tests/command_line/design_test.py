@@ -5,6 +5,7 @@ import json
 import math
 import sqlite3
 import unittest
+import unittest.mock
 from contextlib import closing
 
 import manifest_test
@@ -79,17 +80,18 @@ class Cohort(manifest_test.Manifest):
         return json.loads(self.well("study", self.cohort, "--design", design, "--family", "path-length left", *more, "--json").out)
 
     def test_repeated_attempts(self):
-        """Of balanced data the mixed model's fixed effects are those of each person's own line."""
-        result = self.of("repeated")["results"][0]
+        """Each person's own slope, compared by ranks."""
+        said = self.of("repeated")
         slope = {who: (v[2] - v[0]) / 2.0 for who, v in self.values.items()}
-        first = {who: v.mean() - slope[who] for who, v in self.values.items()}
-
-        def mean(what, group):
-            return numpy.mean([what[who] for who in what if self.group[who] == group])
-        self.assertAlmostEqual(result["group"]["estimate"], mean(first, "expert") - mean(first, "novice"), delta=1e-8)
-        self.assertAlmostEqual(result["occasion"][0]["estimate"], mean(slope, "novice"), delta=1e-8)
-        self.assertAlmostEqual(result["interaction"][0]["estimate"], mean(slope, "expert") - mean(slope, "novice"), delta=1e-8)
-        self.assertEqual((result["participants"], result["attempts"]), (8, 24))
+        expert, novice = ([slope[who] for who in slope if self.group[who] == group] for group in ("expert", "novice"))
+        change = said["changes"][0]
+        self.assertAlmostEqual(change["groups"][0]["median"], numpy.median(expert), delta=1e-9)
+        self.assertAlmostEqual(change["shift"], numpy.median([x - y for x in expert for y in novice]), delta=1e-9)
+        self.assertAlmostEqual(change["a"], numpy.mean([x > y for x in expert for y in novice]), delta=1e-12)
+        mean = {group: numpy.mean([v.mean() for who, v in self.values.items() if self.group[who] == group]) for group in ("expert", "novice")}
+        result = said["results"][0]
+        self.assertAlmostEqual(result["overall"]["difference"], mean["expert"] - mean["novice"], delta=1e-8)
+        self.assertEqual(result["attempts"], 24)
 
     def test_error_of_measurement(self):
         said = self.of("reliability")
@@ -115,6 +117,66 @@ class Cohort(manifest_test.Manifest):
         self.assertEqual(said["attempt_rule"], "the mean of a participant's attempts")
         self.refused(2, "study", self.cohort, "--design", "repeated", "--masked", names=("--masked",))
         self.refused(2, "study", self.cohort, "--design", "reliability", "--family", "none", names=("none", "path-length left"))
+
+
+class Unfinished(manifest_test.Manifest):
+    """Five experts finish; of five novices two finish, and faster, and three give up. A sixth expert's file only ends."""
+
+    def setUp(self):
+        super().setUp()
+        generator = program.seeded("unfinished")
+        times = [("expert", t, "completed") for t in (10.0, 10.2, 10.4, 10.8, 11.0)] + [("expert", 5.0, "")]
+        times += [("novice", t, "completed") for t in (9.6, 9.8)] + [("novice", 20.0, "abandoned")] * 3
+        rows = []
+        for i, (group, seconds, outcome) in enumerate(times):
+            with unittest.mock.patch.object(manifest_test, "ROWS", round(30 * seconds) + 1):
+                self.path(f"p{i}.txt").write_text(manifest_test.motion(generator, 0.002))
+            rows.append({"file": f"p{i}.txt", "participant": f"P{i}", "group": group, "task": "reaching",
+                         "start": f"2026-01-01T09:{i:02}:00Z", "outcome": outcome, "purpose": "demo", "mode": "assessment"})
+        self.write(rows)
+        self.well("import", "--manifest", self.table, "--cohort", self.cohort)
+        people = [{"group": group, "definition": group} for group in ("expert", "novice")]
+        self.path("p.json").write_text(json.dumps({
+            "format": "calot-protocol", "formatVersion": 1, "name": "times", "version": 1, "title": "Experts finish sooner",
+            "populations": people, "better": "expert", "unit": "participant", "attemptRule": "single",
+            "exclusions": {"outcomes": [], "reasons": []}, "missing": "worst-rank", "level": 0.05,
+            "hypotheses": [{"checkpoint": "elapsed-time", "larger": "novice", "primary": True}]}))
+
+    def test_the_outcome_ranks_in_every_design(self):
+        study = ("study", self.cohort, "--protocol", self.path("p.json"))
+        rows = {(r["checkpoint"], r["subject"]): r for r in json.loads(self.well(*study, "--json").out)["rows"]}
+        time, path = rows["elapsed-time", ""], rows["path-length", "left"]
+        self.assertEqual((time["groups"][0]["n"], time["groups"][1]["n"], time["worst_ranked"]), (5, 2, [0, 3]))
+        self.assertAlmostEqual(time["area"]["a"], 0.6, delta=1e-12)
+        self.assertEqual((path["unfinished"], path["worst_ranked"]), ([0, 3], [0, 0]))
+        text = self.well(*study, "--all").out
+        self.assertIn("path-length left *", text)
+        self.assertIn("3 novice", text)
+        first = json.loads(self.well("study", self.cohort, "--design", "time-to-criterion", "--json").out)["results"][0]
+        self.assertAlmostEqual(first["worst_rank"]["a"], 0.6, delta=1e-12)
+        self.assertEqual((first["not_ranked"], first["groups"][0]["n"]), (1, 6))
+
+    def test_strata_have_the_direction_of_two_groups(self):
+        table = self.path("t.csv")
+        table.write_text("id,group,site,seconds\n" + "".join(
+            f"P{i},{('expert', 'novice')[i % 2]},{'ab'[i // 2 % 2]},{10 + i % 2 * 5 + i / 10}\n" for i in range(12)))
+        study = ("study", "--table", table, "--participant-column", "id", "--group-column", "group", "--outcome", "seconds:lower")
+        two = json.loads(self.well(*study, "--json").out)["rows"][0]
+        strata = json.loads(self.well(*study, "--strata", "site", "--json").out)["results"][0]
+        self.assertEqual((two["area"]["a"], strata["a"], strata["a_of"]), (1.0, 1.0, "expert better"))
+
+    def test_groups_that_scatter_differently(self):
+        table = self.path("t.csv")
+        generator = program.seeded("spread")
+        table.write_text("id,group,seconds\n" + "".join(
+            f"P{i},{'expert' if i < 24 else 'novice'},{generator.gauss(0, 1 if i < 24 else 4)}\n" for i in range(32)))
+        study = ("study", "--table", table, "--participant-column", "id", "--group-column", "group", "--outcome", "seconds")
+        said = json.loads(self.well(*study, "--json").out)["rows"][0]
+        self.assertTrue(any("Munzel" in warning for warning in said["coverage_warnings"]))
+        chosen = json.loads(self.well(*study, "--unequal-spread", "--json").out)["rows"][0]
+        self.assertEqual(chosen["mann_whitney"]["p"], said["brunner_munzel"]["p"])
+        self.assertTrue(chosen["brunner_munzel"]["decides"])
+        self.refused(2, *study, "--design", "repeated", "--unequal-spread", names=("--unequal-spread",))
 
 
 if __name__ == "__main__":

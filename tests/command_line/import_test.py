@@ -10,6 +10,7 @@ from contextlib import closing
 
 import numpy
 import program
+from cohort_content import query
 from program import calot
 
 try:
@@ -87,9 +88,9 @@ class Reference:
     """docs/reference/metrics/samples.md in NumPy and SciPy: nothing of the program's own."""
 
     def __init__(self, place, rotations, rate=30.0, cutoff=6.0):
-        rows = len(place)
-        points = int(math.floor((rows - 1) * RATE / rate + 1e-9)) + 1
-        row = numpy.arange(rows, dtype=float)
+        kept = self.samples(place, rotations, rate)
+        place, rotations, row = place[kept], rotations[kept], kept.astype(float)
+        points = int(math.floor(row[-1] * RATE / rate + 1e-9)) + 1
         at = numpy.arange(points) * rate / RATE
         b, a = scipy.signal.butter(2, cutoff, fs=RATE)
 
@@ -103,6 +104,13 @@ class Reference:
         q = numpy.stack([smooth(q[:, i]) for i in range(4)], axis=1)
         self.q = q / numpy.linalg.norm(q, axis=1, keepdims=True)
         self.v = numpy.linalg.norm(numpy.gradient(self.p, 1.0 / RATE, axis=0), axis=1)
+
+    @staticmethod
+    def samples(place, rotations, rate):
+        """Rows that differ from the one before; of a pose that stands for more than 0.1 s the last one, too."""
+        moved = (numpy.diff(place, axis=0) != 0).any(axis=1) | (numpy.diff(rotations, axis=0) != 0).any(axis=(1, 2))
+        own = [0, *(numpy.flatnonzero(moved) + 1)]
+        return numpy.array(sorted({*own, *(b - 1 for a, b in zip(own, [*own[1:], len(place)]) if (b - 1 - a) / rate > 0.1)}))
 
     def stretches(self, mask, least):
         edges = numpy.flatnonzero(numpy.diff(numpy.concatenate([[0], mask.astype(int), [0]])))
@@ -194,7 +202,8 @@ class Figures(program.ProgramTest):
         n = len(left.v)
         lags = {lag: numpy.corrcoef(left.v[max(0, -lag):n - max(0, lag)], right.v[max(0, lag):n + min(0, lag)])[0, 1]
                 for lag in range(-100, 101)}
-        expected["bimanual-lag"] = max(lags, key=lags.get) / RATE if max(lags.values()) > 0 else None
+        best = max(lags, key=lags.get)  # the edge of the search may only be on the way to it
+        expected["bimanual-lag"] = best / RATE if lags[best] > 0 and abs(best) < 100 else None
         for name, value in expected.items():
             with self.subTest(f"{path.name} {name} at {cutoff} Hz"):
                 if value is None:
@@ -333,7 +342,6 @@ class Identity(program.ProgramTest):
                                    "FROM attempt").fetchone()
             self.assertEqual(row[1:], ("knots", 1, 1, 1, 0,
                                        "knots/0 device=kinematics calibration=- simulation=0 results=0 mode=assessment", 0))
-            self.assertEqual(row[0].replace("-", "")[:12], first[0]["sha256"][:12])
             self.assertEqual(row[0][14], "8")
             self.assertEqual(database.execute("SELECT DISTINCT origin FROM checkpoint_value").fetchall(), [(2,)])
             self.assertEqual(database.execute("SELECT hex(chain_head) FROM recording").fetchone()[0].lower(), first[0]["sha256"])
@@ -352,6 +360,56 @@ class Identity(program.ProgramTest):
             with self.subTest(" ".join(wrong)):
                 self.refused(3, "import", other, *wrong, "--cohort", self.cohort, names=("other.txt", "conflict"))
         self.assertEqual(content(self.cohort), before)
+
+    def test_the_motion_is_the_identity(self):
+        """Line ends, tabs, units and further columns make neither another attempt nor another person's."""
+        place = synthetic(6.0, program.seeded("identity"))[0][0]
+        def table(name, separator=",", end="\n", more="", unit=1.0):
+            rows = [separator.join(("t", "x", "y", "z") + ((more,) if more else ()))]
+            rows += [separator.join([f"{i / 100}", *(f"{round(float(v), 6) * unit:.9f}" for v in p)] + (["7"] if more else [])) for i, p in enumerate(place)]
+            self.path(name).write_text(end.join(rows) + end, newline="")
+            columns = self.path(name + ".json")
+            columns.write_text(json.dumps({"format": "calot-columns", "formatVersion": 1, "frame": "world", "length": "m" if unit == 1.0 else "mm",
+                                           **({"delimiter": "tab"} if separator == "\t" else {}),
+                                           "time": {"column": "t", "unit": "s"}, "left": {"position": ["x", "y", "z"]}}))
+            return self.path(name), "--columns", columns
+        person = ("--participant", "P1", "--mode", "assessment")
+        self.stored(*table("a.csv"), *person)
+        uuid = "SELECT uuid FROM attempt"
+        (known,) = query(self.cohort, uuid)
+        for name, how in (("crlf.csv", {"end": "\r\n"}), ("tabs.csv", {"separator": "\t"}), ("more.csv", {"more": "pedal"}), ("mm.csv", {"unit": 1000.0})):
+            with self.subTest(name):
+                self.stored(*table(name, **how), *person)
+                self.assertEqual(query(self.cohort, uuid), [known])
+                self.refused(3, "import", *table(name, **how), "--participant", "P2", "--mode", "assessment", "--cohort", self.cohort,
+                             names=(name, "participant"))
+        # A map that was wrong is corrected: the bytes are those of the known file.
+        fixed = json.loads(self.path("a.csv.json").read_text())
+        fixed["left"]["position"] = ["y", "x", "z"]
+        self.path("fixed.json").write_text(json.dumps(fixed))
+        self.assertEqual(self.stored(self.path("a.csv"), "--columns", self.path("fixed.json"), *person)[0]["stored"], "extended")
+        self.assertEqual(query(self.cohort, uuid), [known])
+        # Two sites that hold the same motion in other line ends have one attempt.
+        other = self.path("o.db")
+        self.well("import", *table("crlf.csv", end="\r\n"), *person, "--cohort", other)
+        into = self.path("into.db")
+        self.well("import", *table("a.csv"), *person, "--cohort", into)
+        self.well("cohort", "merge", into, other)
+        self.assertEqual(len(query(into, uuid)), 1)
+        # Who withdrew does not come back in other line ends.
+        self.well("participant", "withdraw", "P1", "--cohort", into, "--scope", "all", "--no-recordings")
+        self.refused(3, "import", *table("tabs.csv", separator="\t"), *person, "--cohort", into, names=("withdrawn",))
+
+    def test_a_file_that_an_earlier_version_took_in(self):
+        """There the bytes were the identity."""
+        first = self.stored(self.motion)
+        digest = first[0]["sha256"]
+        earlier = f"{digest[:8]}-{digest[8:12]}-8{digest[13:16]}-{int(digest[16:18], 16) & 0x3f | 0x80:02x}{digest[18:20]}-{digest[20:32]}"
+        with closing(sqlite3.connect(self.cohort)) as database:
+            database.execute("UPDATE attempt SET uuid = ?", (earlier,))
+            database.commit()
+        self.assertEqual(self.stored(self.motion)[0]["stored"], "unchanged")
+        self.assertEqual(query(self.cohort, "SELECT uuid FROM attempt"), [(earlier,)])
 
     def test_gaps_in_one_group_are_not_its_skill(self):
         # The same motion in both groups; a tracker that loses a sixth of the time in one of them, then a sixtieth.
@@ -432,7 +490,7 @@ class BadFiles(program.ProgramTest):
         self.bad("text.txt", with_word(57, "left"), names=("line 5", "column 58"))
         self.bad("cut.txt", "".join(good)[:-300], names=("line 60", "76"))
         self.bad("metres.txt", with_word(38, "41.5"), names=("line 5", "metres"))
-        self.bad("binary.txt", bytes(range(256)) * 50, names=("line 1",))
+        self.bad("binary.txt", bytes(range(256)) * 50)
         self.refused(4, "import", self.path("none.txt"), "--cohort", self.cohort, names=("none.txt",))
         self.assertFalse(self.cohort.exists())
 
@@ -449,13 +507,13 @@ class BadFiles(program.ProgramTest):
     def test_csv_files_and_maps(self):
         csv_of = lambda *rows: "x,y,z\n" + "".join(row + "\n" for row in rows)
         with_map = ("--columns", self.columns)
-        self.bad("zero.csv", csv_of(), *with_map, names=("line 1",))
+        self.bad("zero.csv", csv_of(), *with_map, names=("0 rows",))
         self.bad("column.csv", "x,y\n1,2\n3,4\n", *with_map, names=("line 1", '"z"', "x, y"))
-        self.bad("nan.csv", csv_of("1,2,3", "1,nan,3"), *with_map, names=("line 3", 'column "y"'))
+        self.bad("nan.csv", csv_of("1,2,3", "1,nan,3"), *with_map, names=("left", "1 of 2"))
         self.bad("text.csv", csv_of("1,2,3", "1,2,three"), *with_map, names=("line 3", "three"))
         self.bad("cut.csv", csv_of("1,2,3", "1,2,3") + "1,2", *with_map, names=("line 4", "2 cells"))
         self.bad("unit.csv", csv_of("1,2,3", "1,2,9000"), *with_map, names=("line 3", "5 m"))
-        for change, words in (({"length": "inch"}, ("/length", "cm, m, mm")), ({"rate": 0}, ("/rate",)), ({"more": 1}, ("/more",)),
+        for change, words in (({"length": "foot"}, ("/length", "cm, inch, m, mm")), ({"rate": 0}, ("/rate",)), ({"more": 1}, ("/more",)),
                               ({"left": {"position": ["x", "y"]}}, ("/left/position",)), ({"rate": "fast"}, ("/rate",))):
             self.columns.write_text(json.dumps({**MAP, **change}))
             path = self.path("well.csv")

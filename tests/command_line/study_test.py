@@ -136,7 +136,7 @@ class Tables(program.ProgramTest):
         self.assertEqual(said["attempts_rule"], "the mean of a participant's rows")
         said = json.loads(self.well(*self.study("--outcome", "seconds", "--attempt-rule", "first", "--json")).out)
         self.assertAlmostEqual(said["rows"][0]["groups"][0]["mean"], np.mean(self.values("control", "first", "seconds")), 9)
-        self.assertEqual(said["flow"]["excluded"], [{"reason": "later row of a participant (the first counts)", "attempts": 8}])
+        self.assertEqual(said["flow"]["excluded"], [{"reason": "later row of a participant (the first counts)", "attempts": 8, "participants": {}}])
         # The same person twice at the occasion itself.
         self.write([*self.rows, self.rows[1]])
         self.refused(3, *self.study(*AT_LAST, *OUTCOMES), names=("line 18", '"P0"', "2"))
@@ -212,7 +212,7 @@ class Tables(program.ProgramTest):
         self.refused(3, *self.study(*AT_LAST, *OUTCOMES), names=("3 groups", "--groups"))
         said = json.loads(self.well(*self.study(*AT_LAST, *OUTCOMES, "--groups", "trained,control", "--json")).out)
         self.assertEqual((said["groups"], said["participants"]), (["trained", "control"], [3, 3]))
-        self.assertIn({"reason": "another group", "attempts": 4}, said["flow"]["excluded"])
+        self.assertIn({"reason": "another group", "attempts": 4, "participants": {}}, said["flow"]["excluded"])
         moved = [dict(r, arm="trained") if (r["id"], r["stage"]) == ("P0", "last") else r for r in self.rows]
         self.write(moved)
         self.refused(3, *self.study(*AT_LAST, *OUTCOMES), names=("line 3", '"P0"'))
@@ -251,8 +251,8 @@ class Tables(program.ProgramTest):
             row["arm"] = row["arm"].replace("trained", "<i>trained</i> & 'late'")
         self.write()
         page = self.path("p.html")
-        command = self.study(*AT_LAST, *OUTCOMES, "--html", page)
-        shown = self.well(*command, "--all").out
+        command = self.study(*AT_LAST, *OUTCOMES, "--html", page, "--all")
+        shown = self.well(*command).out
         first = self.well(*self.study(*AT_LAST, *OUTCOMES)).out.splitlines()
         self.assertLessEqual(len(first), 40, "one screen")
         self.assertLessEqual(max(map(len, first)), 120)

@@ -11,6 +11,7 @@ import time
 import program
 import recording_file
 from cohort_content import content, query
+from import_test import synthetic, text_of
 from program import calot, recording
 
 WHO = "Withdrawn-Q7"
@@ -108,6 +109,58 @@ class Withdraw(program.ProgramTest):
         answer = calot("study", self.cohort, "--include-synthetic", "--include-practice")
         self.assertEqual(answer.code, 3)
         self.assertIn("2 withdrawn", answer.err)
+
+    def motion(self, number, *more):
+        path = self.path(f"motion{number}.txt")
+        path.write_text(text_of(synthetic(2.0 + number, program.seeded(f"motion{number}"))))
+        self.well("import", path, "--participant", "M1", *more, "--cohort", self.cohort)
+
+    def test_research_takes_what_studies_analyse(self):
+        """The purpose follows the consent; an assessment of purpose training goes with a consent, or is asked for."""
+        self.well("participant", "add", "M1", "--group", "novice", "--consent", "study:2026-01-01", "--cohort", self.cohort)
+        self.motion(1, "--mode", "assessment")
+        self.motion(2, "--mode", "assessment", "--purpose", "training")
+        self.motion(3, "--purpose", "training")
+        rows = "SELECT purpose, mode FROM attempt WHERE participant = (SELECT id FROM participant WHERE pseudonym = 'M1') ORDER BY 1, 2"
+        self.assertEqual(query(self.cohort, rows), [("study", 1), ("training", 0), ("training", 1)])
+        (stays,) = query(self.cohort, "SELECT a.uuid FROM attempt a JOIN recording r ON r.attempt = a.id WHERE r.file_name = 'motion3.txt'")
+        self.well("cohort", "export", self.cohort, "-o", self.path("tables"))
+        command = ("participant", "withdraw", "M1", "--cohort", self.cohort, "--scope", "research", "--no-recordings")
+        said = self.well(*command).out
+        self.assertIn(f"stays: attempt {stays[0]}, practice", said)
+        self.assertIn("stays: participant M1", said)
+        self.assertIn("was handed out: cohort-export", said)
+        self.assertEqual(query(self.cohort, rows), [("training", 0)])
+        # What is left is training, and an export that holds it is listed still.
+        self.refused(3, *command, names=("M1",))
+        self.motion(4, "--mode", "assessment")
+        self.refused(2, *command, names=("--assessments",))
+        self.refused(3, *command, "--assessments", "keep", names=("M1",))
+        self.well(*command, "--assessments", "remove")
+        self.assertEqual(query(self.cohort, rows), [("training", 0)])
+        self.assertIn("tables", self.well("participant", "withdraw", "M1", "--cohort", self.cohort, "--scope", "all", "--no-recordings").out)
+
+    def test_nothing_to_remove_is_said(self):
+        self.well("participant", "add", "M2", "--cohort", self.cohort)
+        said = self.well("participant", "withdraw", "M2", "--cohort", self.cohort, "--scope", "research", "--no-recordings").out
+        self.assertIn("no attempt and no file is there to remove", said)
+
+    def test_a_branch_that_no_row_names_is_known_by_its_tombstone(self):
+        """Killed behind the file's removal, whenever that is: a copy of the branch does not come in again."""
+        loose = self.data / "loose.h5"
+        self.well("branch", self.branch, "--at", 0.25, "--performer", "skilled", "--seconds", 0.1, "-o", loose)
+        copy = shutil.copy(loose, self.path("copy.h5"))
+        command = [str(program.PROGRAM), "participant", "withdraw", WHO, "--cohort", str(self.cohort), "--scope", "all",
+                   "--recordings", str(self.data)]
+        process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        while loose.exists() and process.poll() is None:
+            pass
+        process.send_signal(signal.SIGKILL)
+        process.wait()
+        again = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, check=False)
+        self.assertIn(again.returncode, (0, 3), again)
+        self.refused(3, "assess", copy, "--cohort", self.cohort, names=("withdrawn",))
+        self.assertEqual(query(self.cohort, "SELECT scope, attempts FROM tombstone"), [("all", 4)])
 
     def test_says_first_what_it_would_do(self):
         before = {p: p.read_bytes() for p in self.folder.rglob("*") if p.is_file() and p.suffix not in (".db-wal", ".db-shm")}

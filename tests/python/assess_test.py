@@ -77,13 +77,13 @@ class Cohorts(program.ProgramTest):
         with closing(sqlite3.connect(self.cohort)) as database:
             stored = database.execute("SELECT a.uuid, v.name, v.subject, v.value FROM checkpoint_value v JOIN attempt a ON a.id = v.attempt").fetchall()
         cohort = calot.Cohort(self.cohort)
-        table = cohort.values(frame=False)
+        table = cohort.values(frame=False, analysed=False)
         rows = list(zip(table["attempt"], table["name"], table["subject"], table["value"]))
         self.assertEqual(len(rows), len(stored))
         self.assertEqual({r for r in rows if r[3] == r[3]}, {r for r in stored if r[3] is not None})
         whose = dict(zip(table["attempt"], table["participant"]))
         self.assertEqual(sorted(whose.values()), ["S1", "S2", "U1", "U2"])
-        attempts = cohort.attempts(frame=False)
+        attempts = cohort.attempts(frame=False, analysed=False)
         self.assertEqual(set(attempts["verdict"]), {"verified"})
         self.assertEqual(dict(zip(attempts["participant"], attempts["group"]))["S1"], "expert")
         people = cohort.participants(frame=False)
@@ -95,12 +95,12 @@ class Cohorts(program.ProgramTest):
         except ImportError:
             self.skipTest("pandas is not installed")
         cohort = calot.Cohort(self.cohort)
-        frame = cohort.values(name="path-length")
+        frame = cohort.values(name="path-length", analysed=False)
         self.assertIsInstance(frame, pandas.DataFrame)
         self.assertEqual(len(frame), 8)
         wide = frame.pivot(index="attempt", columns="subject", values="value")
         self.assertEqual((wide.shape, wide.dtypes["left"]), ((4, 2), np.dtype(float)))
-        self.assertEqual(list(cohort.attempts().profile), list(cohort.attempts(frame=False)["profile"]))
+        self.assertEqual(list(cohort.attempts(analysed=False).profile), list(cohort.attempts(frame=False, analysed=False)["profile"]))
 
     def test_without_pandas(self):
         kept = {name: sys.modules.pop(name) for name in list(sys.modules) if name.split(".")[0] == "pandas"}
@@ -114,13 +114,17 @@ class Cohorts(program.ProgramTest):
 
     def test_what_is_excluded_stays_out(self):
         cohort = calot.Cohort(self.cohort)
-        first, second = cohort.attempts(frame=False)["attempt"][:2]
+        made = {"frame": False, "include": ("synthetic", "practice")}
+        self.assertEqual(len(cohort.attempts(frame=False)["attempt"]), 0, "performers' practice")
+        first, second = cohort.attempts(**made)["attempt"][:2]
         self.well("attempt", "exclude", first, "--reason", "test", "--by", "me", "--cohort", self.cohort)
-        self.assertEqual(len(cohort.attempts(frame=False)["attempt"]), 3)
-        self.assertEqual(len(cohort.attempts(frame=False, excluded=True)["attempt"]), 4)
-        self.assertNotIn(first, cohort.values(frame=False)["attempt"])
-        self.assertIn(first, cohort.values(frame=False, excluded=True)["attempt"])
-        self.assertIn(second, cohort.values(frame=False)["attempt"])
+        self.assertEqual(len(cohort.attempts(**made)["attempt"]), 3)
+        self.assertEqual(len(cohort.attempts(frame=False, analysed=False)["attempt"]), 4)
+        self.assertNotIn(first, cohort.values(**made)["attempt"])
+        self.assertIn(first, cohort.values(frame=False, analysed=False)["attempt"])
+        self.assertIn(second, cohort.values(**made)["attempt"])
+        with self.assertRaises(calot.InvalidError):
+            cohort.attempts(include=("novices",))
 
     def test_what_is_no_cohort(self):
         for file in (self.path("none.db"), attempts()[0]):

@@ -55,7 +55,7 @@ class Record(program.ProgramTest):
         driven(self.path("a.h5"))
         cohort = self.path("c.db")
         self.well("assess", self.path("a.h5"), "--cohort", cohort)
-        attempts = calot.Cohort(cohort).attempts(frame=False)
+        attempts = calot.Cohort(cohort).attempts(frame=False, analysed=False)
         self.assertEqual((list(attempts["synthetic"]), list(attempts["profile"])), ([True], ["controller:press"]))
         self.well("render", self.path("a.h5"), "--at", "1", "--size", "64x36", "-o", self.path("p.png"))
         self.assertIn("controller:press", self.well("inspect", self.path("a.h5")).out + self.well("inspect", "--json", self.path("a.h5")).out)

@@ -21,10 +21,23 @@ namespace {
 
 constexpr double minPath = 1e-3;           ///< m
 constexpr std::int64_t farthestLag = 100;  ///< points: 1 s
-constexpr const char* tooStill = "the speed of a hand does not vary by 0.1 mm/s while both are measured";
+constexpr const char* tooStill =
+    "the speed of a hand does not vary by 0.1 mm/s, or by no more than the tracker's noise, while both are measured";
+
+/// Path (m) of a resting hand in the tracker's noise: the mean of its speed's magnitude, 2 sqrt(2 / pi) deviations.
+double noisePath(const Motion& motion) {
+  constexpr double meanDeviations = 1.5957691216057308;
+  return meanDeviations * speedNoise(motion) * static_cast<double>(motion.points()) / motionRate;
+}
+
+Measured unlessNoise(double path, double ofNoise) {
+  if (path >= 2.0 * ofNoise || ofNoise < minPath) return Measured::of(path);
+  return Measured::notAvailable(
+      fmt::format("of {:.1f} mm, the tracker's noise may be {:.1f} mm: half or more", 1000.0 * path, 1000.0 * ofNoise));
+}
 
 /// Unfiltered it would measure the tracker's noise: 0.2 mm at 100 Hz lengthen it by 42 %.
-Measured pathLengthOf(const Motion& motion) { return Measured::of(pathLength(motion)); }
+Measured pathLengthOf(const Motion& motion) { return unlessNoise(pathLength(motion), noisePath(motion)); }
 
 /// Angle of the rotation from a to b, in [0, pi]: 2 atan2(|v|, |w|) of a* b = (w, v), exact for small turns too.
 double angleBetween(const Quat& a, const Quat& b) {
@@ -65,7 +78,7 @@ Measured depthPathOf(const Motion& motion) {
       before = axis;
     }
   }
-  return Measured::of(path);
+  return unlessNoise(path, 0.5 * noisePath(motion));  // of one component: sqrt(2 / pi) deviations
 }
 
 /// 95 % quantile of the chi-squared distribution with 3 degrees of freedom.
@@ -112,6 +125,8 @@ Measured speedPercentile(const Motion& motion) {
 }
 
 Measured count(const Motion& motion) {
+  if (std::string why = filledByNoise(motion, motion.movementSpeed); !why.empty())
+    return Measured::notAvailable(std::move(why));
   std::size_t movements = 0;
   for (const MotionSegment& segment : motion.segments) movements += movementsOf(segment, motion.movementSpeed).size();
   return Measured::of(static_cast<double>(movements), thresholdNote(motion));
@@ -120,6 +135,8 @@ Measured count(const Motion& motion) {
 /// The chord as a share of the path, not the path over the chord: a movement that returns to its start has a chord of
 /// 0.
 Measured straightness(const Motion& motion) {
+  if (std::string why = filledByNoise(motion, motion.movementSpeed); !why.empty())
+    return Measured::notAvailable(std::move(why));
   double chord = 0.0, path = 0.0;
   for (const MotionSegment& segment : motion.segments) {
     for (const Stretch& movement : movementsOf(segment, motion.movementSpeed)) {
@@ -138,6 +155,7 @@ double idleSeconds(const std::vector<bool>& idle) {
 }
 
 Measured idle(const Motion& motion) {
+  if (std::string why = filledByNoise(motion, idleSpeed); !why.empty()) return Measured::notAvailable(std::move(why));
   double seconds = 0.0;
   for (const MotionSegment& segment : motion.segments) {
     std::vector<bool> slow(segment.speed.size());
@@ -148,6 +166,9 @@ Measured idle(const Motion& motion) {
 }
 
 Measured idleOfBoth(const Motion& left, const Motion& right, const AttemptContext& /*context*/) {
+  for (const Motion* hand : {&left, &right}) {
+    if (std::string why = filledByNoise(*hand, idleSpeed); !why.empty()) return Measured::notAvailable(std::move(why));
+  }
   double seconds = 0.0;
   for (const CommonPart& part : commonParts(left, right, 0)) {
     std::vector<bool> slow(part.points);
@@ -160,6 +181,8 @@ Measured idleOfBoth(const Motion& left, const Motion& right, const AttemptContex
 Measured handRatioOf(const Motion& left, const Motion& right, const AttemptContext& context) {
   const double l = pathLength(left), r = pathLength(right);
   if (!(l + r >= minPath)) return Measured::notApplicable("neither hand moved: both paths together are below 1 mm");
+  if (!(l + r >= 2.0 * (noisePath(left) + noisePath(right))))
+    return Measured::notAvailable("half of both paths or more is the tracker's noise");
   return Measured::of(r / (l + r), fmt::format("handedness {}", context.handedness));
 }
 
@@ -174,6 +197,8 @@ Measured lag(const Motion& left, const Motion& right, const AttemptContext& /*co
   // The least bad of what doesn't go together is no lag.
   if (!(best->correlation > 0.0))
     return Measured::notApplicable("the hands' speeds do not go together at any lag within 1 s");
+  if (std::abs(best->lag) == farthestLag)
+    return Measured::notApplicable("the correlation is greatest at the edge of the search, 1 s");
   return Measured::of(static_cast<double>(best->lag) / motionRate,
                       fmt::format("correlation {:.3f}", best->correlation));
 }
@@ -200,7 +225,7 @@ std::vector<CheckpointEntry> motionRows() {
                           .title = "Path length of the instrument's tip",
                           .displayUnit = "mm",
                           .direction = Direction::lower,
-                          .version = 3,
+                          .version = 4,
                           .definition = "L = sum |p(k+1) - p(k)| over the filtered points of the real tip p_WI, "
                                         "within segments",
                           .paperReading = "Total trajectory dist. (left), (right) (mm): path of the real tip in "
@@ -211,7 +236,7 @@ std::vector<CheckpointEntry> motionRows() {
                           .title = "Path along the instrument's axis",
                           .displayUnit = "mm",
                           .direction = Direction::lower,
-                          .version = 2,
+                          .version = 3,
                           .definition = "sum |(p(k+1) - p(k)) . (z(k) + z(k+1)) / 2|, p the filtered tip, z the "
                                         "instrument's axis towards the tip (third column of the filtered "
                                         "orientation), within segments"}},
@@ -221,7 +246,7 @@ std::vector<CheckpointEntry> motionRows() {
                           .title = "Angular path of the instrument",
                           .displayUnit = "deg",
                           .direction = Direction::lower,
-                          .version = 2,
+                          .version = 3,
                           .definition = "sum angle(R(k)^T R(k+1)) over the filtered orientations (quaternion "
                                         "components filtered like coordinates, then normalised), within "
                                         "segments"}},
@@ -230,7 +255,7 @@ std::vector<CheckpointEntry> motionRows() {
            .definition = {.name = "speed-mean",
                           .title = "Mean speed of the instrument's tip",
                           .displayUnit = "mm/s",
-                          .version = 2,
+                          .version = 3,
                           .definition = "mean of v(k) over all points; v(k) = |p(k+1) - p(k-1)| * 50 Hz of the "
                                         "filtered tip, one-sided at the ends of a segment"}},
           meanSpeed, 50);
@@ -238,14 +263,14 @@ std::vector<CheckpointEntry> motionRows() {
            .definition = {.name = "speed-p95",
                           .title = "95th percentile of the tip's speed",
                           .displayUnit = "mm/s",
-                          .version = 2,
+                          .version = 3,
                           .definition = "quantile of type 7 at 0.95 of v(k) over all points, v as in speed-mean"}},
           speedPercentile);
   addHand({.place = {CheckpointFamily::motion, 60},
            .definition = {.name = "movements",
                           .title = "Number of movements",
                           .direction = Direction::lower,
-                          .version = 2,
+                          .version = 3,
                           .definition = "#{maximal stretches of points with v(k) >= max(v_95 / 2, 5 mm/s) that "
                                         "last 0.2 s or longer}, v as in speed-mean, v_95 the hand's speed-p95 over "
                                         "the attempt, a point lasting 10 ms"}},
@@ -254,7 +279,7 @@ std::vector<CheckpointEntry> motionRows() {
            .definition = {.name = "movement-straightness",
                           .title = "Straightness of the movements",
                           .direction = Direction::higher,
-                          .version = 2,
+                          .version = 3,
                           .definition = "sum over movements of |p(last) - p(first)| / sum over movements of their "
                                         "path length; movements as in movements"}},
           straightness);
@@ -263,7 +288,7 @@ std::vector<CheckpointEntry> motionRows() {
                           .title = "Time at rest",
                           .unit = "s",
                           .direction = Direction::lower,
-                          .version = 2,
+                          .version = 3,
                           .definition = "sum of the lengths of the maximal stretches of points with v(k) < 5 mm/s "
                                         "that last 0.5 s or longer, v as in speed-mean, a point lasting 10 ms"}},
           idle, 70);
@@ -272,7 +297,7 @@ std::vector<CheckpointEntry> motionRows() {
                           .title = "Working volume of the instrument's tip",
                           .displayUnit = "ml",
                           .direction = Direction::lower,
-                          .version = 2,
+                          .version = 3,
                           .definition = "4/3 pi (7.814727903)^(3/2) sqrt(det S): the ellipsoid of normally "
                                         "distributed points that holds 95 % of them; S the covariance (divisor n - "
                                         "1) of all filtered points"}},
@@ -282,11 +307,12 @@ std::vector<CheckpointEntry> motionRows() {
                           .title = "Effective rate of the tracker",
                           .unit = "Hz",
                           .filter = "none",
-                          .version = 2,
-                          .definition = "intervals between samples by the time that they fill, those over 1.5 of "
-                                        "the tracker's own intervals left out (in a file of motion: over 2.5); a "
-                                        "sample is a measured tick whose pose differs from the one before, or a "
-                                        "row of the file",
+                          .version = 3,
+                          .definition =
+                              "intervals between samples by the time that they fill, those over 1.5 of "
+                              "the tracker's own intervals left out (in a file without repeated rows: over 2.5); a "
+                              "sample is a measured tick, or a row of the file, whose pose differs from "
+                              "the one before",
                           .notOutcome = "it describes the tracker"}},
           motionRateOf);
   rows.back().definition.minCoverage = 0.0;
@@ -297,14 +323,14 @@ std::vector<CheckpointEntry> motionRows() {
                           .unit = "s",
                           .direction = Direction::lower,
                           .instruments = "both hands at the same time",
-                          .version = 2,
+                          .version = 3,
                           .definition = "as idle-time, of the points at which both hands are measured and v(k) "
                                         "< 5 mm/s for both"}},
           idleOfBoth);
   addBoth({.place = {CheckpointFamily::motion, 130},
            .definition = {.name = "bimanual-correlation",
                           .title = "Correlation of both hands' speeds",
-                          .version = 2,
+                          .version = 3,
                           .definition = "Pearson's correlation of v_left(k) and v_right(k), v as in "
                                         "speed-mean, over the points at which both hands are measured"}},
           correlation);
@@ -312,17 +338,17 @@ std::vector<CheckpointEntry> motionRows() {
            .definition = {.name = "bimanual-lag",
                           .title = "Lag of the right hand behind the left",
                           .unit = "s",
-                          .version = 2,
+                          .version = 3,
                           .definition = "the l within 1 s either way for which the correlation of v_left(t) "
-                                        "and v_right(t + l) is greatest, if above 0; positive: the right hand "
-                                        "follows"}},
+                                        "and v_right(t + l) is greatest, if above 0 and not at the edge; "
+                                        "positive: the right hand follows"}},
           lag);
   addBoth({.place = {CheckpointFamily::motion, 150},
            .definition = {.name = "hand-ratio",
                           .title = "Right hand's share of both paths",
                           .displayUnit = "%",
                           .window = "whole attempt, while an instrument is mounted and measured",
-                          .version = 2,
+                          .version = 3,
                           .definition = "L_right / (L_left + L_right), L as in path-length; the value's note "
                                         "gives the handedness"}},
           handRatioOf);

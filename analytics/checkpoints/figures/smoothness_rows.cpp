@@ -47,7 +47,9 @@ double longestBridge(const Motion& motion) {
 
 Measured ofLongSegments(const Motion& motion, OfSpeed figure) {
   if (isBroken(motion)) return refusedForAGap(maxBridge);
-  if (maxSpeed(motion) < minSpeed) return Measured::notApplicable("the hand did not move: no speed of 0.1 mm/s");
+  const double least = std::max(minSpeed, 2.0 * restSpeed(motion));
+  if (maxSpeed(motion) < least)
+    return Measured::notApplicable(fmt::format("the hand did not move: no speed of {:.1f} mm/s", 1000.0 * least));
   double sum = 0.0, points = 0.0;
   std::size_t segments = 0;
   for (const MotionSegment& segment : motion.segments) {
@@ -78,9 +80,25 @@ Measured sparc(const Motion& motion) {
   return ofLongSegments(motion, spectralArcLength);
 }
 
+/// At a segment's ends the filter mirrors the motion and differences are one-sided: a steady motion has its only jerk
+/// there. Steady: a quarter of a second from both ends, the speed varies by less than can be measured.
+/// @pre a segment lasts for minSegment
+bool isSteady(const Motion& motion) {
+  const auto ends = static_cast<std::ptrdiff_t>(pointsOf(0.25));
+  const double least = std::max(minSpeed, 2.0 * restSpeed(motion));
+  return std::all_of(motion.segments.begin(), motion.segments.end(), [&](const MotionSegment& segment) {
+    if (segment.speed.size() < pointsOf(minSegment)) return true;
+    const auto [low, high] = std::minmax_element(segment.speed.begin() + ends, segment.speed.end() - ends);
+    return *high - *low < least;
+  });
+}
+
 Measured jerk(const Motion& motion) {
   if (std::string why = tooSlow(motion, minJerkRate); !why.empty()) return Measured::notAvailable(std::move(why));
-  return ofLongSegments(motion, logDimensionlessJerk);
+  Measured measured = ofLongSegments(motion, logDimensionlessJerk);
+  if (measured.value && isSteady(motion))
+    return Measured::notApplicable("the speed is steady: its jerk is an effect of the recording's ends");
+  return measured;
 }
 
 /// A movement with its beginning and end: cut off at the threshold it would seem smoother than any movement can be.
@@ -95,6 +113,8 @@ Stretch widened(const std::vector<double>& speed, Stretch movement) {
 }
 
 Measured jerkOfMovements(const Motion& motion) {
+  if (std::string why = filledByNoise(motion, motion.movementSpeed); !why.empty())
+    return Measured::notAvailable(std::move(why));
   if (std::string why = tooSlow(motion, minJerkRate); !why.empty()) return Measured::notAvailable(std::move(why));
   double sum = 0.0;
   std::size_t movements = 0;
@@ -121,7 +141,7 @@ std::vector<CheckpointEntry> smoothnessRows() {
                       .title = "Spectral arc length (SPARC)",
                       .direction = Direction::higher,
                       .minCoverage = minSparcCoverage,
-                      .version = 3,
+                      .version = 4,
                       .definition = "-sum sqrt((df / (fc - f0))^2 + dM^2) from f0 to fc, the first and last frequency, "
                                     "at most 10 Hz, with M >= 0.05; M the amplitude spectrum of v as a share of M(0 "
                                     "Hz), zeros added up to 2^(ceil(log2 n) + 4) values; v as in speed-mean; of "
@@ -133,21 +153,22 @@ std::vector<CheckpointEntry> smoothnessRows() {
        .definition = {.name = "log-dimensionless-jerk",
                       .title = "Log dimensionless jerk (LDLJ of the speed profile)",
                       .direction = Direction::higher,
-                      .version = 2,
+                      .version = 3,
                       .definition = "-ln(T^3 / v_peak^2 * sum (v'')^2 dt), v'' = (v(k+1) - 2 v(k) + v(k-1)) / dt^2, T "
                                     "= n dt, v as in speed-mean; of segments of 1 s or longer, averaged by their "
-                                    "length"}},
+                                    "length; not of a steady speed, which varies by less than 0.1 mm/s between the "
+                                    "segments' first and last quarter second"}},
       jerk);
   const CheckpointEntry movements = perHand(
       {.place = {CheckpointFamily::motion, 120},
        .definition = {.name = "movement-jerk",
                       .title = "Log dimensionless jerk of a movement (mean)",
                       .direction = Direction::higher,
-                      .version = 2,
+                      .version = 3,
                       .definition = "mean over movements of log-dimensionless-jerk of each; movements as in movements, "
                                     "and outwards to where v stops falling or falls below 5 mm/s"}},
       jerkOfMovements);
-  return {arc, perHandAndPhase(arc, 80, sparc, 3), whole, perHandAndPhase(whole, 90, jerk), movements};
+  return {arc, perHandAndPhase(arc, 80, sparc, 4), whole, perHandAndPhase(whole, 90, jerk), movements};
 }
 
 }  // namespace calot::analytics

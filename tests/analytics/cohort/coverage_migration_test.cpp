@@ -36,7 +36,7 @@ TEST(CoverageMigration, valuesWithoutCoverageKeepWhatTheyAre) {
   EXPECT_EQ(values[0].value.note, "seen");
   EXPECT_EQ(values[1].value.availability, Availability::notApplicable);
   expectNames(values[1].value.reason, {"hand"});
-  for (const AttemptValue& v : values) EXPECT_FALSE(v.value.coverage) << "not known";
+  for (const AttemptValue& v : values) EXPECT_FALSE(v.value.coverage || v.value.rate || v.value.noise) << "not known";
 }
 
 }  // namespace

@@ -41,9 +41,7 @@ class CohortDesign : public testing::Test {
     a.steps = static_cast<std::uint64_t>(seconds * 100.0);
     a.stepSeconds = 0.01;
     std::vector<CheckpointValue> values = support::valuesOf(seconds, seconds / 100.0);
-    if (outcome != recorder::Outcome::completed)
-      values[0] = makeMissing(*findCheckpoint("elapsed-time"), "", Origin::resimulated, Availability::notAvailable,
-                              "not completed");
+    values[0] = support::elapsedTime(seconds, outcome);
     cohort_.storeAttempt(a, values);
   }
 

@@ -104,6 +104,7 @@ TEST(CohortTables, giveEveryRowBackBothWays) {
   SQLite::Database raw(path, SQLite::OPEN_READONLY);
   std::set<std::string> names;
   for (const TableFacts& table : readTables(raw)) names.insert(table.name);
+  for (const DeclaredTable& view : cohortViews()) names.insert(view.name);
   ASSERT_EQ(tables.size(), names.size());
   for (const ExportedTable& t : tables) {
     EXPECT_EQ(names.count(t.name), 1U);

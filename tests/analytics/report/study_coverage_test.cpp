@@ -15,7 +15,7 @@ namespace calot::analytics {
 namespace {
 
 /// Five experts and five novices with paths that overlap; coverage of the experts' left hand as given.
-Study studyWith(const std::vector<double>& expertCoverage) {
+Study studyWith(const std::vector<double>& expertCoverage, double expertRate = 0.0, bool mixKeys = false) {
   const CheckpointDefinition& path = *findCheckpoint("path-length");
   std::vector<AttemptRow> attempts;
   std::vector<AttemptValue> values;
@@ -28,11 +28,17 @@ Study studyWith(const std::vector<double>& expertCoverage) {
     if (coverage < path.minCoverage)
       left = makeMissing(path, "left", Origin::samples, Availability::tooLittleCoverage, "samples cover too little");
     left.coverage = coverage;
+    if (expertRate > 0.0) {
+      left.rate = n < 5 ? expertRate : 30.0;
+      left.noise = 1e-4;
+    }
     values.push_back({a.uuid, left, {}});
     CheckpointValue right = makeMissing(path, "right", Origin::samples, Availability::absentHand, "no instrument");
     values.push_back({a.uuid, right, {}});
   }
-  return makeStudy(attempts, values, {}, "c.db");
+  StudyOptions options;
+  options.mixKeys = mixKeys;
+  return makeStudy(attempts, values, options, "c.db");
 }
 
 std::string notesOf(const Study& study) {
@@ -63,13 +69,29 @@ TEST(StudyCoverage, warnsWhereTheGroupsDiffer) {
   const ReportTable table = coverageTable(study);
   ASSERT_EQ(table.rows.size(), 2U);
   EXPECT_EQ(table.rows[0],
-            (std::vector<std::string>{"left hand", "expert", "5", "93.0", "80.0", "1", pText(left.test->p)}));
+            (std::vector<std::string>{"left hand", "expert", "5", "93.0", "80.0", "1", pText(left.test->p), "-", "-"}));
   EXPECT_EQ(table.rows[1][4], "100.0");
   const std::string notes = notesOf(study);
   expectHolds(notes, {"Warning: coverage", "left hand", "93.0 %", "100.0 %"});
   const auto json = nlohmann::json(studyTree(study));
   EXPECT_TRUE(json["coverage"][0]["differs"].get<bool>());
   EXPECT_EQ(json["coverage"][0]["shares"][0].size(), 5U);
+}
+
+TEST(StudyCoverage, unlikeTrackersAreNotCompared) {
+  const std::vector<double> whole(5, 1.0);
+  const auto rowOf = [](const Study& study) { return study.rows.front(); };
+  EXPECT_TRUE(rowOf(studyWith(whole, 30.0)).test);
+  EXPECT_TRUE(rowOf(studyWith(whole, 36.0)).test) << "warned of";
+  expectHolds(notesOf(studyWith(whole, 36.0)), {"trackers", "36.0 Hz", "30.0 Hz"});
+  const Study apart = studyWith(whole, 100.0);
+  EXPECT_FALSE(rowOf(apart).test);
+  EXPECT_FALSE(rowOf(apart).area);
+  expectHolds(rowOf(apart).test.reason(), {"100.0 Hz", "30.0 Hz"});
+  EXPECT_EQ(coverageTable(apart).rows.at(0).at(7), "100.0 Hz");
+  const Study mixed = studyWith(whole, 100.0, true);
+  EXPECT_TRUE(rowOf(mixed).test);
+  expectHolds(notesOf(mixed), {"trackers", "100.0 Hz"});
 }
 
 TEST(StudyCoverage, missingIsCountedAsWhatItIs) {

@@ -36,6 +36,26 @@ TEST(Generalizability, coefficientsAreTheIntraclassCorrelations) {
   EXPECT_NEAR(r->at(4).g, intraclassCorrelation(sixByFour, IccForm::threeAverage)->value, 1e-13);
   EXPECT_NEAR(r->at(4).phi, intraclassCorrelation(sixByFour, IccForm::twoAverage)->value, 1e-13);
   EXPECT_NEAR(r->at(1).phi, intraclassCorrelation(sixByFour, IccForm::twoSingle)->value, 1e-13);
+  const Interval icc = *intraclassCorrelation(sixByFour, IccForm::threeAverage)->interval;
+  EXPECT_NEAR(r->gInterval->lower, icc.lower, 1e-12);
+  EXPECT_NEAR(r->gInterval->upper, icc.upper, 1e-12);
+}
+
+/// A second group that lies elsewhere changes nothing within groups, and everything in the whole.
+TEST(Generalizability, peopleAreNestedInGroups) {
+  RatingTable other = sixByFour, whole = sixByFour;
+  for (double& v : other.values) v += 50.0;
+  whole.subjects = 12;
+  whole.values.insert(whole.values.end(), other.values.begin(), other.values.end());
+  const RatingTable groups[] = {sixByFour, other};
+  const auto one = generalizability(sixByFour), nested = generalizability(groups);
+  ASSERT_TRUE(nested) << nested.reason();
+  EXPECT_EQ(nested->people, 12U);
+  EXPECT_NEAR(nested->person, one->person, 1e-12);
+  EXPECT_NEAR(nested->facet, one->facet, 1e-12);
+  EXPECT_NEAR(nested->residual, one->residual, 1e-12);
+  EXPECT_GT(nested->gInterval->lower, one->gInterval->lower) << "twice the people";
+  EXPECT_GT(generalizability(whole)->at(4).g, 0.99);
 }
 
 TEST(Generalizability, findsPlantedComponents) {

@@ -25,6 +25,27 @@ const Values early{1.15, 0.88, 0.90, 0.74, 1.21};
 
 using data::sleep1, data::sleep2;
 
+/// Share of the subsets of the pooled values as large as `x` whose U is at least that of x.
+double bruteForceGreater(const Values& x, const Values& y) {
+  Values pooled = x;
+  pooled.insert(pooled.end(), y.begin(), y.end());
+  const double observed = mannWhitney(x, y)->u;
+  std::vector<bool> chosen(pooled.size(), false);
+  std::fill(chosen.end() - static_cast<std::ptrdiff_t>(x.size()), chosen.end(), true);
+  double all = 0.0, far = 0.0;
+  do {
+    double u = 0.0;
+    for (std::size_t i = 0; i < pooled.size(); ++i) {
+      for (std::size_t j = 0; j < pooled.size(); ++j) {
+        if (chosen[i] && !chosen[j]) u += pooled[i] > pooled[j] ? 1.0 : pooled[i] == pooled[j] ? 0.5 : 0.0;
+      }
+    }
+    all += 1.0;
+    far += u >= observed ? 1.0 : 0.0;
+  } while (std::next_permutation(chosen.begin(), chosen.end()));
+  return far / all;
+}
+
 /// Two-sided p by going through every subset of the pooled mid-ranks.
 double bruteForceP(const Values& x, const Values& y) {
   Values pooled = x;
@@ -58,6 +79,35 @@ TEST(MannWhitney, permeabilityExample) {
   EXPECT_NEAR(interval->upper, 0.76, 1e-12);
   EXPECT_GE(interval->attained, 0.95);
   EXPECT_LT(interval->attained, 0.98);
+}
+
+TEST(MannWhitney, oneSidedIsRsGreater) {
+  EXPECT_NEAR(mannWhitney(term, early)->greater, 382.0 / 3003.0, 1e-12);  // R: 0.1272
+  EXPECT_NEAR(mannWhitney(early, term)->greater, bruteForceGreater(early, term), 1e-12);
+  EXPECT_NEAR(mannWhitney(sleep2, sleep1)->greater, bruteForceGreater(sleep2, sleep1), 1e-12) << "ties";
+}
+
+/// Groups that differ by exactly the margin: the claim is false, and is found in at most 5 %; groups that do not differ
+/// are found alike.
+TEST(MarginTest, holdsItsLevelAndFindsWhatIsAlike) {
+  std::mt19937 random(43);
+  std::normal_distribution<double> normal;
+  for (const std::size_t n : {6U, 12U}) {
+    std::size_t atTheMargin = 0, alike = 0;
+    constexpr std::size_t studies = 4000;
+    for (std::size_t s = 0; s < studies; ++s) {
+      Values x(n), y(n);
+      for (double& v : x) v = normal(random);
+      for (double& v : y) v = normal(random);
+      Values further = x;
+      for (double& v : further) v += 2.0;
+      atTheMargin += *marginTest(further, y, 2.0, true) <= 0.05 ? 1 : 0;
+      alike += *marginTest(x, y, 2.0, true) <= 0.05 ? 1 : 0;
+    }
+    EXPECT_LE(atTheMargin, 0.06 * studies) << n;
+    EXPECT_GE(atTheMargin, 0.02 * studies) << n;
+    EXPECT_GE(alike, 0.7 * studies) << n;
+  }
 }
 
 TEST(MannWhitney, smallExampleExactAndAsymptotic) {

@@ -26,6 +26,7 @@
 
 #include "analytics/assessment/grade.h"
 #include "analytics/checkpoints/checkpoint.h"
+#include "analytics/cohort/blinding.h"
 #include "analytics/cohort/cohort_database.h"
 #include "apps/calot-dashboard/assess_program.h"
 #include "gui/attempt/long_work.h"
@@ -33,6 +34,7 @@
 #include "gui/dashboard/attempt_page.h"
 #include "gui/dashboard/attempts_page.h"
 #include "gui/dashboard/checkpoint_table_model.h"
+#include "gui/dashboard/comparison.h"
 #include "gui/dashboard/dashboard_window.h"
 #include "gui/dashboard/dialogs.h"
 #include "gui/dashboard/figure_panel.h"
@@ -269,6 +271,19 @@ TEST_F(Instructor, OpensAnAttemptByItsDotOnAxesThatStartWhereDataDo) {
   EXPECT_EQ(chosen[1][0].toString(), QString::fromStdString(dot.key));
   EXPECT_EQ(analytics::plotScale(std::vector{0.0, 10.0})->low, 0.0) << "nothing lies below zero";
   EXPECT_GT(analytics::plotScale(std::vector{5.0, 5.0})->high, 5.0);
+}
+
+TEST_F(Instructor, SeesNoGroupsWhileTheyAreMasked) {
+  fillWithMany();
+  analytics::drawGroupMask(file("c.db").toStdString(), std::string(64, '0'));
+  const auto window = opened();
+  showPage(*window, 3);
+  const auto& caption = *child<QLabel>(*window, "caption");
+  auto& chart = *window->findChild<PlotView*>("comparison-chart");
+  ASSERT_TRUE(QTest::qWaitFor([&] { return !chart.marks().empty(); }, patience)) << "by participant or profile";
+  child<QComboBox>(*window, "group-by")->setCurrentIndex(static_cast<int>(GroupBy::group));
+  EXPECT_TRUE(chart.marks().empty());
+  EXPECT_TRUE(caption.text().contains("masked"));
 }
 
 TEST_F(Instructor, FollowsATraineeOverTasksWithACurveItsBandAndAGoal) {

@@ -3,7 +3,7 @@
 
 #include <sstream>
 
-#include "gui/words/attempt_tables.h"
+#include "gui/words/attempt_summary.h"
 #include "tests/analytics/cohort/support/cohort_support.h"
 
 namespace calot::analytics {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "recorder/sources/controller.h"
+#include "recorder/sources/source.h"
 
 #include <gtest/gtest.h>
 

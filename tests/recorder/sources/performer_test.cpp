@@ -197,6 +197,20 @@ TEST(TouchTargets, lieOnTheSurfaceInSightAndReachable) {
 TEST(PerformerProfile, profilesOfTheProjectLoadAndDifferAsTheirNamesSay) {
   const PerformerProfile skilled = profileOf("skilled"), unskilled = profileOf("unskilled");
   EXPECT_EQ(skilled.decision.touches, unskilled.decision.touches);  // the same task
+  // Economy: who was taught searches less, spares fat and ends a stroke with its tissue.
+  const auto& s = skilled.operation;
+  const PerformerProfile::Operation i = profileOf("intermediate").operation;
+  const auto& u = unskilled.operation;
+  for (const auto field : {&PerformerProfile::Operation::searches, &PerformerProfile::Operation::strokes}) {
+    EXPECT_LT(s.*field, i.*field);
+    EXPECT_LT(i.*field, u.*field);
+  }
+  for (const auto field : {&PerformerProfile::Operation::cleared, &PerformerProfile::Operation::overrun,
+                           &PerformerProfile::Operation::pullOff, &PerformerProfile::Operation::pedalLag,
+                           &PerformerProfile::Operation::stretch}) {
+    EXPECT_LT(s.*field, i.*field);
+    EXPECT_LT(i.*field, u.*field);
+  }
   EXPECT_LT(skilled.motor.endpointNoise, unskilled.motor.endpointNoise);
   EXPECT_LT(skilled.perception.depthError, unskilled.perception.depthError);
 }

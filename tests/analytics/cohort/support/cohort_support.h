@@ -83,6 +83,14 @@ inline AttemptRecord humanAttempt(unsigned n, const std::string& participant) {
   return a;
 }
 
+/// The time that the checkpoint gives of an attempt that ends so.
+inline CheckpointValue elapsedTime(double seconds, recorder::Outcome outcome) {
+  AttemptEnd end;
+  end.steps = static_cast<std::uint64_t>(100.0 * seconds + 0.5);
+  end.outcome = outcome;
+  return checkpointRegistry()[positionOf("elapsed-time")].make({})->values(end).front();
+}
+
 inline std::vector<CheckpointValue> valuesOf(double seconds, double left) {
   return {makeValue(*findCheckpoint("elapsed-time"), "", Origin::resimulated, seconds),
           makeValue(*findCheckpoint("path-length"), "left", Origin::samples, left),

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Engines that are other programs: the same bits, and whatever becomes of them is the recording's error alone.
-#include "recorder/kept/engine_process.h"
+#include "recorder/kept/kept_engine.h"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -8,7 +8,6 @@
 #include <fstream>
 #include <string>
 
-#include "recorder/kept/engine_folders.h"
 #include "recorder/kept/transcript.h"
 #include "recorder/replay.h"
 #include "sim/scene/version.h"

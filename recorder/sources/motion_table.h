@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Long tables of motion as trackers and spreadsheets write them, read row by row without trust.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace calot::recorder {
+
+/// Lines in front of the first row that may hold names.
+inline constexpr std::size_t maxHeaderLines = 40;
+/// Words that say that a cell was not measured, in small letters; an empty cell is one, too.
+bool isMissingWord(std::string_view cell);
+
+/// Cells of a line, without blanks around them and without their quotes.
+void splitCells(std::string_view line, char delimiter, std::vector<std::string_view>& cells);
+
+/// Header of a table: cells of its lines down to the names. Cells above the names hold for the columns up to the next.
+class TableHeader {
+ public:
+  void add(const std::vector<std::string_view>& cells) { lines_.emplace_back(cells.begin(), cells.end()); }
+  [[nodiscard]] std::size_t lines() const { return lines_.size(); }
+  [[nodiscard]] std::size_t columns() const { return lines_.empty() ? 0 : lines_.back().size(); }
+  [[nodiscard]] const std::vector<std::string>& names() const { return lines_.back(); }
+  /// A cell, or the nearest one to its left where it is empty above the names.
+  [[nodiscard]] const std::string& cell(std::size_t line, std::size_t column) const;
+  /// Columns of a name: the name itself, or cells from above to below with slashes between ("left/Position/X").
+  [[nodiscard]] std::vector<std::size_t> find(const std::string& name) const;
+
+ private:
+  std::vector<std::vector<std::string>> lines_;
+};
+
+struct TableStyle {
+  char delimiter = '\0';             ///< '\0': comma, semicolon or tab, whichever the names stand between
+  char decimal = '\0';               ///< '\0': a point; or a comma, where cells are separated otherwise
+  std::uint32_t skip = 0;            ///< lines below the names that are no rows
+  std::vector<std::string> missing;  ///< further words or numbers that mark what was not measured
+};
+
+/// Rows of a table, one after the other.
+class MotionTable {
+ public:
+  enum class Cell { number, missing, fault };
+
+  /// Finds the line of names. @param bytes and `file` outlive the table. @param wanted names of columns
+  /// @throws Error (damaged) naming file and line: no such column, or more than one
+  MotionTable(std::span<const std::byte> bytes, const std::string& file, const TableStyle& style,
+              std::span<const std::string> wanted);
+
+  /// @return false at the end. @throws Error (damaged): another number of cells, an empty line between rows
+  bool next();
+  [[nodiscard]] std::size_t line() const { return line_; }
+  /// Text of a wanted column in this row.
+  [[nodiscard]] std::string_view text(std::size_t wanted) const { return cells_[place_[wanted]]; }
+  /// @param[out] fault of a cell that is neither a number nor marked as missing
+  Cell number(std::size_t wanted, double& value, std::string& fault);
+  [[noreturn]] void fail(const std::string& fault) const;
+
+ private:
+  bool findNames(std::string_view text, char delimiter, std::span<const std::string> wanted);
+  [[noreturn]] void failNames(std::string_view text, std::span<const std::string> wanted);
+  [[nodiscard]] bool isUnits() const;
+  [[nodiscard]] bool isMissing(std::string_view cell) const;
+
+  std::string converted_;
+  std::string_view rest_;
+  const std::string& file_;
+  const TableStyle& style_;
+  char delimiter_ = ',';
+  std::size_t columns_ = 0, named_ = 0, line_ = 0, rows_ = 0;
+  std::vector<std::size_t> place_;
+  std::vector<std::string_view> cells_;
+  bool point_ = false, comma_ = false;  ///< decimal ones that were found
+};
+
+}  // namespace calot::recorder
