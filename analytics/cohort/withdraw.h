@@ -33,7 +33,7 @@ struct Withdrawal {
   std::vector<ExportRow> exports;             ///< that hold some attempt of the participant
   /// The participant's attempts that stay, each with its mode: their purpose is training.
   std::vector<std::pair<std::string, std::string>> staying;
-  std::vector<std::string> undecided;  ///< assessments of purpose training, of which nobody said what becomes of them
+  std::vector<std::string> undecided;  ///< assessments of purpose training: to be kept or removed, not said yet
   std::string earlierUtc;              ///< when the participant withdrew from research already; or empty
 };
 

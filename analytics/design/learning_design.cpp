@@ -248,7 +248,7 @@ namespace {
 
 using GroupTimes = std::vector<std::vector<CensoredTime>>;
 
-/// @param ranked without attempts of which nobody knows whether they would have been finished
+/// @param ranked without censored attempts
 GroupTimes timesByGroup(const DesignData& data, const DesignFigure& figure, bool ranked) {
   GroupTimes times(data.groups.size());
   for (const DesignValue& v : figure.values) {

@@ -60,7 +60,7 @@ ReportTable primaryTable(const Study& study);
 /// The same of the secondary hypotheses; without rows where there are none.
 ReportTable secondaryTable(const Study& study);
 /// A of the first result's rows with intervals, one below the other: of those with a hypothesis, then of those without
-/// a direction. None where there is none.
+/// a direction. Empty without such figures.
 std::vector<Drawing> forestsOf(const Study& study);
 /// A row's values in both groups; marks are participants. None where it has no values.
 std::optional<Drawing> boxPlotOf(const Study& study, const StudyRow& row, const PlotFrame& frame = {});

@@ -40,7 +40,7 @@ struct IncludedAttempts {
   std::vector<const AttemptRow*> taken;
   std::map<std::string, std::uint64_t> present;  ///< number of them by group
   std::vector<FlowRow> flow;
-  std::map<std::string, std::set<std::string>> reasons;  ///< of units of which attempts stay out
+  std::map<std::string, std::set<std::string>> reasons;  ///< why attempts stay out, by unit
 };
 /// @param strata "site" or "arm", which an attempt must have; or empty
 /// @param everybody having no group excludes nobody

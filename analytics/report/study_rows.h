@@ -121,7 +121,7 @@ ReportTable coverageTable(const Study& study);
 
 /// How coverage is counted, or that it is whole; empty without samples.
 std::string coverageNote(const Study& study);
-/// A warning for each subject of which coverage, rate or noise differs between the groups.
+/// A warning for each subject whose coverage, rate or noise differs between the groups.
 std::vector<std::string> coverageWarnings(const Study& study);
 
 }  // namespace calot::analytics

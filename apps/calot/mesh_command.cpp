@@ -27,7 +27,7 @@ struct MeshReport {
   SurfaceRepair repair;             ///< repairs before meshing that invent nothing
   std::vector<SurfaceHole> holes;   ///< of the repaired surface
   SelfCrossing crossing;            ///< of the surface that is meshed
-  StuffedMesh stuffed;              ///< the mesh, or why there is none; without tetrahedra none was asked for
+  StuffedMesh stuffed;              ///< the mesh, or the reason for its absence; empty without --tetrahedra
   std::string surfaceOutput;        ///< empty when no surface was written
   int surfaceTriangles = 0;         ///< of what was written
   double surfaceOutputVolume = 0;   ///< m^3
