@@ -72,7 +72,7 @@ JudgedRecording assessRecording(const std::string& file, const AssessSettings& w
   JudgedRecording judged;
   judged.report = recorder::replayRecording(file, settings);
   const recorder::ReplayReport& report = judged.report;
-  if (report.verdict == recorder::ReplayVerdict::damaged) return judged;
+  if (report.verdict == recorder::ReplayVerdict::damaged || report.steps == 0) return judged;
   // Opened once more only for what the replay did not tell: to read a short recording takes longer than to simulate it.
   std::optional<recorder::Recording> recording;
   const auto opened = [&]() -> recorder::Recording& { return recording ? *recording : recording.emplace(file); };

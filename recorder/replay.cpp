@@ -131,6 +131,11 @@ void judge(Recording& recording, const ChainVerdict& chain, const ReplaySettings
   for (std::size_t i = 0; i < 32; ++i) report.chainHead[i] = static_cast<std::byte>(recording.status().back().chain[i]);
   report.chain = chain;
   report.signature = recording.signature();
+  if (report.steps == 0 && chain.intact()) {
+    report.verdict = ReplayVerdict::undecided;
+    report.error = "it has no steps: there is nothing to prove";
+    return;
+  }
   const bool otherVersion = header.simulationVersion != simulationVersion;
   // A damaged recording may be compared with any engine: none can prove it.
   const bool foreign = otherVersion && (settings.engine.anyway ||
@@ -223,7 +228,10 @@ ReplayReport replayRecording(const std::filesystem::path& path, const ReplaySett
     judge(recording, chain, settings, report);
   } catch (const Error& e) {
     if (e.kind() != ErrorKind::damaged && e.kind() != ErrorKind::undecided) throw;
-    report.verdict = e.kind() == ErrorKind::damaged ? ReplayVerdict::damaged : ReplayVerdict::undecided;
+    const bool broken = report.chain && !report.chain->intact();
+    report.verdict = e.kind() == ErrorKind::damaged ? ReplayVerdict::damaged
+                     : broken                       ? ReplayVerdict::diverged
+                                                    : ReplayVerdict::undecided;
     report.error = messageWithout(path, e);
     report.remedies = e.remedies();
   }

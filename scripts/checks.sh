@@ -9,14 +9,16 @@ source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 "$root/scripts/setup.sh" checks
 
-stages=(format lint docs guard asan-ubsan tsan matrix tidy)
+stages=(format lint docs guard tidy asan-ubsan tsan matrix)
 if [[ $# -gt 0 ]]; then stages=("$@"); fi
 
-# Targets of the fast tests, so that a sanitizer's tree holds nothing else. Threads run only in the recorder's rooms.
-fastTests=(test_math test_geometry test_vessel test_carving test_fat test_connective test_sim test_formats test_recording test_recorder test_sources
-  test_analytics test_checkpoints conformance_reader fuzz_corpus)
+# Targets of the fast tests, so that a sanitizer's tree holds nothing else: what reads files of others, and what manages memory or threads.
+# The simulation runs under sanitizers in the stage matrix. Threads run only in the recorder's rooms.
+fastTests=(test_formats test_recording test_recorder test_sources test_analytics test_checkpoints conformance_reader fuzz_corpus)
 # Of numbers alone: heavy.sh has them under sanitizers, too.
-if [[ -n ${CALOT_CHECKS_ALL:-} ]]; then fastTests+=(test_statistics test_design test_report); fi
+if [[ -n ${CALOT_CHECKS_ALL:-} ]]; then
+  fastTests+=(test_math test_geometry test_vessel test_carving test_fat test_connective test_sim test_statistics test_design test_report)
+fi
 threadTests=(test_recording test_recorder conformance_reader)
 
 # fast PRESET LABELS TARGET...: builds these test programs and runs their tests of these labels; heavy ones are left out, and
@@ -32,7 +34,7 @@ fast() {
 }
 
 # What each stage took on two idle cores (min).
-declare -A minutes=([docs]=1 [guard]=1 [asan-ubsan]=15 [tsan]=5 [tidy]=7 [matrix]=3)
+declare -A minutes=([docs]=1 [guard]=1 [asan-ubsan]=10 [tsan]=5 [tidy]=7 [matrix]=3)
 
 # roomFor STAGE: whether a run that has to end (CALOT_CHECKS_END, seconds since 1970) has twice the stage's time left. Half
 # the stages and an answer are better than all of them and none.

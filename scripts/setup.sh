@@ -10,14 +10,14 @@ set -euo pipefail
 
 demo=(
   cmake ninja-build g++ pkg-config git ca-certificates
-  libeigen3-dev libxxhash-dev libhdf5-dev libsodium-dev libsqlite3-dev libsqlitecpp-dev libboost-dev
+  libeigen3-dev libxxhash-dev libhdf5-dev libsodium-dev libutf8proc-dev libsqlite3-dev libsqlitecpp-dev libboost-dev
   nlohmann-json3-dev libfmt-dev libspdlog-dev libcli11-dev libpng-dev libosmesa6-dev libegl-dev libfreetype-dev
   libseccomp-dev fonts-dejavu-core python3 python3-h5py
   # Optional, but whoever adds it later links the programs anew.
   libbullet-dev
 )
 build=("${demo[@]}" libavcodec-dev libavformat-dev libavutil-dev libswscale-dev libapriltag-dev libsdl2-dev libopenigtlink-dev
-  libspnav-dev libbenchmark-dev qt6-base-dev qt6-speech-dev qt6-declarative-dev pybind11-dev python3-dev)
+  libspnav-dev libcgal-dev libbenchmark-dev qt6-base-dev qt6-speech-dev qt6-declarative-dev pybind11-dev python3-dev)
 test=("${build[@]}" libgtest-dev xvfb xauth python3-scipy python3-pandas python3-nacl hdf5-tools valgrind nodejs
   tmux shellcheck reuse clang-format)
 docs=(mkdocs mkdocs-material doxygen)

@@ -9,20 +9,18 @@ Makes the recordings itself (attempts.py); those that are there stay. Exit code 
 """
 import argparse
 import concurrent.futures
-import contextlib
 import math
 import os
 import pathlib
 import resource
 import shutil
-import sqlite3
 import subprocess
 import sys
 import time
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / "tests/command_line"))
-from cohort_content import content  # noqa: E402
+from cohort_content import content, edited  # noqa: E402
 
 MAX_OVERHEAD = 0.10
 
@@ -88,9 +86,8 @@ def main():
         well(sys.executable, ROOT / "scripts/attempts.py", o.folder / "recordings", "--count", o.count, "--calot", o.calot, "--jobs", o.jobs)
     shares = math.ceil(o.count / o.each)
     in_shares(o, cohort, shares)
-    with contextlib.closing(sqlite3.connect(cohort)) as database:
+    with edited(cohort) as database:
         database.execute("UPDATE checkpoint_value SET version = 0, value = value * 2 WHERE name = 'path-length' AND attempt % 10 = 0")
-        database.commit()
     shutil.copyfile(cohort, alone)
     recordings = sorted((o.folder / "recordings").rglob("*.h5"))
     if len(recordings) != o.count:

@@ -125,7 +125,7 @@ AngoffJudgement readAngoff(const CsvTable& table) {
     for (std::size_t c = 0; c < table.columns.size(); ++c) {
       if (c == judge) continue;
       std::string fault;
-      const double p = recorder::readFiniteNumber(row.cells[c], fault);
+      const double p = recorder::readFiniteNumber(table.withPoint(row.cells[c]), fault);
       if (!fault.empty()) failAt(table, row.line, table.columns[c], fault);
       if (p < 0.0 || p > 1.0)
         failAt(table, row.line, table.columns[c], fmt::format("{} is not a probability from 0 to 1", p));

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -176,8 +177,8 @@ std::map<std::string, int> answersOf(const RatingForm& form,
     if (!seen.insert(key).second) fail(key, "answered twice");
     if (score == "-") continue;
     std::string fault;
-    const long long value = recorder::readWholeNumber(score, fault);
-    if (!fault.empty() || value < form.least || value > form.most)
+    const double value = recorder::readFiniteNumber(score, fault);  // spreadsheets write 4.0
+    if (!fault.empty() || value < form.least || value > form.most || value != std::floor(value))
       fail(key, fmt::format("\"{}\" is not a whole number from {} to {} (- where it was left blank)", shown(score),
                             form.least, form.most));
     answers[key] = static_cast<int>(value);

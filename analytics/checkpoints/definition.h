@@ -30,6 +30,9 @@ enum class Aggregation : std::uint8_t { attempt, hand, organ, phase, handAndPhas
 /// `running`: known after every step. `final`: its filter looks ahead, so before the end it is provisional.
 enum class Finality : std::uint8_t { running, final };
 
+/// Values that a figure can have, besides being finite.
+enum class Domain : std::uint8_t { notNegative, whole, any };  ///< `whole`: a count
+
 /// The name of a value in a list by number; "unknown" beyond it.
 template <class Enum>
 std::string nameIn(std::initializer_list<const char*> names, Enum value) {
@@ -57,6 +60,7 @@ struct CheckpointDefinition {
   double minCoverage = 0.0;          ///< share of the window that samples must cover for a value; 0: not of samples
   std::vector<Origin> origins = {};  ///< allowed ones
   Finality finality = Finality::running;
+  Domain domain = Domain::notNegative;
   std::uint32_t version = 1;      ///< changes whenever a value may change
   std::string definition = {};    ///< the formula in words and symbols, one line
   std::string paperReading = {};  ///< which figure of the paper's Table 2 it answers to and how it reads it; or empty

@@ -54,13 +54,13 @@ void refuseBrokenParent(const std::filesystem::path& parent, const recorder::Cha
 }
 
 std::string wordsFor(const recorder::ReplayReport& report) {
-  if (report.finding == ReplayFinding::unread) return report.error;
-  if (report.finding == ReplayFinding::otherLayout)
-    return "the recorded digests have other components than this build's State: nothing to compare";
-  const std::string broken = report.chainIntact() ? "" : "content chain broken: " + wordsFor(*report.chain);
+  const std::string broken =
+      !report.chain || report.chainIntact() ? "" : "content chain broken: " + wordsFor(*report.chain);
   std::string text = "bit-exact";
-  if (report.finding == ReplayFinding::otherNames) {
+  if (report.finding == ReplayFinding::unread || report.finding == ReplayFinding::otherNames) {
     text = report.error;
+  } else if (report.finding == ReplayFinding::otherLayout) {
+    text = "the recorded digests have other components than this build's State: nothing to compare";
   } else if (report.divergence) {
     text = wordsFor(*report.divergence) + (*report.reproducible
                                                ? "; reproducible: a second run differs in the same way"
@@ -73,7 +73,7 @@ std::string wordsFor(const recorder::ReplayReport& report) {
                     report.part->segments[0], report.part->segments[1], report.part->steps[0], report.part->steps[1]);
   }
   if (!broken.empty()) text += "; " + broken;
-  if (report.verdict == recorder::ReplayVerdict::undecided)
+  if (report.verdict == recorder::ReplayVerdict::undecided && report.finding == ReplayFinding::compared)
     text += fmt::format("; recorded with simulation version {}, this build has {}", report.simulationVersion,
                         simulationVersion);
   return text;

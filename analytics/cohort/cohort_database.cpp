@@ -3,6 +3,8 @@
 #include "analytics/cohort/cohort_database.h"
 
 #include <fmt/format.h>
+#include <sqlite3.h>
+#include <SQLiteCpp/Backup.h>
 #include <algorithm>
 #include <array>
 #include <iterator>
@@ -280,14 +282,20 @@ Fields fieldsOf(const CheckpointValue& value) {
 }
 
 CohortCheck checkCohort(const std::string& path) {
-  return CohortConnection(path, CohortDatabase::Access::read).read([](SQLite::Database& db) {
+  return CohortConnection(path, CohortDatabase::Access::read).read([](SQLite::Database& stored) {
+    // A copy in a temporary file: making it reads every page and compares its sum, and SQLite knows constraints only of
+    // a database that it may write.
+    SQLite::Database db("", SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
+    if (SQLite::Backup(db, stored).executeStep(-1) != SQLITE_DONE) throw SQLite::Exception("in use", SQLITE_BUSY);
     CohortCheck result;
     result.schema = db.execAndGet("PRAGMA user_version").getInt();
+    result.faults = schemaFaults(db);
+    if (!result.faults.empty()) return result;  // what else would be said of it means nothing
     for (const std::string& line : firstTexts(db, "PRAGMA integrity_check")) {
       if (line != "ok") result.faults.push_back(printable(line));
     }
-    if (!result.faults.empty()) return result;  // what else would be said of it means nothing
-    if (static_cast<std::size_t>(result.schema) == cohortMigrations().size()) result.faults = tables::schemaFaults(db);
+    if (!result.faults.empty()) return result;
+    result.faults = valueFaults(db);
     for (const char* fault :
          {"SELECT count(*) || ' rows of ' || \"table\" || ' refer to no row of ' || \"parent\" FROM "
           "pragma_foreign_key_check GROUP BY \"table\", \"parent\"",

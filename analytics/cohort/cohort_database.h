@@ -216,9 +216,9 @@ struct Norm {
 
 struct CohortConnection;
 
-/// One connection to a cohort database: WAL mode, foreign keys, strict tables. Two processes may write at once (the
-/// second waits). Every modifying call is one transaction, so that a killed process leaves no partial change. Not
-/// thread-safe: open one connection per thread.
+/// One connection to a cohort database: pages with checksums, foreign keys, strict tables. Two processes may write at
+/// once (the second waits); between two writes the file alone is the whole database. Every modifying call is one
+/// transaction, so that a killed process leaves no partial change. Not thread-safe: open one connection per thread.
 ///
 /// Every call throws calot::Error with the file's name: 4 (missing, not a database, another program's database,
 /// corrupt), 5 (schema of a newer Calot), 3 (conflict), 1 (locked beyond the waiting time, read-only, disk full).
@@ -359,8 +359,9 @@ struct CohortCheck {
   std::vector<std::string> faults;  ///< problems, one line each; empty: the database is sound
 };
 
-/// SQLite's integrity check (with the constraints of every column), foreign keys, attempts without a recording, and
-/// signatures that are not of the recording's head. Changes nothing. @throws Error as CohortDatabase does.
+/// Sums of its pages, a schema that is this program's, SQLite's integrity check (with the constraints of every column),
+/// foreign keys, numbers that the program never writes, attempts without a recording, and signatures that are not of
+/// the recording's head. Changes nothing. @throws Error as CohortDatabase does.
 CohortCheck checkCohort(const std::string& path);
 
 /// Before figures of a database are shown. @throws Error (damaged) naming the first fault of checkCohort()

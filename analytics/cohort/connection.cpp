@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "analytics/cohort/embedded.h"
+#include "analytics/cohort/page_sums.h"
 #include "recorder/base/dates.h"
 
 namespace calot::analytics {
@@ -21,7 +22,11 @@ std::string printable(std::string words) {
   return words;
 }
 
+bool isBusy(const SQLite::Exception& error) { return (error.getErrorCode() & 0xFF) == SQLITE_BUSY; }
+
 Error databaseError(int sqliteCode, const std::string& words, const std::string& path) {
+  const std::optional<Error> known = layersFault();
+  if (known && ((sqliteCode & 0xFF) == SQLITE_IOERR || (sqliteCode & 0xFF) == SQLITE_BUSY)) return *known;
   const std::string message = printable(words);
   const auto failure = [&](const std::string& fault) { return Error(ErrorKind::failure, Where{path}, fault); };
   const auto damaged = [&](const std::string& fault) { return Error(ErrorKind::damaged, Where{path}, fault); };
@@ -41,6 +46,8 @@ Error databaseError(int sqliteCode, const std::string& words, const std::string&
     case SQLITE_IOERR:
       return failure(
           fmt::format("reading or writing failed ({}); nothing was changed, check the disk and run again", message));
+    case SQLITE_NOMEM:
+      return failure("too little memory; nothing was changed, end other programs and run again");
     case SQLITE_CANTOPEN:
     case SQLITE_PERM:
     case SQLITE_AUTH:
@@ -55,6 +62,9 @@ Error databaseError(int sqliteCode, const std::string& words, const std::string&
 namespace {
 
 using CohortAccess = CohortDatabase::Access;
+
+/// schemas/cohort/0014_page_sums.sql
+constexpr int firstSummedSchema = 14;
 
 /// Refuses files that SQLite would silently treat as an empty database.
 void checkFile(const std::string& path, CohortAccess access) {
@@ -72,56 +82,22 @@ void checkFile(const std::string& path, CohortAccess access) {
 
 int pragma(SQLite::Database& db, const char* name) { return db.execAndGet(fmt::format("PRAGMA {}", name)).getInt(); }
 
-/// Path as an SQLite URI.
-std::string uriOf(const std::string& path) {
-  std::string uri = "file:";
-  for (const char c : path) {
-    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '/' ||
-                       c == '.' || c == '_' || c == '-';
-    uri += plain ? std::string(1, c) : fmt::format("%{:02X}", static_cast<unsigned>(static_cast<unsigned char>(c)));
-  }
-  return uri + "?immutable=1";
-}
-
 std::unique_ptr<SQLite::Database> connect(const std::string& path, CohortAccess access, int patience) {
-  if (access != CohortAccess::read) {
-    const int create = access == CohortAccess::create ? SQLite::OPEN_CREATE : 0;
-    return std::make_unique<SQLite::Database>(path, SQLite::OPEN_READWRITE | create, patience);
-  }
-  auto db = std::make_unique<SQLite::Database>(path, SQLite::OPEN_READONLY, patience);
+  const auto open = [&](int flags) {
+    auto db = std::make_unique<SQLite::Database>(path, flags, patience, pageSumLayer());
+    pragma(*db, "schema_version");
+    return db;
+  };
+  if (access == CohortAccess::create) return open(SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
+  if (access == CohortAccess::write) return open(SQLite::OPEN_READWRITE);
   try {
-    pragma(*db, "schema_version");
+    return open(SQLite::OPEN_READONLY);
   } catch (const SQLite::Exception& error) {
-    // A reader of a WAL database creates an index file beside it. If it may not (read-only medium) and nobody writes,
-    // the file alone is the whole database.
-    const int code = error.getErrorCode() & 0xFF;
-    if (code == SQLITE_READONLY && std::filesystem::exists(path + "-journal")) {
-      // A writer was killed before the database had a log: only a connection that may write takes back what it began.
-      SQLite::Database back(path, SQLite::OPEN_READWRITE, patience);
-      pragma(back, "schema_version");
-      db = std::make_unique<SQLite::Database>(path, SQLite::OPEN_READONLY, patience);
-      pragma(*db, "schema_version");
-      return db;
-    }
-    if ((code != SQLITE_CANTOPEN && code != SQLITE_READONLY) || std::filesystem::exists(path + "-wal")) throw;
-    db = std::make_unique<SQLite::Database>(uriOf(path), SQLite::OPEN_READONLY | SQLite::OPEN_URI, patience);
-    pragma(*db, "schema_version");
+    if ((error.getErrorCode() & 0xFF) != SQLITE_READONLY || !std::filesystem::exists(path + "-journal")) throw;
   }
-  return db;
-}
-
-/// The one pragma that SQLite refuses at once, without waiting, while another process does the same.
-void setWriteAheadLog(SQLite::Database& db, std::chrono::milliseconds patience) {
-  const auto until = std::chrono::steady_clock::now() + patience;
-  while (true) {
-    try {
-      db.exec("PRAGMA journal_mode = WAL");
-      return;
-    } catch (const SQLite::Exception& error) {
-      if ((error.getErrorCode() & 0xFF) != SQLITE_BUSY || std::chrono::steady_clock::now() >= until) throw;
-      std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    }
-  }
+  // A writer was killed: only a connection that may write takes back what it began.
+  open(SQLite::OPEN_READWRITE);
+  return open(SQLite::OPEN_READONLY);
 }
 
 /// Schema version of the file; 0 for a new one. @pre within a transaction: another process may be making the database,
@@ -151,7 +127,7 @@ void backUp(SQLite::Database& db, const std::string& path, int version) {
   const std::string name = fmt::format("{}{}{}", path, backupMark, version);
   std::string kept = name + ".bak";
   for (int n = 2; fs::exists(kept); ++n) kept = fmt::format("{}-{}.bak", name, n);
-  const std::string fresh = fmt::format("{}.{}.part", kept, ::getpid());
+  const std::string fresh = fmt::format("{}.{}.part", kept, ::gettid());
   std::error_code ignored;
   fs::remove(fresh, ignored);
   const auto failed = [&](const std::string& why, const char* advice) {
@@ -188,38 +164,57 @@ void migrate(SQLite::Database& db, const std::string& path) {
   transaction.commit();
 }
 
+std::unique_ptr<SQLite::Database> openOnce(const std::string& path, CohortAccess access, int patience) {
+  checkFile(path, access);
+  auto db = connect(path, access, patience);
+  db->exec("PRAGMA foreign_keys = ON; PRAGMA trusted_schema = OFF");
+  const int version = [&] {
+    const SQLite::Transaction reading(*db);
+    return schemaOf(*db, path);
+  }();
+  const int known = static_cast<int>(cohortMigrations().size());
+  const bool sums = hasPageSums(db->getHandle());
+  if (version >= firstSummedSchema && !sums) {
+    throw Error(ErrorKind::damaged, Where{path},
+                "its pages have no checksums: it is damaged, or another program has rebuilt it; restore a copy, or "
+                "assess the recordings into a new one");
+  }
+  if (version == 0 && access != CohortAccess::create)
+    throw Error(ErrorKind::damaged, Where{path}, "not a cohort database (no tables)");
+  if (access == CohortAccess::read) {
+    if (version < known) {
+      throw Error(ErrorKind::failure, Where{path},
+                  fmt::format("cohort schema {} must be brought to {} first", version, known), {Remedy::upgradeCohort});
+    }
+    return db;
+  }
+  if (sqlite3_db_readonly(db->getHandle(), "main") == 1) throw databaseError(SQLITE_READONLY, "", path);
+  db->exec("PRAGMA synchronous = FULL");
+  db->exec("PRAGMA journal_mode = DELETE");  // earlier schemas had a log, without which a copy was not whole
+  if (version >= 1 && version < known) backUp(*db, path, version);
+  if (!sums) {
+    askForPageSums(db->getHandle());
+    if (version >= 1) db->exec("PRAGMA cache_spill = OFF; VACUUM; PRAGMA cache_spill = ON");
+  }
+  if (version < known) migrate(*db, path);
+  return db;
+}
+
 }  // namespace
 
 std::unique_ptr<SQLite::Database> openCohort(const std::string& path, CohortAccess access,
                                              std::chrono::milliseconds patience) {
+  const auto until = std::chrono::steady_clock::now() + patience;
   return guarded(path, [&] {
-    checkFile(path, access);
-    auto db = connect(path, access, static_cast<int>(patience.count()));
-    db->exec("PRAGMA foreign_keys = ON");
-    db->exec("PRAGMA trusted_schema = OFF");
-    const int version = [&] {
-      const SQLite::Transaction reading(*db);
-      return schemaOf(*db, path);
-    }();
-    const int known = static_cast<int>(cohortMigrations().size());
-    if (access == CohortAccess::read) {
-      if (version == 0) throw Error(ErrorKind::damaged, Where{path}, "not a cohort database (no tables)");
-      if (version < known) {
-        throw Error(ErrorKind::failure, Where{path},
-                    fmt::format("cohort schema {} must be brought to {} first", version, known),
-                    {Remedy::upgradeCohort});
+    while (true) {
+      try {
+        return openOnce(path, access, static_cast<int>(patience.count()));
+      } catch (const SQLite::Exception& error) {
+        // SQLite does not wait for the last other connection to close, before which a database cannot leave its log.
+        if (!isBusy(error) || std::chrono::steady_clock::now() >= until) throw;
+        std::this_thread::sleep_for(std::chrono::milliseconds(1 + ::getpid() % 17));
       }
-      return db;
     }
-    if (version == 0 && access != CohortAccess::create) {
-      throw Error(ErrorKind::damaged, Where{path}, "not a cohort database (no tables)");
-    }
-    if (sqlite3_db_readonly(db->getHandle(), "main") == 1) throw databaseError(SQLITE_READONLY, "", path);
-    setWriteAheadLog(*db, patience);
-    db->exec("PRAGMA synchronous = FULL");
-    if (version >= 1 && version < known) backUp(*db, path, version);
-    if (version < known) migrate(*db, path);
-    return db;
   });
 }
 

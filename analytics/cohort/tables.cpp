@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <set>
 
+#include "analytics/cohort/embedded.h"
 #include "recorder/base/dates.h"
 #include "recorder/base/files.h"
 
@@ -284,25 +285,70 @@ void RowInsert::insert(const void* row, const std::vector<Cell>& others) {
   statement_.exec();
 }
 
+namespace {
+
+/// By kind and name the statements that made what a database has, without comments and blanks: those of the migrations
+/// may change.
+std::map<std::string, std::string> statementsOf(SQLite::Database& db) {
+  std::map<std::string, std::string> parts;
+  eachRow(db, "SELECT type || ' ' || name, sql FROM sqlite_master WHERE name NOT LIKE 'sqlite!_%' ESCAPE '!'", {},
+          [&](SQLite::Statement& row) {
+            std::string& statement = parts[printable(text(row.getColumn(0)))];
+            const std::string sql = text(row.getColumn(1));
+            for (std::size_t at = 0; at < sql.size(); ++at) {
+              if (sql.compare(at, 2, "--") == 0) at = std::min(sql.find('\n', at), sql.size() - 1);
+              if (std::string_view(" \t\r\n").find(sql[at]) == std::string_view::npos) statement += sql[at];
+            }
+          });
+  return parts;
+}
+
+}  // namespace
+
 std::vector<std::string> schemaFaults(SQLite::Database& db) {
+  static const std::map<std::string, std::string> ours = [] {
+    SQLite::Database made(":memory:", SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
+    for (const Migration& migration : cohortMigrations()) made.exec(migration.sql);
+    return statementsOf(made);
+  }();
+  std::vector<std::string> faults;
+  const std::map<std::string, std::string> there = statementsOf(db);
+  for (const auto& [part, statement] : ours) {
+    const auto at = there.find(part);
+    if (at == there.end() || at->second != statement)
+      faults.push_back(fmt::format("{} {}", part, at == there.end() ? "is missing" : "is not as Calot makes it"));
+  }
+  for (const auto& [part, statement] : there) {
+    if (!ours.contains(part)) faults.push_back(fmt::format("{} is not one of Calot's", part));
+  }
+  return faults;
+}
+
+std::vector<std::string> valueFaults(SQLite::Database& db) {
   std::vector<std::string> faults;
   for (const DeclaredTable* table : cohortTables()) {
-    std::map<std::string, std::string> there;
-    eachRow(db, "SELECT name, type || iif(\"notnull\", ' NOT NULL', '') FROM pragma_table_info(?)", {table->name},
-            [&](SQLite::Statement& row) { there[text(row.getColumn(0))] = text(row.getColumn(1)); });
     for (const DeclaredColumn& c : table->columns) {
-      const auto at = there.find(c.name);
-      if (at == there.end()) {
-        faults.push_back(fmt::format("table {} has no column {}", table->name, c.name));
-        continue;
-      }
-      if (at->second != c.type)
-        faults.push_back(fmt::format("column {} of {} is {}, not {}", c.name, table->name, at->second, c.type));
-      there.erase(at);
+      if (std::string_view(c.type).substr(0, 4) != "REAL") continue;
+      const auto count = firstNumber(
+          db, fmt::format("SELECT count(*) FROM {} WHERE abs({}) > 1.7976931348623157e308", table->name, c.name));
+      if (count > 0) faults.push_back(fmt::format("{} numbers of {}.{} are not finite", count, table->name, c.name));
     }
-    for (const auto& [name, type] : there)
-      faults.push_back(fmt::format("column {} of {} is not of this schema", name, table->name));
   }
+  db.exec("CREATE TEMP TABLE figure (name TEXT PRIMARY KEY, version, unit, negative, broken)");
+  for (const CheckpointEntry& entry : checkpointRegistry()) {
+    const CheckpointDefinition& d = entry.definition;
+    execute(db, "INSERT INTO figure VALUES (?, ?, ?, ?, ?)",
+            {d.name, std::int64_t{d.version}, d.unit, std::int64_t{d.domain == Domain::any},
+             std::int64_t{d.domain != Domain::whole}});
+  }
+  for (std::string& line : firstTexts(
+           db,
+           "SELECT count(*) || ' values of ' || v.name || ' cannot be, as ' || v.value || ' ' || v.unit || ' of "
+           "attempt "
+           "' || a.uuid FROM checkpoint_value v JOIN figure f USING (name, version) JOIN attempt a ON a.id = v.attempt "
+           "WHERE v.unit <> f.unit OR (v.value < 0 AND NOT f.negative) OR (v.value <> round(v.value) AND NOT f.broken) "
+           "GROUP BY v.name"))
+    faults.push_back(printable(std::move(line)));
   return faults;
 }
 

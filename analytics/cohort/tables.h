@@ -39,6 +39,9 @@ std::string printable(std::string words);
 /// One line for the user that explains an SQLite result code and names the file.
 Error databaseError(int sqliteCode, const std::string& message, const std::string& path);
 
+/// Another connection stands in the way.
+bool isBusy(const SQLite::Exception& error);
+
 /// "Calo": application id of a cohort database in SQLite's header.
 inline constexpr int cohortApplicationId = 0x43616C6F;
 
@@ -330,7 +333,9 @@ std::vector<Row> selectRows(SQLite::Database& db, const TableOf<Row>& table, con
   return rows;
 }
 
-/// Differences between the database's tables and their declaration, one line each.
+/// Tables, views, indices and triggers that are not as the migrations make them, one line each.
 std::vector<std::string> schemaFaults(SQLite::Database& db);
+/// Numbers that the program never writes, one line each. @pre the database is a copy, in which a table may be made
+std::vector<std::string> valueFaults(SQLite::Database& db);
 
 }  // namespace calot::analytics::tables

@@ -113,19 +113,16 @@ void removeBackups(const std::string& path) {
   }
 }
 
-/// Deleted content must not remain in free pages or in the log.
+/// Deleted content must not remain in free pages.
 void rebuild(SQLite::Database& db, const std::string& path) {
-  const auto checkpoint = [&] {
-    SQLite::Statement run(db, "PRAGMA wal_checkpoint(TRUNCATE)");
-    run.executeStep();
-    if (run.getColumn(0).getInt() != 0) {
-      throw Error(ErrorKind::failure, Where{path}, "another program reads it, so that its log cannot be emptied",
-                  {Remedy::emptyLog});
-    }
-  };
-  checkpoint();
-  db.exec("VACUUM");
-  checkpoint();
+  try {
+    db.exec("VACUUM");
+  } catch (const SQLite::Exception& error) {
+    if (isBusy(error))
+      throw Error(ErrorKind::failure, Where{path},
+                  "another program reads it, so that what was deleted cannot be overwritten", {Remedy::emptyLog});
+    throw;
+  }
 }
 
 /// Within a transaction: every row that hangs on the withdrawal, and the words of audit rows that name it.

@@ -104,7 +104,7 @@ namespace {
 constexpr std::array<Ink, 3> lineInks{Ink::firstLine, Ink::secondLine, Ink::thirdLine};
 constexpr std::array<Ink, 3> pointInks{Ink::firstPoint, Ink::secondPoint, Ink::firstPoint};
 constexpr std::size_t maxLegend = 18;  // in letters
-constexpr double legendHeight = 13.0;
+constexpr double legendLine = 13.0;
 
 }  // namespace
 
@@ -148,7 +148,7 @@ std::optional<Drawing> drawLines(const LinePlot& plot) {
     if (s.label.empty()) continue;
     drawing.line(lineInks[ink], frame.right() - 110.0, legend - 4.0, frame.right() - 96.0, legend - 4.0);
     drawing.text(Ink::label, frame.right() - 92.0, legend, cutTo(s.label, maxLegend));
-    legend += legendHeight;
+    legend += legendLine;
   }
   endPlot(drawing, plot.synthetic);
   return drawing;

@@ -284,6 +284,8 @@ TemporaryFolder writeMetricInput(const recorder::TrackedMotion& motion, recorder
       const Vec3 missing = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
       if (hand.present) samples.vector(name + "position", "m", "p_FI", hand.isMissing(i) ? missing : hand.position[i]);
       if (hand.present && hand.oriented) samples.rotation(name + "orientation", "q_FI", hand.orientation[i]);
+      if (!hand.jaw.empty()) samples.number(name + "jaw", "rad", hand.jaw[i]);
+      if (!hand.pedal.empty()) samples.whole(name + "pedal", hand.pedal[i] ? 1 : 0);
     }
     samples.endRow();
   }

@@ -94,7 +94,10 @@ class IntakeJournal::LineAppender {
       file_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
       if (file_ < 0) fail("cannot be opened");
       if (::flock(file_, LOCK_EX | LOCK_NB) != 0) {
-        const std::string why = errno == EWOULDBLOCK ? "another program is writing it" : std::strerror(errno);
+        const std::string why = errno == EWOULDBLOCK ? "another program is writing it"
+                                : errno == ENOLCK    ? "its file system grants no locks, without which two programs "
+                                                       "could write it; keep the journal on a local disk"
+                                                     : std::strerror(errno);
         ::close(file_);
         throw Error(ErrorKind::failure, Where{path_.string()}, why);
       }

@@ -43,9 +43,19 @@ std::filesystem::path ManifestTable::fileNamed(const std::string& cell) const {
   return file.is_absolute() ? file : std::filesystem::path(table_.path).parent_path() / file;
 }
 
-Error ManifestTable::fault(const CsvRow& row, const std::string& column, const std::string& what) const {
+Error ManifestTable::fault(const CsvRow& row, const std::string& column, const std::string& what,
+                           const std::vector<Remedy>& remedies) const {
   return {ErrorKind::damaged, Where{table_.path, fmt::format("line {}", row.line)},
-          fmt::format("column \"{}\": {}", recorder::shown(column), what)};
+          fmt::format("column \"{}\": {}", recorder::shown(column), what), remedies};
+}
+
+std::string attemptInTable(const CohortDatabase& cohort, const std::string& cell) {
+  constexpr std::size_t least = 8;
+  if (cell.size() < least)
+    throw Error(ErrorKind::refused,
+                fmt::format("\"{}\" is too little of an attempt's uuid; give {} letters of it, or all",
+                            recorder::shown(cell), least));
+  return cohort.attemptNamed(recorder::lowerCase(cell));
 }
 
 bool holdsControl(const std::string& name) {
@@ -76,7 +86,7 @@ class AttemptNames {
 
   /// @throws Error (refused) where there is none, or more than one.
   [[nodiscard]] std::string named(const std::string& column, const std::string& cell) const {
-    if (column == "attempt") return cohort_.attemptNamed(cell);
+    if (column == "attempt") return attemptInTable(cohort_, cell);
     const auto& index = column == "file" ? files_ : people_;
     const auto at = index.find(column == "file" ? std::filesystem::path(cell).filename().string() : cell);
     const std::size_t found = at == index.end() ? 0 : at->second.size();
@@ -167,7 +177,7 @@ class RatingReader {
       if (!table_.has(item.key))
         throw table_.fault(row, item.key, fmt::format("form {} has it, and there is no such column", form.name));
       const std::string cell = table_.cell(row, item.key);
-      given.emplace_back(item.key, cell.empty() || cell == "NA" ? "-" : cell);
+      given.emplace_back(item.key, cell.empty() || cell == "NA" ? "-" : table_.withPoint(cell));
     }
     for (const std::string& other : items_) {
       if (own.count(other) == 0 && !table_.cell(row, other).empty())
@@ -190,8 +200,13 @@ class RatingReader {
 }  // namespace
 
 RatingManifest readRatingManifest(const std::string& path, const std::string& form, const FindForm& find,
-                                  const CohortDatabase& cohort, std::vector<Error>& faults) {
+                                  const CohortDatabase& cohort, recorder::SimilarNames similar,
+                                  std::vector<Error>& faults) {
   CsvTable read = readCsvTable(path);
+  std::vector<recorder::NameColumn> people{{"participant"}, {"rater"}};
+  for (const Participant& p : cohort.participants()) people[0].known.push_back(p.pseudonym);
+  for (const Rating& r : cohort.ratings()) people[1].known.push_back(r.rater);
+  recorder::spellNames(read, people, similar);
   std::vector<RatingForm> forms;
   std::map<std::string, std::size_t> numberOf;
   const auto nameIn = [&](const CsvRow& row) {

@@ -14,7 +14,9 @@
 #include "analytics/assess.h"
 #include "analytics/cohort/cohort_database.h"
 #include "recorder/base/csv.h"
+#include "recorder/base/dates.h"
 #include "recorder/base/errors.h"
+#include "recorder/base/names.h"
 #include "recorder/sources/column_map.h"
 
 namespace calot::analytics {
@@ -36,12 +38,26 @@ class ManifestTable {
   /// A file that a cell names; relative ones lie beside the manifest.
   [[nodiscard]] std::filesystem::path fileNamed(const std::string& cell) const;
 
+  /// As CsvTable::withPoint().
+  [[nodiscard]] std::string withPoint(const std::string& cell) const { return table_.withPoint(cell); }
+
   /// "M.csv: line 4: column "mode": FAULT" (damaged).
-  [[nodiscard]] Error fault(const CsvRow& row, const std::string& column, const std::string& what) const;
+  [[nodiscard]] Error fault(const CsvRow& row, const std::string& column, const std::string& what,
+                            const std::vector<Remedy>& remedies = {}) const;
 
  private:
   CsvTable table_;
 };
+
+/// Answers of whoever made a table.
+struct TableReading {
+  recorder::SimilarNames names = recorder::SimilarNames::ask;
+  recorder::DateStyle dates = {};
+};
+
+/// An attempt as tables name it: by its uuid, or the first eight letters of it or more; in capitals, too.
+/// @throws Error (refused) for less; as CohortDatabase::attemptNamed()
+std::string attemptInTable(const CohortDatabase& cohort, const std::string& cell);
 
 /// True if a name holds a line break or another control character, which could forge output.
 bool holdsControl(const std::string& name);
@@ -64,12 +80,15 @@ struct MotionManifest {
 /// Reads a manifest and checks every row: no file is read beyond whether it is there. Columns: `file`, `columns`,
 /// `participant`, `group`, `arm`, `site`, `experience` ("laparoscopies=240; level=attending"), `experience:CRITERION`,
 /// `consent` ("study:2026-01-31"), and those of declareMotion(). Files and maps are relative to the manifest.
+/// Dates are as recorder::readMoment() has them.
 /// @param otherwise what an empty cell or an absent column stands for. @param columns the map for rows without one
+/// @param enrolled participants of the cohort, whose spelling of names counts
 /// @param[out] faults one for each wrong row (damaged), naming line and column; with any, the manifest is not whole
-/// @throws Error as readCsvTable() and ManifestTable; (invalid) where there is no column `file`; as
-/// recorder::readColumnMap for `columns`.
+/// @throws Error as readCsvTable(), recorder::spellNames() and ManifestTable; (invalid) where there is no column
+/// `file`; as recorder::readColumnMap for `columns`.
 MotionManifest readMotionManifest(const std::string& path, const MotionDeclaration& otherwise,
-                                  const std::string& columns, std::vector<Error>& faults);
+                                  const std::string& columns, const TableReading& reading,
+                                  const std::vector<Participant>& enrolled, std::vector<Error>& faults);
 
 /// A cohort's participants when this was made, and those added through it.
 class Enrolment {
@@ -112,9 +131,10 @@ using FindForm = std::function<std::filesystem::path(const std::string& name)>;
 /// questionnaire, or whose only attempt was rated); `rater`; and one an item of the forms, empty, - or NA where it was
 /// left blank.
 /// @param form of rows without one. @param[out] faults one for each wrong row, naming line and column
-/// @throws Error as readCsvTable() and ManifestTable; as `find` and readRatingForm().
+/// @throws Error as readCsvTable(), recorder::spellNames() and ManifestTable; as `find` and readRatingForm().
 RatingManifest readRatingManifest(const std::string& path, const std::string& form, const FindForm& find,
-                                  const CohortDatabase& cohort, std::vector<Error>& faults);
+                                  const CohortDatabase& cohort, recorder::SimilarNames similar,
+                                  std::vector<Error>& faults);
 
 struct StoredRatings {
   std::size_t added = 0, unchanged = 0, replaced = 0;

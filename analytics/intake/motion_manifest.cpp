@@ -67,15 +67,17 @@ std::string combine(std::map<std::string, std::string>& known, const std::map<st
 /// Reads rows in turn, with what earlier ones said.
 class Reader {
  public:
-  Reader(const ManifestTable& table, MotionManifest& manifest, const MotionDeclaration& otherwise, std::string columns)
-      : table_(table), manifest_(manifest), otherwise_(otherwise), columns_(std::move(columns)) {}
+  Reader(const ManifestTable& table, MotionManifest& manifest, const MotionDeclaration& otherwise, std::string columns,
+         const recorder::DateStyle& dates)
+      : table_(table), manifest_(manifest), otherwise_(otherwise), columns_(std::move(columns)), dates_(dates) {}
 
   /// @throws Error (damaged) for a wrong row.
   void take(const CsvRow& row) {
     MotionRow taken{row.line, {}, {}, otherwise_};
     readFile(row, taken);
     for (const char* field : declared) {
-      const std::string word = table_.cell(row, field);
+      std::string word = table_.cell(row, field);
+      if (field == std::string_view("start")) readDate(row, field, recorder::readMoment, word);
       if (const std::string wanted = declareMotion(taken.declaration, field, word); !wanted.empty())
         throw table_.fault(row, field, fmt::format("\"{}\": {}", shown(word), wanted));
     }
@@ -84,6 +86,15 @@ class Reader {
   }
 
  private:
+  /// A date as ISO 8601 has it; nothing happens where there is none.
+  void readDate(const CsvRow& row, const char* column, decltype(recorder::readDay)& read, std::string& date) const {
+    try {
+      if (!date.empty()) date = read(date, dates_);
+    } catch (const Error& e) {
+      throw table_.fault(row, column, e.fault(), e.remedies());
+    }
+  }
+
   void readFile(const CsvRow& row, MotionRow& taken) {
     const std::string cell = table_.cell(row, "file");
     if (cell.empty()) throw table_.fault(row, "file", "is empty; every row needs its file");
@@ -100,9 +111,14 @@ class Reader {
     }
     const std::string map = table_.cell(row, "columns");
     taken.columns = map.empty() ? columns_ : table_.fileNamed(map).string();
-    if (taken.columns.empty() && taken.file.extension() == ".csv")
-      throw table_.fault(row, table_.has("columns") ? "columns" : "file",
-                         "a CSV file needs a map of its columns; name it in a column \"columns\", or for all files");
+    if (taken.columns.empty() && !recorder::isKinematicsFile(taken.file)) {
+      try {
+        recorder::recognisedMap(taken.file);
+      } catch (const Error& e) {
+        throw table_.fault(row, table_.has("columns") ? "columns" : "file",
+                           fmt::format("{}; a map of a file's columns is named in a column \"columns\"", e.what()));
+      }
+    }
     if (!taken.columns.empty() && manifest_.maps.count(taken.columns) == 0) {
       try {
         manifest_.maps.emplace(taken.columns, recorder::readColumnMap(taken.columns));
@@ -120,6 +136,7 @@ class Reader {
     };
     ask("experience", readPairs(table_.cell(row, "experience"), '=', "CRITERION=VALUE", p.experience));
     ask("consent", readPairs(table_.cell(row, "consent"), ':', "PURPOSE:YYYY-MM-DD", p.consent));
+    for (auto& [purpose, day] : p.consent) readDate(row, "consent", recorder::readDay, day);
     for (const std::string& column : table_.columns()) {
       const std::string value = table_.cell(row, column);
       if (column.substr(0, criterionPrefix.size()) != criterionPrefix || value.empty()) continue;
@@ -151,22 +168,32 @@ class Reader {
   MotionManifest& manifest_;
   const MotionDeclaration& otherwise_;
   std::string columns_;
+  const recorder::DateStyle& dates_;
   std::map<fs::path, std::size_t> files_;  ///< line of each
 };
 
 }  // namespace
 
 MotionManifest readMotionManifest(const std::string& path, const MotionDeclaration& otherwise,
-                                  const std::string& columns, std::vector<Error>& faults) {
+                                  const std::string& columns, const TableReading& reading,
+                                  const std::vector<Participant>& enrolled, std::vector<Error>& faults) {
   std::vector<std::string> known{"file", "columns", "group", "arm", "site", "experience", "experience:", "consent"};
   known.insert(known.end(), std::begin(declared), std::end(declared));
-  const ManifestTable table(readCsvTable(path), known);
+  CsvTable read = readCsvTable(path);
+  std::vector<recorder::NameColumn> names{{"participant"}};
+  for (const Participant& p : enrolled) names[0].known.push_back(p.pseudonym);
+  for (const auto& [column, member] : textColumns) {
+    names.push_back({column});
+    for (const Participant& p : enrolled) names.back().known.push_back(p.*member);
+  }
+  recorder::spellNames(read, names, reading.names);
+  const ManifestTable table(std::move(read), known);
   if (!table.has("file"))
     throw Error(ErrorKind::invalid, Where{path, "line 1"}, "there is no column \"file\"; a manifest names its files");
   MotionManifest manifest;
   manifest.path = path;
   if (!columns.empty()) manifest.maps.emplace(columns, recorder::readColumnMap(columns));
-  Reader reader(table, manifest, otherwise, columns);
+  Reader reader(table, manifest, otherwise, columns, reading.dates);
   for (const CsvRow& row : table.rows()) {
     try {
       reader.take(row);

@@ -237,14 +237,6 @@ constexpr double largest = 1e100;
 
 constexpr const char* missingWord = "NA";  // R's
 
-/// A decimal comma, which only cells between semicolons can have, as a point.
-std::string withPoint(const std::string& cell, char separator) {
-  std::string number = cell;
-  if (separator == ';' && std::count(cell.begin(), cell.end(), ',') == 1 && cell.find('.') == std::string::npos)
-    number[cell.find(',')] = '.';
-  return number;
-}
-
 /// Names are printed: a line break or another control character could forge output.
 void askForPlainName(const CsvTable& table, std::size_t line, const std::string& column, const std::string& name) {
   const auto control = [](char c) { return (c >= 0 && c < ' ') || c == '\x7F'; };
@@ -310,7 +302,7 @@ std::vector<TableRecord> recordsOf(const CsvTable& table, const TableStudyOption
       std::optional<double> value;
       if (!cell.empty() && cell != missingWord) {
         std::string fault;
-        value = recorder::readFiniteNumber(withPoint(cell, table.separator), fault);
+        value = recorder::readFiniteNumber(table.withPoint(cell), fault);
         if (fault.empty() && std::abs(*value) > largest)
           failAt(table, row.line, outcome.name, fmt::format("\"{}\" is larger than {}", shown(cell), largest));
         if (!fault.empty())

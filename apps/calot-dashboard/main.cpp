@@ -82,11 +82,8 @@ int run(const Options& o, int argc, char** argv) {
     throw Error(ErrorKind::invalid, "--pictures: needs a cohort database, not a recording");
   const QSize asked = windowSize(o.look);
   if (!o.pictures.empty()) requireFolder(o.pictures, "pictures");
-  requireScreen();
+  const std::unique_ptr<QApplication> application = openScreen(argc, argv);
   useGraphics(o.graphics);
-
-  QApplication application(argc, argv);
-  QApplication::setApplicationName("Calot");
   gui::theme::apply(
       o.look.colours.empty() ? gui::settings::colours() : gui::theme::choiceOf(QString::fromStdString(o.look.colours)),
       o.look.type == 0 ? gui::settings::type() : o.look.type);

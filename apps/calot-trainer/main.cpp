@@ -73,9 +73,7 @@ void add(CLI::App& app, Options& o) {
   addScope(app, o.source.scope);
   app.add_option("--calibration", o.source.device.calibration,
                  "of the device, or of mouse and keyboard; an assessment needs one");
-  app.add_option("--participant", o.participant, "pseudonym")->check([](const std::string& p) {
-    return p.size() > 64 ? std::string("longer than 64 characters") : std::string();
-  });
+  app.add_option("--participant", o.participant, "pseudonym")->transform(CLI::Validator(pseudonymForm, ""));
   app.add_option("--mode", o.mode, "practice or assessment: no hints, no pause, no going back")
       ->check(CLI::IsMember({"practice", "assessment"}))
       ->capture_default_str();
@@ -272,11 +270,8 @@ int run(const Options& o, int argc, char** argv) {
   if (!scene && setup.scenes.empty())
     throw Error(ErrorKind::invalid, "no scenes were found; set CALOT_ASSETS to the folder that holds \"scenes\"");
   const QSize asked = windowSize(o.look);
-  requireScreen();
+  const std::unique_ptr<QApplication> application = openScreen(argc, argv);
   useGraphics(o.graphics);
-
-  QApplication application(argc, argv);
-  QApplication::setApplicationName("Calot");
   gui::theme::apply(gui::theme::choiceOf(QString::fromStdString(o.look.colours)),
                     o.look.type == 0 ? gui::theme::usualType : o.look.type);
   if (o.aloud) {

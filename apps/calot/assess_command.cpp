@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 #include <algorithm>
+#include <functional>
 
 #include "analytics/assess.h"
 #include "analytics/checkpoints/motion.h"
@@ -66,10 +67,12 @@ std::vector<analytics::ValueInterval> intervalsOf(const std::string& file, const
 
 /// Stores what judging one recording gave. A damaged file is no attempt of the cohort. A conflict with what the cohort
 /// holds is this file's answer: it takes the place of the report.
-void storeJudged(const std::string& file, const AssessOptions& o, analytics::CohortDatabase& database,
+void storeJudged(const std::string& file, const AssessOptions& o,
+                 const std::function<analytics::CohortDatabase&()>& cohort,
                  const std::vector<analytics::MetricScript>& metrics, analytics::JudgedRecording& judged,
                  Stored& stored) {
   if (!judged.record) return;
+  analytics::CohortDatabase& database = cohort();
   try {
     stored.how = importedName(database.storeAttempt(*judged.record, judged.values));
     stored.keyFault = keyFaultOf(*judged.record, o.cohort);
@@ -130,9 +133,13 @@ ExitCode assess(const AssessOptions& o) {
   if (files.size() > 1) probes.emplace(o.jobs);
   std::optional<analytics::CohortDatabase> database;
   const std::vector<analytics::MetricScript> metrics = readMetrics(o.metrics);
-  if (!o.cohort.empty()) database.emplace(o.cohort, analytics::CohortDatabase::Access::create);
-  if (database) checkMetrics(metrics, *database);
-  if (o.share) removeVerified(files, *database);
+  // One that is not there is made for the first recording that can be stored.
+  const auto cohort = [&]() -> analytics::CohortDatabase& {
+    if (!database) database.emplace(o.cohort, analytics::CohortDatabase::Access::create);
+    return *database;
+  };
+  if (!o.cohort.empty() && std::filesystem::exists(o.cohort)) checkMetrics(metrics, cohort());
+  if (o.share && database) removeVerified(files, *database);
   std::vector<ExitCode> codes;
   nlohmann::json list = nlohmann::json::array();
   std::size_t done = 0;
@@ -143,8 +150,8 @@ ExitCode assess(const AssessOptions& o) {
   recorder::WorkerPool pool(o.jobs);
   analytics::judgeAll(files, pool, settings, [&](std::size_t i, analytics::JudgedRecording judged) {
     Stored stored;
-    if (database) {
-      storeJudged(files[i], o, *database, metrics, judged, stored);
+    if (!o.cohort.empty()) {
+      storeJudged(files[i], o, cohort, metrics, judged, stored);
     } else {
       stored.values = std::move(judged.values);
       stored.external = std::move(judged.external);

@@ -111,7 +111,8 @@ void addAttempt(CLI::App& app, Run& run) {
       attempt, run, {"list", "List the attempts of a cohort, by their start", "calot attempt list --cohort c.db"},
       listAttempts);
   addCohortOption(*list, l->cohort)->required();
-  list->add_option("--participant", l->participant, "Only this participant's");
+  list->add_option("--participant", l->participant, "Only this participant's")
+      ->transform(CLI::Validator(pseudonymForm, ""));
   list->add_option("--group", l->group, "Only this group's");
   list->add_option("--scene", l->scene, "Only of this scene");
   list->add_option("--tag", l->tag, "Only those that have this tag");

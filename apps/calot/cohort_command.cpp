@@ -197,9 +197,8 @@ void addCohort(CLI::App& app, Run& run) {
   addOne({"upgrade", "Bring a database of an older Calot to the schema of this one; a copy is kept beside it",
           "calot cohort upgrade c.db"},
          upgrade, false);
-  addOne(
-      {"scrub", "Overwrite what was deleted, empty the log, remove backups of migrations", "calot cohort scrub c.db"},
-      scrub, false);
+  addOne({"scrub", "Overwrite what was deleted, remove backups of migrations", "calot cohort scrub c.db"}, scrub,
+         false);
   addOne({"list", "Sites, arms, stations and cohorts of a database", "calot cohort list c.db"}, listRegisters, true);
 
   const auto addName = [&](const CommandText& text, void (*work)(const NameOptions&)) {

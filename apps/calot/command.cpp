@@ -100,6 +100,17 @@ CLI::Option* addChoice(CLI::App& command, const std::string& name, std::string& 
   return command.add_option(name, value, help)->check(oneOf(std::move(words)))->capture_default_str();
 }
 
+CLI::Option* addSimilarNames(CLI::App& command, recorder::SimilarNames& similar) {
+  using recorder::SimilarNames;
+  return command
+      .add_option_function<std::string>(
+          "--similar-names",
+          [&similar](const std::string& word) { similar = word == "one" ? SimilarNames::one : SimilarNames::two; },
+          "What names of the table are that differ in capitals or leading zeros alone (P1 and p1, 001 and 1): one, or "
+          "two (default: they are refused)")
+      ->check(oneOf({"one", "two"}));
+}
+
 std::optional<std::string> givenOf(const CLI::App& command, const std::string& option, const std::string& value) {
   return command.count(option) > 0 ? std::optional(value) : std::nullopt;
 }

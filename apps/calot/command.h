@@ -21,6 +21,7 @@
 #include "apps/calot/environment.h"
 #include "apps/common/program.h"
 #include "recorder/base/errors.h"
+#include "recorder/base/names.h"
 
 namespace calot::apps {
 
@@ -117,6 +118,9 @@ CLI::Option* addCohortOption(CLI::App& command, std::string& database, const std
 /// Looks whether a command line has `--cohort`. Before commands are added.
 /// @param words the command line without the program's name
 void lookForCohort(const std::vector<std::string>& words);
+
+/// Adds --similar-names, of the table that a command reads.
+CLI::Option* addSimilarNames(CLI::App& command, recorder::SimilarNames& similar);
 
 /// For CLI::Option::check: one of these words. The fault names the nearest.
 CLI::Validator oneOf(std::vector<std::string> words);

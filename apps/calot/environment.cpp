@@ -14,6 +14,7 @@
 
 #include "recorder/base/errors.h"
 #include "recorder/base/files.h"
+#include "recorder/base/names.h"
 #include "recorder/base/text_words.h"
 #include "recorder/formats/scene_file.h"
 
@@ -89,6 +90,11 @@ std::string wholeNumber(const std::string& text) {
              : fmt::format("'{}' is not a whole number below 2^64", text);
 }
 
+std::string pseudonymForm(std::string& name) {
+  name = recorder::composedName(name);
+  return name.size() > 64 ? "longer than 64 characters" : "";
+}
+
 double parseTime(const std::string& text) {
   bool good = true;
   const auto number = [&](std::string_view part) {
@@ -111,7 +117,10 @@ double parseTime(const std::string& text) {
 }
 
 void stopOnSignals() {
-  for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { requested = true; });
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    const auto before = std::signal(signal, [](int) { requested = true; });
+    if (signal == SIGHUP && before == SIG_IGN) std::signal(signal, SIG_IGN);  // nohup
+  }
 }
 
 std::atomic<bool>& stopRequested() { return requested; }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Shared by commands: location of assets, progress on a terminal, parsing of times.
-// Ending a run in good order: what SIGINT and SIGTERM ask for.
+// Ending a run in good order: what SIGINT, SIGTERM and SIGHUP ask for.
 #pragma once
 
 #include <array>
@@ -51,10 +51,13 @@ class Progress {
 /// @return empty, or the fault
 std::string wholeNumber(const std::string& text);
 
+/// For CLI::Option::transform: a pseudonym, in one form of Unicode.
+std::string pseudonymForm(std::string& name);
+
 /// "12.5", "12.5s" or "1:02.5" in seconds. @throws Error (invalid)
 double parseTime(const std::string& text);
 
-/// From here on both signals ask to stop instead of ending the program.
+/// From here on these signals ask to stop instead of ending the program.
 void stopOnSignals();
 
 /// Was it asked? The program itself may ask, too.

@@ -75,18 +75,16 @@ Json failuresJson(const analytics::MetricOutcomes& outcomes) {
 recorder::TrackedMotion readMotion(const std::filesystem::path& file, const recorder::ColumnMap* map) {
   if (map != nullptr) return recorder::readCsvMotion(file, *map);
   if (recorder::isKinematicsFile(file)) return recorder::trackedMotion(recorder::readKinematics(file));
-  const recorder::GuessedMap guess = recorder::guessColumns(file);
-  if (!guess.open.empty()) {
-    throw Error(ErrorKind::invalid, Where{file.string()},
-                fmt::format("seems to be a {} that does not say {}: calot import --guess writes a map of its columns; "
-                            "fill it in and name it with --columns",
-                            guess.source, fmt::join(guess.open, ", ")));
+  recorder::ColumnMap recognised;
+  try {
+    recognised = recorder::recognisedMap(file);
+  } catch (const Error& e) {
+    if (e.kind() != ErrorKind::invalid) throw;
+    throw Error(
+        e.kind(), e.where(),
+        e.fault() + ": calot import --guess writes a map of its columns; fill it in and name it with --columns");
   }
-  const std::string name = file.filename().string();
-  recorder::TrackedMotion motion =
-      recorder::readCsvMotion(file, recorder::parseColumnMap(std::as_bytes(std::span(guess.json)), name));
-  motion.notes.insert(motion.notes.begin(), "read as " + guess.source);
-  return motion;
+  return recorder::readCsvMotion(file, recognised);
 }
 
 ExitCode refuseRows(const std::vector<Error>& faults) {
@@ -107,6 +105,7 @@ struct ImportOptions {
   std::vector<std::string> files;
   std::string manifest, cohort, columns, mode = "practice", outcome = "stopped";
   analytics::MotionDeclaration declaration;
+  analytics::TableReading reading;
   MetricOptions metrics;
   double cutoff = 0.0;
   bool json = false, guess = false;
@@ -242,11 +241,16 @@ std::string summaryOf(const analytics::MotionManifest& manifest, const std::map<
 
 ExitCode importManifest(const ImportOptions& o) {
   std::vector<Error> faults;
-  const analytics::MotionManifest manifest =
-      analytics::readMotionManifest(o.manifest, o.declaration, o.columns, faults);
   std::optional<analytics::Enrolment> enrolment;
+  std::vector<analytics::Participant> enrolledBefore;
   if (std::filesystem::exists(o.cohort)) {
-    enrolment.emplace(analytics::CohortDatabase(o.cohort, analytics::CohortDatabase::Access::write));
+    const analytics::CohortDatabase cohort(o.cohort, analytics::CohortDatabase::Access::write);
+    enrolment.emplace(cohort);
+    enrolledBefore = cohort.participants();
+  }
+  const analytics::MotionManifest manifest =
+      analytics::readMotionManifest(o.manifest, o.declaration, o.columns, o.reading, enrolledBefore, faults);
+  if (enrolment) {
     const std::vector<Error> conflicts = enrolment->conflicts(manifest);
     faults.insert(faults.end(), conflicts.begin(), conflicts.end());
   }
@@ -322,6 +326,25 @@ void addImport(CLI::App& app, Run& run) {
           "files", o->files,
           "two-handed motion, 76 columns at 30 Hz; CSV files of Motive, Vicon, NDI or ROS; others with --columns")
       ->excludes(manifest);
+  addSimilarNames(*command, o->reading.names)->needs(manifest);
+  command
+      ->add_option_function<std::string>(
+          "--dates",
+          [&dates = o->reading.dates](const std::string& word) {
+            using Order = recorder::DateStyle::Order;
+            dates.order = word == "day-first" ? Order::dayFirst : Order::monthFirst;
+          },
+          "What comes first in dates of the table such as 3/4/2026: day-first or month-first")
+      ->check(oneOf({"day-first", "month-first"}))
+      ->needs(manifest);
+  command
+      ->add_option_function<std::string>(
+          "--zone", [&dates = o->reading.dates](const std::string& word) { dates.zone = recorder::readZone(word); },
+          "The zone of times of the table that name none: Z (universal time) or +01:00")
+      ->check([](const std::string& word) {
+        return recorder::readZone(word) ? std::string() : "Z or an offset such as +01:00 is expected";
+      })
+      ->needs(manifest);
   addStoring(*command, o->cohort, o->cutoff);
   addMetrics(*command, o->metrics);
   command->add_option("--columns", o->columns, "a JSON file that says what the columns of the CSV files are");
@@ -332,7 +355,8 @@ void addImport(CLI::App& app, Run& run) {
   command->add_option("--task", o->declaration.task, "what was done; attempts of different tasks are never compared")
       ->check(wordOf("task"))
       ->capture_default_str();
-  command->add_option("--participant", o->declaration.participant, "pseudonym")->check(wordOf("participant"));
+  command->add_option("--participant", o->declaration.participant, "pseudonym")
+      ->transform(CLI::Validator(pseudonymForm, ""));
   addChoice(*command, "--mode", o->mode, "practice or assessment", {"practice", "assessment"});
   command
       ->add_option("--purpose", o->declaration.purpose,

@@ -20,11 +20,14 @@ namespace {
 
 struct AngoffOptions {
   std::string table;
+  recorder::SimilarNames similarNames = recorder::SimilarNames::ask;
   bool json = false;
 };
 
 void judgeByAngoff(const AngoffOptions& o) {
-  const analytics::AngoffJudgement a = analytics::readAngoff(readCsvTable(o.table));
+  CsvTable table = readCsvTable(o.table);
+  recorder::spellNames(table, {{"judge"}}, o.similarNames);
+  const analytics::AngoffJudgement a = analytics::readAngoff(table);
   Json items = Json::array();
   for (std::size_t item = 0; item < a.items.size(); ++item) {
     double sum = 0.0, least = 1.0, most = 0.0;
@@ -274,6 +277,7 @@ void addNorm(CLI::App& app, Run& run) {
                  judgeByAngoff);
   angoff->add_option("judges", a->table, "CSV file: a column judge, and one of probabilities for each figure")
       ->required();
+  addSimilarNames(*angoff, a->similarNames);
   angoff->add_flag("--json", a->json, "Print JSON");
   shown->add_flag("--json", o->json, "Print JSON");
   proven->add_option("--file", o->file, "The document; its name and hash are stored")->required();

@@ -90,7 +90,7 @@ void withdraw(const WithdrawOptions& o) {
                     w.undecided.size(), o.pseudonym, fmt::join(w.undecided, ", ")));
   }
   const std::vector<fs::path> folders(o.folders.begin(), o.folders.end());
-  std::vector<fs::path> untouched{o.cohort, o.cohort + "-wal", o.cohort + "-shm"};
+  std::vector<fs::path> untouched{o.cohort, o.cohort + "-journal"};
   for (const std::string& backup : analytics::backupsOf(o.cohort)) untouched.emplace_back(backup);
   analytics::WithdrawalFiles files = analytics::findFiles(w, o.cohort, folders, untouched);
   addFilms(w, files.remove);
@@ -129,7 +129,9 @@ void addWithdraw(CLI::App& participant, Run& run) {
                  {"withdraw", "Remove what there is of a participant, for good",
                   "calot participant withdraw P1 --cohort c.db --scope all --recordings recordings"},
                  withdraw);
-  command->add_option("participant", o->pseudonym, "Pseudonym")->required();
+  command->add_option("participant", o->pseudonym, "Pseudonym")
+      ->transform(CLI::Validator(pseudonymForm, ""))
+      ->required();
   command->add_option("--cohort", o->cohort, "Cohort database")->required();
   command->add_option("--scope", o->scope, "research: all but training goes, the participant stays; all: everything")
       ->check(oneOf({"research", "all"}))
@@ -236,7 +238,9 @@ void addParticipant(CLI::App& app, Run& run) {
                           .first;
   o->command = changed;
   for (CLI::App* command : {added, changed}) {
-    command->add_option("participant", o->pseudonym, "Pseudonym, never a name")->required();
+    command->add_option("participant", o->pseudonym, "Pseudonym, never a name")
+        ->transform(CLI::Validator(pseudonymForm, ""))
+        ->required();
     command->add_option("--cohort", o->database, "Cohort database")->required();
     command->add_option("--group", o->group, "Study group");
     command->add_option("--arm", o->arm, "Study arm");

@@ -34,6 +34,7 @@ using Given = std::vector<std::pair<std::string, std::string>>;
 struct RateOptions {
   std::string database, form, attempt, rater, participant, answersFile, manifest, taken;
   std::vector<std::string> answers, described;
+  recorder::SimilarNames similarNames = recorder::SimilarNames::ask;
   bool forms = false, json = false, force = false;
 };
 
@@ -150,7 +151,7 @@ ExitCode storeRatingManifest(const RateOptions& o) {
   const auto find = [](const std::string& name) { return findAsset(name, "forms", "form"); };
   std::vector<Error> faults;
   const analytics::RatingManifest read = analytics::readRatingManifest(
-      o.manifest, o.form, find, analytics::CohortDatabase(o.database, Access::read), faults);
+      o.manifest, o.form, find, analytics::CohortDatabase(o.database, Access::read), o.similarNames, faults);
   if (!faults.empty()) return refuseRows(faults);
   analytics::CohortDatabase database(o.database, Access::write);
   const analytics::StoredRatings stored = analytics::storeRatings(database, read, o.force, faults);
@@ -246,7 +247,7 @@ std::vector<FilmOrigin> filmsInTable(const analytics::CohortDatabase& cohort, co
     }
     std::string uuid;
     try {
-      uuid = cohort.attemptNamed(table.cell(row, "attempt"));
+      uuid = analytics::attemptInTable(cohort, table.cell(row, "attempt"));
     } catch (const Error& e) {
       throw table.fault(row, "attempt", e.fault());
     }
@@ -430,13 +431,16 @@ void addRate(CLI::App& app, Run& run) {
   command->add_flag("--forms", o->forms, "List the forms that come with the program");
   command->add_option("--form", o->form, "The form that was filled in: its name (calot rate --forms), or a JSON file");
   command->add_option("--attempt", o->attempt, "Uuid of the attempt that was rated");
-  command->add_option("--rater", o->rater, "Pseudonym of who rated it");
-  command->add_option("--participant", o->participant, "Pseudonym of the participant who filled in a questionnaire");
+  command->add_option("--rater", o->rater, "Pseudonym of who rated it")->transform(CLI::Validator(pseudonymForm, ""));
+  command->add_option("--participant", o->participant, "Pseudonym of the participant who filled in a questionnaire")
+      ->transform(CLI::Validator(pseudonymForm, ""));
   addList(*command, "--answer", o->answers,
           "ITEM=SCORE for each item, - where it was left blank: A=4,B=- or one option each");
   command->add_option("--answers", o->answersFile, "The same as a JSON object of items and scores, null for blank");
-  command->add_option("--manifest", o->manifest,
-                      "A CSV table of completed forms: attempt, file or participant, rater, and one column an item");
+  CLI::Option* manifest = command->add_option(
+      "--manifest", o->manifest,
+      "A CSV table of completed forms: attempt, file or participant, rater, and one column an item");
+  addSimilarNames(*command, o->similarNames)->needs(manifest);
   command->add_option("--take", o->taken, "The answers to a pack as the rater's page saved them");
   command
       ->add_option("--describe", o->described,

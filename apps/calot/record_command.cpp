@@ -115,6 +115,11 @@ void addRunOptions(CLI::App& command, RunOptions& o, const std::string& output) 
   command.add_flag("--json", o.json, "print the result as JSON");
 }
 
+void warnUnlocked(const recorder::RecordingWriter& writer, const std::string& output) {
+  if (!writer.locked())
+    fmt::print(stderr, "calot: warning: {}: recorded without a lock, which its file system does not grant\n", output);
+}
+
 struct RecordOptions : RunOptions {
   std::string scene, participant, station, purpose = "training", handedness = "unknown", mode = "practice";
   bool paced = false;
@@ -137,6 +142,7 @@ void record(const RecordOptions& o) {
       recorder::makeHeader(model, std::move(scene.assets), source->provenance(),
                            {o.participant, stationOf(o.station, key), o.purpose, o.handedness, who.mode, o.seed});
   recorder::RecordingWriter writer(o.output, header, {o.force, std::move(key)});
+  warnUnlocked(writer, o.output);
   recorder::WorkerPool pool(o.threads);
   recorder::Session session(model, o.seed, pool, prepared->services(broadPhaseOf(o.broadPhase)));
   session.join(writer);
@@ -154,6 +160,8 @@ void record(const RecordOptions& o) {
   writer.finish();
   prepared->save();
   Progress::erase();
+  if (report.steps == 0 && report.outcome == recorder::Outcome::stopped)
+    throw Error(ErrorKind::failure, Where{o.output}, "stopped before its first step: nothing was recorded");
   if (!o.json) printDevice(*source);
   reportRun({header.attempt, o.output, stepSeconds, report, source->statusText(), run.paced || o.live, o.live}, o.json);
 }
@@ -195,6 +203,7 @@ void branch(const BranchOptions& o) {
   if (key) header.station = key->station;  // of who signs, wherever the parent came from
 
   recorder::RecordingWriter writer(file.path(), header, {true, std::move(key)});
+  warnUnlocked(writer, o.output);
   recorder::WorkerPool pool(o.threads);
   recorder::Session session(model, header.seed, pool, scene->services(broadPhaseOf(o.broadPhase)));
   LastPose pose;
@@ -250,9 +259,7 @@ void addRecord(CLI::App& app, Run& run) {
   command->add_option("--seed", o->seed, "of performer and simulation")->check(wholeNumber)->capture_default_str();
   command->add_option("--seconds", o->seconds, "stop after so much attempt time; 0: when the source ends")
       ->check(CLI::Range(0.0, 36000.0));
-  command->add_option("--participant", o->participant, "pseudonym")->check([](const std::string& p) {
-    return p.size() > 64 ? std::string("longer than 64 characters") : std::string();
-  });
+  command->add_option("--participant", o->participant, "pseudonym")->transform(CLI::Validator(pseudonymForm, ""));
   command->add_option("--station", o->station, "name of this training station");
   addStationKey(*command, o->stationKey);
   addChoice(*command, "--purpose", o->purpose, "training, study, demo, golden",

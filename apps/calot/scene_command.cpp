@@ -210,7 +210,9 @@ void writeSceneTemplate(const SceneTemplate& wanted) {
   const fs::path root = folder.filename() == "scenes" ? folder.parent_path() : folder;
   const fs::path organs = root / "organs";
   const fs::path surface = organs / fs::path(wanted.surface).filename();
-  const TriangleMesh mesh = recorder::readSurface(wanted.surface, recorder::parseLengthUnit(wanted.unit));
+  std::vector<std::string> notes;
+  const TriangleMesh mesh = recorder::readSurface(wanted.surface, recorder::parseLengthUnit(wanted.unit), {}, &notes);
+  for (const std::string& note : notes) fmt::print(stderr, "calot: warning: {}: {}\n", wanted.surface, note);
   const SurfaceReport found = inspectSurface(mesh);
   if (!found.closedManifold()) {
     throw Error(
@@ -267,7 +269,8 @@ void addScene(CLI::App& app, Run& run) {
                  {"template", "Write a scene of one organ that can be recorded at once, and be changed from there",
                   "calot scene template liver.stl --unit mm -o my/scenes/press.json"},
                  writeSceneTemplate);
-  made->add_option("surface", t->surface, "the organ's closed surface, a .obj, .stl or .ply file (calot mesh --repair)")
+  made->add_option("surface", t->surface,
+                   "the organ's closed surface, a .obj, .stl, .ply or .off file (calot mesh --repair)")
       ->required();
   made->add_option("--unit", t->unit, "of its coordinates: m, cm or mm")->required()->check(oneOf({"m", "cm", "mm"}));
   made->add_option("-o,--output", t->output, "the scene, FOLDER/scenes/NAME.json; the surface goes into FOLDER/organs")

@@ -61,6 +61,7 @@ void addTableOptions(CLI::App& command, StudySource& options, CLI::Option& table
   command.add_option("--occasion", study.occasion, "The occasion to compare; of several columns: a/b")->needs(&table);
   command.add_option("--baseline-occasion", study.baselineOccasion, "The occasion whose value is the baseline")
       ->needs(&table);
+  addSimilarNames(command, options.similarNames)->needs(&table);
 }
 
 /// The words of the command line as the library has them.
@@ -72,13 +73,23 @@ void settle(StudySource& source) {
   if (!source.cohortName.empty()) source.cohort.cohort = analytics::CohortInUse{source.cohortName, {}};
 }
 
+/// @param strata column of the strata, or empty
+CsvTable tableOf(const StudySource& source, const std::string& strata) {
+  CsvTable table = readCsvTable(source.table);
+  std::vector<recorder::NameColumn> names{
+      {source.elsewhere.participantColumn}, {source.elsewhere.groupColumn}, {strata}};
+  for (const std::string& column : source.elsewhere.occasionColumns) names.push_back({column});
+  recorder::spellNames(table, names, source.similarNames);
+  return table;
+}
+
 analytics::Study plainStudyOf(StudySource& options, const analytics::StudyProgress& progress) {
   if (!options.table.empty()) {
     settle(options);
     static_cast<analytics::StudyChoices&>(options.elsewhere) = options.choices;
     if (!options.protocol.empty())
       options.elsewhere.protocol = analytics::readProtocol(findAsset(options.protocol, "protocols", "protocol"));
-    return analytics::makeTableStudy(readCsvTable(options.table), options.elsewhere);
+    return analytics::makeTableStudy(tableOf(options, {}), options.elsewhere);
   }
   if (options.database.empty()) throw Error(ErrorKind::invalid, "name a cohort database, or a table with --table");
   const analytics::CohortDatabase cohort(options.database, analytics::CohortDatabase::Access::read);
@@ -245,7 +256,7 @@ analytics::DesignReport designReportOf(const DesignOptions& o, StudySource& sour
   choices.design = designOf(o, source);
   if (!source.table.empty())
     return analytics::makeDesignReport(
-        analytics::tableDesignData(readCsvTable(source.table), source.elsewhere, choices), choices);
+        analytics::tableDesignData(tableOf(source, choices.strata), source.elsewhere, choices), choices);
   if (source.database.empty()) throw Error(ErrorKind::invalid, "name a cohort database, or a table with --table");
   const analytics::CohortDatabase cohort(source.database, analytics::CohortDatabase::Access::read);
   return analytics::makeDesignReport(analytics::cohortDesignData(cohort, source.cohort, choices), choices);

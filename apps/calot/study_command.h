@@ -9,6 +9,7 @@
 #include "analytics/report/study.h"
 #include "analytics/report/study_protocol.h"
 #include "analytics/report/table_study.h"
+#include "recorder/base/names.h"
 
 namespace calot::apps {
 
@@ -18,6 +19,7 @@ struct StudySource {
   analytics::StudyChoices choices;
   analytics::StudyOptions cohort;
   analytics::TableStudyOptions elsewhere;
+  recorder::SimilarNames similarNames = recorder::SimilarNames::ask;
 };
 
 /// Adds the cohort or, with `tables`, --table, and who and what of it is compared.

@@ -38,6 +38,9 @@ constexpr RemedyWords remedyOptions[] = {
     {Remedy::nameBetterGroup, "name one with --better"},
     {Remedy::nameFamily, "name rows of the study with --family"},
     {Remedy::nameCheckpoints, "name others with --checkpoints"},
+    {Remedy::sayNames, "say it with --similar-names one or two"},
+    {Remedy::sayDates, "say it with --dates day-first or month-first"},
+    {Remedy::sayZone, "say it with --zone, Z or +01:00"},
 };
 
 /// By name: the parser orders them by address.

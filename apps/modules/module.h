@@ -12,6 +12,7 @@
 #include "recorder/sources/devices/force/haply_device.h"
 #include "recorder/sources/devices/openigtlink_device.h"
 #include "recorder/sources/devices/pointer_device.h"
+#include "recorder/surfaces/surface_union.h"
 
 namespace calot::apps {
 
@@ -41,6 +42,11 @@ struct PdfModule : Module {
   static constexpr const char* name = "pdf";
   decltype(&gui::pdfReport) report;
   decltype(&gui::sheetsPdf) sheets;
+};
+
+struct SurfaceModule : Module {
+  static constexpr const char* name = "surfaces";
+  decltype(&recorder::uniteSurfaces) unite;
 };
 
 struct DeviceModule : Module {

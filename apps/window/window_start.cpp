@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "apps/common/program.h"
 #include "gui/attempt/widget_parts.h"
 #include "gui/render/graphics.h"
 #include "gui/render/image.h"
@@ -51,7 +52,25 @@ void requireFolder(const std::string& folder, const std::string& what) {
   ::unlink(trial.c_str());
 }
 
-void requireScreen() {
+namespace {
+
+QString screenFault;
+QtMessageHandler messagesBefore = nullptr;
+
+/// Takes what Qt says while it looks for a screen.
+void onScreenMessage(QtMsgType type, const QMessageLogContext& context, const QString& message) {
+  if (type == QtFatalMsg) {
+    fmt::print(stderr, "{}: there is no screen to show a window on: {}\n", program_invocation_short_name,
+               screenFault.toStdString());
+    std::_Exit(static_cast<int>(ExitCode::failure));
+  }
+  if (!message.contains("display") && !message.contains("plugin")) return messagesBefore(type, context, message);
+  if (screenFault.isEmpty()) screenFault = message;  // the first one says why
+}
+
+}  // namespace
+
+std::unique_ptr<QApplication> openScreen(int& argc, char** argv) {
   const auto variable = [](const char* name) -> std::string {
     const char* const value = std::getenv(name);
     return value != nullptr ? value : "";
@@ -61,6 +80,12 @@ void requireScreen() {
   if (onScreen && variable("DISPLAY").empty() && variable("WAYLAND_DISPLAY").empty())
     throw Error(ErrorKind::failure,
                 "there is no screen to show a window on (DISPLAY is not set); xvfb-run gives a virtual one");
+  messagesBefore = qInstallMessageHandler(nullptr);
+  qInstallMessageHandler(onScreenMessage);
+  auto application = std::make_unique<QApplication>(argc, argv);
+  qInstallMessageHandler(nullptr);
+  QApplication::setApplicationName("Calot");
+  return application;
 }
 
 void addGraphics(CLI::App& app, std::string& word) {

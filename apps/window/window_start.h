@@ -4,6 +4,8 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <memory>
+#include <QApplication>
 #include <QSize>
 #include <string>
 
@@ -25,9 +27,9 @@ QSize windowSize(const LookOptions& look);
 /// @throws Error (invalid) where there is no such folder, (failure) where nothing can be written in it
 void requireFolder(const std::string& folder, const std::string& what);
 
-/// Qt itself ends the program with several lines where it finds no screen.
-/// @throws Error (failure) where the environment names none
-void requireScreen();
+/// Qt itself would end the program with several lines, or a core dump, where it finds no screen: this ends it with one.
+/// @param argc and argv outlive the application @throws Error (failure) where the environment names no screen
+std::unique_ptr<QApplication> openScreen(int& argc, char** argv);
 
 /// Adds --graphics: what draws the pictures of the scene.
 void addGraphics(CLI::App& app, std::string& word);

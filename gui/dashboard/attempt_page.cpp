@@ -3,7 +3,6 @@
 
 #include <QFileDialog>
 #include <QFileInfo>
-#include <QSaveFile>
 
 #include "analytics/checkpoints/checkpoint.h"
 #include "analytics/cohort/cohort_database.h"
@@ -15,6 +14,7 @@
 #include "gui/render/renderer.h"
 #include "gui/report/pdf_report.h"
 #include "recorder/base/errors.h"
+#include "recorder/base/files.h"
 
 namespace calot::gui {
 namespace {
@@ -56,15 +56,6 @@ struct SheetRequest {
 
 constexpr int pictureWidth = 800, pictureHeight = 600;
 constexpr const char* sheetMaker = "calot " CALOT_VERSION;
-
-QString writeFile(const std::filesystem::path& file, const std::string& bytes) {
-  const QString name = QString::fromStdString(file.string());
-  QSaveFile out(name);
-  if (!out.open(QIODevice::WriteOnly) || out.write(bytes.data(), static_cast<qint64>(bytes.size())) < 0 ||
-      !out.commit())
-    throw Error(ErrorKind::failure, Where{file.string()}, "cannot be written: " + out.errorString().toStdString());
-  return "Written: " + name;
-}
 
 /// The attempt on one page: verdict, critical view, errors, key figures, what went wrong and when.
 analytics::ReportDocument attemptDocument(const SheetRequest& request) {
@@ -117,7 +108,8 @@ QString writeOnePage(const SheetRequest& request, LongWork::Control& control) {
   control.progress(0.9, "Laying out the page");
   const std::string bytes = onePagePdf(attemptDocument(request), pictures, sheetMaker);
   control.progress(1.0, "Writing the page");
-  return writeFile(request.file, bytes);
+  recorder::writeText(request.file, bytes, true);
+  return "Written: " + QString::fromStdString(request.file.string());
 }
 
 /// The attempt against the norm, as `calot grade --pdf` writes it.
@@ -143,7 +135,8 @@ QString writeGradeSheet(const SheetRequest& request, LongWork::Control& control)
   const std::string bytes =
       pdfReport(analytics::gradeDocument(grade, request.recording.filename().string(), {}), sheetMaker);
   control.progress(1.0, "Writing the sheet");
-  return writeFile(request.file, bytes);
+  recorder::writeText(request.file, bytes, true);
+  return "Written: " + QString::fromStdString(request.file.string());
 }
 
 }  // namespace

@@ -5,19 +5,17 @@
 #include <png.h>
 #include <unistd.h>
 #include <charconv>
-#include <filesystem>
 #include <system_error>
 
 #include "gui/render/view_check.h"
 #include "recorder/base/errors.h"
+#include "recorder/base/files.h"
 
 namespace calot::gui {
 
 void writePng(const Image& image, const std::string& file) {
-  const std::string temporary = fmt::format("{}.{}.part", file, ::getpid());
+  recorder::NewFile made(file, true, fmt::format(".{}.part", ::getpid()));
   const auto fail = [&](const std::string& why) {
-    std::error_code ignored;
-    std::filesystem::remove(temporary, ignored);
     throw Error(ErrorKind::failure, Where{file}, fmt::format("cannot write the picture: {}", why));
   };
   if (image.width <= 0 || image.height <= 0 ||
@@ -29,10 +27,9 @@ void writePng(const Image& image, const std::string& file) {
   header.width = static_cast<png_uint_32>(image.width);
   header.height = static_cast<png_uint_32>(image.height);
   header.format = PNG_FORMAT_RGBA;
-  if (png_image_write_to_file(&header, temporary.c_str(), 0, image.rgba.data(), 0, nullptr) == 0) fail(header.message);
-  std::error_code error;
-  std::filesystem::rename(temporary, file, error);
-  if (error) fail(error.message());
+  if (png_image_write_to_file(&header, made.path().c_str(), 0, image.rgba.data(), 0, nullptr) == 0)
+    fail(header.message);
+  made.publish();
 }
 
 std::optional<PictureSize> readSize(const std::string& text) {

@@ -25,7 +25,7 @@ struct Image {
 
 /// Writes an image as PNG (8-bit RGBA, sRGB chunk, no time stamp: equal images give equal files). Writes to a temporary
 /// name beside the file and renames; an existing file is replaced.
-/// @throws calot::Error (failure) naming the file if it cannot be written.
+/// @throws calot::Error naming the file: as recorder::refuseOutput(), or (failure) if it cannot be written.
 void writePng(const Image& image, const std::string& file);
 
 /// How large a picture is asked for.

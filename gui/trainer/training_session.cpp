@@ -342,6 +342,10 @@ void TrainingSession::during(Clock::duration time, const std::function<bool(Cloc
 
 void TrainingSession::keepResult(const recorder::RunReport& report, const recorder::SampleSource& source) {
   const std::lock_guard lock(mutex_);
+  if (report.steps == 0 && report.outcome == Outcome::stopped) {  // which is no attempt
+    status_.file.clear();
+    return;
+  }
   status_.report = report;
   if (report.disagreements > 0) {
     status_.problem = fmt::format(

@@ -3,28 +3,31 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <array>
 #include <cerrno>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
+#include <span>
 #include <string_view>
 #include <system_error>
 
 #include "recorder/base/errors.h"
+#include "recorder/base/files.h"
 #include "recorder/base/text_words.h"
 
 namespace calot {
 namespace {
 
-std::string_view trimmed(std::string_view cell) {
-  const std::size_t first = cell.find_first_not_of(" \t");
-  if (first == std::string_view::npos) return {};
-  return cell.substr(first, cell.find_last_not_of(" \t") - first + 1);
-}
+constexpr std::size_t maxTableBytes = std::size_t{64} << 20U;
 
-void skipByteOrderMark(std::string_view& text) {
-  constexpr std::string_view mark = "\xEF\xBB\xBF";
-  if (text.starts_with(mark)) text.remove_prefix(mark.size());
+char separatorOf(std::string_view header) {
+  constexpr std::string_view separators = "\t,;";
+  std::array<std::ptrdiff_t, separators.size()> found{};
+  bool quoted = false;
+  for (const char c : header) {
+    if (c == '"') quoted = !quoted;
+    if (const std::size_t at = separators.find(c); !quoted && at != std::string_view::npos) ++found[at];
+  }
+  const auto most = std::max_element(found.begin(), found.end());
+  return *most == 0 ? ',' : separators[static_cast<std::size_t>(most - found.begin())];
 }
 
 [[noreturn]] void fail(const std::string& path, std::size_t line, const std::string& what) {
@@ -34,31 +37,46 @@ void skipByteOrderMark(std::string_view& text) {
 /// Takes records off a text, one after the other.
 class Records {
  public:
-  Records(std::string_view text, const std::string& path, char separator)
-      : rest_(text), path_(path), separator_(separator), ends_{separator, '\n'} {}
+  Records(std::string_view text, const std::string& path, char separator, std::size_t line)
+      : rest_(text),
+        path_(path),
+        separator_(separator),
+        ends_{separator, '\n'},
+        blanks_(separator == '\t' ? " " : " \t"),
+        line_(line) {}
 
+  /// Empty cells behind the columns, which nobody wrote, are dropped. @param columns 0: of a header
   /// @return false at the end
-  bool next(CsvRow& row) {
+  bool next(CsvRow& row, std::size_t columns) {
     while (!rest_.empty()) {
       row.line = line_;
       row.cells.clear();
-      bool quoted = false;
+      std::size_t quoted = 0;
       while (takeCell(row, quoted)) {
       }
-      if (quoted || row.cells.size() > 1 || !row.cells[0].empty()) return true;
+      while (row.cells.size() > std::max(columns, quoted) && row.cells.back().empty()) row.cells.pop_back();
+      if (quoted > 0 || std::any_of(row.cells.begin(), row.cells.end(), [](const auto& cell) { return !cell.empty(); }))
+        return true;
     }
     return false;
   }
 
  private:
+  [[nodiscard]] std::string_view trimmed(std::string_view cell) const {
+    const std::size_t first = cell.find_first_not_of(blanks_);
+    if (first == std::string_view::npos) return {};
+    return cell.substr(first, cell.find_last_not_of(blanks_) - first + 1);
+  }
+
+  /// @param[out] quoted how many cells there are up to the last one in quotes
   /// @return whether another cell of this record follows
-  bool takeCell(CsvRow& row, bool& quoted) {
-    const std::size_t start = std::min(rest_.find_first_not_of(" \t"), rest_.size());
+  bool takeCell(CsvRow& row, std::size_t& quoted) {
+    const std::size_t start = std::min(rest_.find_first_not_of(blanks_), rest_.size());
     if (start < rest_.size() && rest_[start] == '"') {
       rest_.remove_prefix(start + 1);
-      quoted = true;
       row.cells.push_back(takeQuoted(row.line));
-      rest_.remove_prefix(std::min(rest_.find_first_not_of(" \t"), rest_.size()));
+      quoted = row.cells.size();
+      rest_.remove_prefix(std::min(rest_.find_first_not_of(blanks_), rest_.size()));
       if (!rest_.empty() && rest_[0] != separator_ && rest_[0] != '\n' && rest_.substr(0, 2) != "\r\n")
         fail(path_, line_, fmt::format("column {}: text behind a closing quote", row.cells.size()));
     } else {
@@ -95,8 +113,8 @@ class Records {
   std::string_view rest_;
   const std::string& path_;
   char separator_;
-  std::string ends_;  ///< of a cell without quotes
-  std::size_t line_ = 1;
+  std::string ends_, blanks_;  ///< of and around a cell without quotes
+  std::size_t line_;
 };
 
 }  // namespace
@@ -121,24 +139,40 @@ std::size_t CsvTable::column(const std::string& name) const {
   return static_cast<std::size_t>(at - columns.begin());
 }
 
+std::string CsvTable::withPoint(std::string cell) const {
+  if (separator != ',' && std::count(cell.begin(), cell.end(), ',') == 1 && cell.find('.') == std::string::npos)
+    cell[cell.find(',')] = '.';
+  return cell;
+}
+
 CsvTable parseCsvTable(std::string_view text, const std::string& path) {
-  skipByteOrderMark(text);
+  std::string converted;
+  text = recorder::decodedText(std::as_bytes(std::span(text)), converted);
   if (text.find('\0') != std::string_view::npos)
-    throw Error(ErrorKind::damaged, Where{path}, "is not a table of text (CSV)");
+    throw Error(ErrorKind::damaged, Where{path}, "is not a table of text; a spreadsheet saves one as CSV");
   CsvTable table;
   table.path = path;
-  const std::string_view header = text.substr(0, text.find('\n'));
-  if (header.find(',') == std::string_view::npos && header.find(';') != std::string_view::npos) table.separator = ';';
-  Records records(text, path, table.separator);
+  std::size_t line = 1;
+  std::string_view rest = text, first = recorder::takeLine(rest);
+  while (!first.empty() && (first.back() == '\r' || first.back() == '"')) first.remove_suffix(1);
+  if (first.starts_with('"')) first.remove_prefix(1);
+  if (first.size() == 5 && recorder::lowerCase(first).starts_with("sep=")) {
+    table.separator = first.back();
+    text = rest;
+    ++line;
+  } else {
+    table.separator = separatorOf(text.substr(0, text.find('\n')));
+  }
+  Records records(text, path, table.separator, line);
   CsvRow row;
-  if (!records.next(row)) throw Error(ErrorKind::damaged, Where{path, "line 1"}, "is empty; a header is needed");
+  if (!records.next(row, 0)) throw Error(ErrorKind::damaged, Where{path, "line 1"}, "is empty; a header is needed");
   table.columns = std::move(row.cells);
   if (table.columns.size() == 1) {
     fail(path, row.line,
-         fmt::format("one column only (\"{}\"); the separator is a comma or a semicolon",
+         fmt::format("one column only (\"{}\"); the separator is a comma, a semicolon or a tab",
                      recorder::shown(table.columns[0])));
   }
-  while (records.next(row)) {
+  while (records.next(row, table.columns.size())) {
     if (row.cells.size() != table.columns.size()) {
       fail(path, row.line, fmt::format("{} cells, the header has {}", row.cells.size(), table.columns.size()));
     }
@@ -149,13 +183,8 @@ CsvTable parseCsvTable(std::string_view text, const std::string& path) {
 }
 
 CsvTable readCsvTable(const std::string& path) {
-  std::error_code ignored;
-  std::ifstream file(path, std::ios::binary);
-  if (!file || std::filesystem::is_directory(path, ignored))
-    throw Error(ErrorKind::damaged, Where{path}, "cannot be read; name a CSV file");
-  const std::string text((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
-  if (file.bad()) throw Error(ErrorKind::damaged, Where{path}, "cannot be read");
-  return parseCsvTable(text, path);
+  const std::vector<std::byte> bytes = recorder::readFileBytes(path, path, maxTableBytes);
+  return parseCsvTable({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, path);
 }
 
 std::string csvQuoted(const std::string& text) {

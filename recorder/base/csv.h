@@ -23,18 +23,21 @@ struct CsvRow {
 
 struct CsvTable {
   std::string path;      ///< for messages
-  char separator = ',';  ///< or ';', with which a number may have a decimal comma (R's write.csv2)
+  char separator = ',';  ///< or a semicolon or tab, with which a number may have a decimal comma (R's write.csv2)
   std::vector<std::string> columns;
   std::vector<CsvRow> rows;  ///< each with as many cells as there are columns
 
   /// @throws Error (invalid) where there is no such column, or more than one.
   [[nodiscard]] std::size_t column(const std::string& name) const;
   [[nodiscard]] bool has(const std::string& name) const;
+  /// A cell as a number would be written with a decimal point.
+  [[nodiscard]] std::string withPoint(std::string cell) const;
 };
 
-/// Reads a whole file: UTF-8 with or without a byte order mark, lines ending in LF or CRLF, cells in double quotes
-/// where they hold separators, quotes or line breaks. Blanks around a cell without quotes are dropped; empty lines are
-/// passed over. Cells are separated by semicolons where the header has some and no comma.
+/// Reads a whole file, as RFC 4180 and spreadsheets have it: UTF-8 or UTF-16, else Latin-1, lines ending in LF or CRLF,
+/// cells in double quotes where they hold separators, quotes or line breaks. Blanks around a cell without quotes are
+/// dropped; empty lines, lines of empty cells and columns at the end without a name are passed over. Cells are
+/// separated by what a first line "sep=;" names, else by commas, semicolons or tabs, whichever the header has most of.
 /// @throws Error (damaged), naming file, line and what is wrong.
 CsvTable readCsvTable(const std::string& path);
 

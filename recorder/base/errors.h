@@ -53,6 +53,9 @@ enum class Remedy : std::uint8_t {
   nameBetterGroup,        ///< say which group is expected to do better
   nameFamily,             ///< name rows of the study as the family of hypotheses
   nameCheckpoints,        ///< name figures that judge
+  sayNames,               ///< say whether similar names are one or two
+  sayDates,               ///< say whether day or month comes first in dates
+  sayZone,                ///< say which zone times are of
 };
 
 struct Where {

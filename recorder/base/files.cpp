@@ -30,6 +30,11 @@ std::vector<std::byte> readFileBytes(const std::filesystem::path& path, const st
   if (!std::filesystem::exists(status)) throw Error(ErrorKind::damaged, Where{name}, "there is no such file");
   if (std::filesystem::is_directory(status))
     throw Error(ErrorKind::damaged, Where{name}, "a folder; a file is expected");
+  const auto tooLarge = [&] {
+    return Error(ErrorKind::damaged, Where{name}, fmt::format("larger than {} bytes, which no such file is", most));
+  };
+  if (std::filesystem::is_regular_file(status) && std::filesystem::file_size(path, fault) > most && !fault)
+    throw tooLarge();
   std::ifstream in(path, std::ios::binary);
   if (!in) throw Error(ErrorKind::damaged, Where{name}, "cannot be opened for reading");
   // Read piece by piece: a size that was asked for before would be wrong for a pipe or a growing file.
@@ -38,9 +43,7 @@ std::vector<std::byte> readFileBytes(const std::filesystem::path& path, const st
   while (in.read(piece.data(), piece.size()), in.gcount() > 0) {
     const auto* begin = reinterpret_cast<const std::byte*>(piece.data());
     bytes.insert(bytes.end(), begin, begin + in.gcount());
-    if (bytes.size() > most) {
-      throw Error(ErrorKind::damaged, Where{name}, fmt::format("larger than {} bytes, which no such file is", most));
-    }
+    if (bytes.size() > most) throw tooLarge();
   }
   if (in.bad()) throw Error(ErrorKind::damaged, Where{name}, "reading failed");
   return bytes;
@@ -144,21 +147,34 @@ Error alreadyThere(const fs::path& path) {
 
 }  // namespace
 
+fs::path linkTarget(const fs::path& path) {
+  constexpr int mostLinks = 40;  // as the kernel
+  fs::path target = path;
+  std::error_code ignored;
+  for (int links = 0; links < mostLinks && fs::is_symlink(target, ignored); ++links)
+    target = target.parent_path() / fs::read_symlink(target, ignored);
+  return target;
+}
+
 void refuseOutput(const fs::path& path, bool force) {
   std::error_code ignored;
-  if (fs::is_directory(path, ignored)) {
-    throw Error(ErrorKind::invalid, Where{path.string()}, "is a folder; name a file");
+  const fs::file_status there = fs::status(path, ignored);
+  if (fs::is_directory(there)) throw Error(ErrorKind::invalid, Where{path.string()}, "is a folder; name a file");
+  if (fs::exists(there) && !fs::is_regular_file(there)) {
+    throw Error(ErrorKind::invalid, Where{path.string()},
+                "is a device, a pipe or a socket, which is never replaced; name a file");
   }
   if (!force && fs::exists(fs::symlink_status(path, ignored))) throw alreadyThere(path);
-  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  const fs::path target = linkTarget(path);
+  const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
   if (!fs::is_directory(folder, ignored)) {
     throw Error(ErrorKind::invalid, Where{path.string()}, fmt::format("folder {} does not exist", folder.string()));
   }
 }
 
-NewFile::NewFile(fs::path target, bool force, const char* ending)
-    : target_(std::move(target)), temporary_(target_.string() + ending), force_(force) {
-  refuseOutput(target_, force_);
+NewFile::NewFile(const fs::path& target, bool force, const std::string& ending)
+    : target_(linkTarget(target)), temporary_(target_.string() + ending), force_(force) {
+  refuseOutput(target, force_);
 }
 
 NewFile::~NewFile() {

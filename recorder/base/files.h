@@ -62,16 +62,19 @@ std::string readSecret(const std::filesystem::path& path, std::size_t most);
 /// is there and `replace` is not set; failure: it cannot be written.
 void writeSecret(const std::filesystem::path& path, std::string_view bytes, bool replace);
 
-/// @throws Error (invalid) where `path` is a folder, exists and `force` is not set, or its folder does not exist: asked
-/// before long work whose result goes there.
+/// The path that writing to a path changes: the target of a link, which need not be there.
+std::filesystem::path linkTarget(const std::filesystem::path& path);
+
+/// @throws Error (invalid) where `path` is a folder, a device, a pipe or a socket, exists and `force` is not set, or
+/// its folder does not exist: asked before long work whose result goes there.
 void refuseOutput(const std::filesystem::path& path, bool force);
 
-/// The name that a new file has until it is whole, in the same folder. Removed with this object unless publish() came
-/// before.
+/// The name that a new file has until it is whole, in the same folder; that of the target of a link, which stays.
+/// Removed with this object unless publish() came before.
 class NewFile {
  public:
   /// @param ending of that name, behind the file's own @throws Error as refuseOutput
-  NewFile(std::filesystem::path target, bool force, const char* ending = ".part");
+  NewFile(const std::filesystem::path& target, bool force, const std::string& ending = ".part");
   ~NewFile();
   NewFile(const NewFile&) = delete;
   NewFile& operator=(const NewFile&) = delete;

@@ -6,7 +6,9 @@
 #include <cerrno>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
+#include <cstring>
 
 namespace calot::recorder {
 namespace {
@@ -97,7 +99,13 @@ char32_t utf8Character(std::string_view text, std::size_t& bytes) {
 
 bool isUtf8(std::string_view text) {
   std::size_t bytes = 0;
+  std::uint64_t eight = 0;
   while (!text.empty()) {
+    for (; text.size() >= sizeof eight; text.remove_prefix(sizeof eight)) {  // most text is ASCII
+      std::memcpy(&eight, text.data(), sizeof eight);
+      if ((eight & 0x8080808080808080U) != 0) break;
+    }
+    if (text.empty()) break;
     utf8Character(text, bytes);
     if (bytes == 0) return false;
     text.remove_prefix(bytes);

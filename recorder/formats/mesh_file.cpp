@@ -9,8 +9,9 @@
 
 namespace calot::recorder {
 
-TriangleMesh readSurface(const std::filesystem::path& path, LengthUnit unit, const SurfaceLimits& limits) {
-  return parseSurface(readFileBytes(path, path.string(), limits.bytes), path.string(), unit, limits);
+TriangleMesh readSurface(const std::filesystem::path& path, LengthUnit unit, const SurfaceLimits& limits,
+                         std::vector<std::string>* notes) {
+  return parseSurface(readFileBytes(path, path.string(), limits.bytes), path.string(), unit, limits, notes);
 }
 
 std::string formatVtk(const TetrahedralMesh& mesh, const std::string& title) {

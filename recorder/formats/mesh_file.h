@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "recorder/formats/surface_bytes.h"
 #include "sim/geometry/isosurface_stuffing.h"
@@ -12,7 +13,8 @@
 namespace calot::recorder {
 
 /// parseSurface() of a file. @throws Error (damaged)
-TriangleMesh readSurface(const std::filesystem::path& path, LengthUnit unit, const SurfaceLimits& limits = {});
+TriangleMesh readSurface(const std::filesystem::path& path, LengthUnit unit, const SurfaceLimits& limits = {},
+                         std::vector<std::string>* notes = nullptr);
 
 /// The text of a VTK file, in metres. Coordinates are written so that they are read back bit for bit.
 /// @param title one line, at most 255 characters (more is cut off)

@@ -64,6 +64,7 @@ class PlyReader : public SurfaceReader {
   explicit PlyReader(const SurfaceReader& start) : SurfaceReader(start) {}
 
   TriangleMesh read() {
+    passByteOrderMark();
     readHeader();
     for (const PlyElement& element : elements_) {
       element_ = &element;
@@ -79,8 +80,7 @@ class PlyReader : public SurfaceReader {
         }
       }
     }
-    checkTriangles("face", 0, " (from 0)");
-    return std::move(mesh_);
+    return finish("face", 0, " (from 0)");
   }
 
  private:
@@ -263,7 +263,7 @@ class PlyReader : public SurfaceReader {
       }
       p[property.name[0] - 'x'] = coordinate(next(property.type));
     }
-    mesh_.vertex.push_back(p);
+    addVertex(p);
   }
 
   void readFace() {

@@ -22,9 +22,9 @@ std::vector<Field> MeshFile::fields() {
   static const TextRule assetName{200, R"(^(?!\.{1,2}(/|$))[^/\\:]+(/(?!\.{1,2}(/|$))[^/\\:]+)*$)",
                                   "a path relative to the assets folder is expected, with / and without . or .."};
   return {
-      object("mesh", "Surface file: OBJ, STL (ASCII or binary) or PLY (ASCII or binary), by the end of its name"),
+      object("mesh", "Surface file: OBJ, STL (ASCII or binary), PLY (ASCII or binary) or OFF, by the end of its name"),
       {"file", at<S, &S::file>, assetName,
-       "Path relative to the assets folder, with / and without . or .., ending in .obj, .stl or .ply"},
+       "Path relative to the assets folder, with / and without . or .., ending in .obj, .stl, .ply or .off"},
       {"unit", at<S, &S::unit>, lengthUnits(), "Unit of its coordinates"},
       optional("scale", at<S, &S::scale>, "1", within(0.001, 1000),
                "Factor of its coordinates, about their origin: first"),
@@ -44,13 +44,15 @@ struct NamedSurface {
 
 /// x' = scale R x + t, R by Rodrigues' formula from a rotation vector. Nothing is touched where nothing is asked for:
 /// scenes without these keys keep their bits. Empty where the place has faults that were noted.
-NamedSurface readMesh(const JsonPlace& place, const FetchAsset& fetch) {
+NamedSurface readMesh(const JsonPlace& place, const FetchAsset& fetch, std::vector<std::string>& warnings) {
   MeshFile mesh;
   readRecord(place, mesh);
   if (JsonFaults::at({place.pointer()})) return {};
-  if (!isSurfaceName(mesh.file)) place.at("file").fail("surfaces are read from .obj, .stl and .ply files");
+  if (const std::string fault = surfaceNameFault(mesh.file); !fault.empty()) place.at("file").fail(fault);
   const Asset& asset = fetch(mesh.file, place.at("file"));
-  NamedSurface surface{parseSurface(asset.bytes, asset.name, mesh.unit), asset.name};
+  std::vector<std::string> notes;
+  NamedSurface surface{parseSurface(asset.bytes, asset.name, mesh.unit, {}, &notes), asset.name};
+  for (const std::string& note : notes) warnings.push_back(asset.name + ": " + note);
   if (!place.has("scale") && !place.has("rotation") && !place.has("translation")) return surface;
   const double angle = mesh.rotation.norm();
   const Vec3 axis = angle > 0.0 ? Vec3(mesh.rotation / angle) : Vec3::UnitX();
@@ -85,8 +87,9 @@ SurfaceDescription closedSurface(NamedSurface surface, const char* what) {
 
 }  // namespace
 
-SurfaceDescription readOrganSurface(const JsonPlace& mesh, const FetchAsset& fetch) {
-  NamedSurface surface = readMesh(mesh, fetch);
+SurfaceDescription readOrganSurface(const JsonPlace& mesh, const FetchAsset& fetch,
+                                    std::vector<std::string>& warnings) {
+  NamedSurface surface = readMesh(mesh, fetch, warnings);
   return surface.file.empty() ? SurfaceDescription{} : closedSurface(std::move(surface), "an organ");
 }
 
@@ -104,7 +107,7 @@ std::string repairSummary(const SurfaceRepair& repair) {
 }
 
 SurfaceDescription readFatSurface(const JsonPlace& mesh, const FetchAsset& fetch, std::vector<std::string>& warnings) {
-  NamedSurface surface = readMesh(mesh, fetch);
+  NamedSurface surface = readMesh(mesh, fetch, warnings);
   if (surface.file.empty()) return {};
   const std::string file = surface.file;
   int turned = 0;
@@ -140,7 +143,9 @@ LoadedScene parseScene(const Asset& file, const FetchAsset& fetch) {
   const auto part = [](auto&& work) { JsonFaults::part(work); };
   part([&] { loaded.summary = root.at("summary").text(500); });
   for (std::size_t i = 0; i < scene.organs.size(); ++i)
-    part([&] { scene.organs[i].surface = readOrganSurface(root.at("organs").at(i).at("mesh"), fetch); });
+    part([&] {
+      scene.organs[i].surface = readOrganSurface(root.at("organs").at(i).at("mesh"), fetch, loaded.warnings);
+    });
   for (std::size_t i = 0; i < scene.fat.size(); ++i)
     part([&] { scene.fat[i].surface = readFatSurface(root.at("fat").at(i).at("mesh"), fetch, loaded.warnings); });
   applySceneRules(root, scene);

@@ -32,8 +32,9 @@ struct MeshFile {
 };
 
 /// An organ's surface: closed and outward as it is, and of an organ's size. Empty where the place has noted faults.
+/// @param[in,out] warnings one line each, naming the file, are added
 /// @throws Error (damaged), naming the place or the file
-SurfaceDescription readOrganSurface(const JsonPlace& mesh, const FetchAsset& fetch);
+SurfaceDescription readOrganSurface(const JsonPlace& mesh, const FetchAsset& fetch, std::vector<std::string>& warnings);
 
 /// Repairs of a surface, or empty: "12 vertices welded, 3 triangles turned".
 std::string repairSummary(const SurfaceRepair& repair);

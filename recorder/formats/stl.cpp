@@ -28,9 +28,12 @@ class StlReader : public SurfaceReader {
     const std::uint64_t binaryBytes = headBytes + triangleBytes * std::uint64_t{triangles};
     if (bytes == binaryBytes) {
       readBinary(triangles);
-    } else if (const std::size_t begin = text_.substr(0, 256).find_first_not_of(" \t\r\n");
-               begin < bytes && lowerCase(text_.substr(begin, 5)) == "solid") {
+    } else if (isText()) {
+      passByteOrderMark();
       readText();
+    } else if (triangles > 0 && bytes > binaryBytes) {
+      readBinary(triangles);
+      notes_.push_back(fmt::format("{} bytes after the last triangle were passed over", bytes - binaryBytes));
     } else if (bytes < headBytes) {
       failFile(fmt::format("{} bytes, which is neither an STL text nor a binary STL file", bytes));
     } else {
@@ -43,6 +46,16 @@ class StlReader : public SurfaceReader {
   }
 
  private:
+  /// Begins with "solid", and goes on as a text does: exporters write "solid" into binary files, too.
+  [[nodiscard]] bool isText() const {
+    std::string head = lowerCase(text_.substr(0, 1024));
+    if (head.starts_with("\xEF\xBB\xBF")) head.erase(0, 3);
+    const std::size_t begin = head.find_first_not_of(" \t\r\n");
+    return begin != std::string::npos && head.compare(begin, 5, "solid") == 0 &&
+           (text_.size() < headBytes || head.find("facet") != std::string::npos ||
+            head.find('\0') == std::string::npos);
+  }
+
   [[nodiscard]] std::uint32_t littleEndian(std::size_t at) const {
     std::uint32_t value = 0;
     for (unsigned k = 0; k < 4; ++k) value |= std::uint32_t{static_cast<unsigned char>(text_[at + k])} << (8 * k);
@@ -89,6 +102,7 @@ class StlReader : public SurfaceReader {
       for (int k = 0; k < 3; ++k) {
         Vec3 p;
         for (int a = 0; a < 3; ++a, at += 4) p[a] = place(static_cast<double>(std::bit_cast<float>(littleEndian(at))));
+        checkPoint(p);
         corner_.push_back(p);
       }
     }
@@ -152,6 +166,7 @@ class StlReader : public SurfaceReader {
       if (word.empty()) fail("the file ends in a vertex");
       p[k] = place(finiteNumber(word));
     }
+    checkPoint(p);
     return p;
   }
 

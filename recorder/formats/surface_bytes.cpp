@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <iterator>
 #include <string_view>
@@ -37,9 +36,12 @@ namespace {
 
 using Reader = TriangleMesh (*)(const SurfaceReader& start);
 
+constexpr std::size_t frameBytes = 4096;  ///< where a file may say its frame
+
 /// Reader for the format that the name's end states, or null.
 Reader readerOf(const std::string& name) {
-  constexpr std::pair<std::string_view, Reader> readers[] = {{".obj", readObj}, {".stl", readStl}, {".ply", readPly}};
+  constexpr std::pair<std::string_view, Reader> readers[] = {
+      {".obj", readObj}, {".stl", readStl}, {".ply", readPly}, {".off", readOff}};
   const std::string end = lowerCase(std::string_view(name).substr(name.size() < 4 ? 0 : name.size() - 4));
   for (const auto& [ending, reader] : readers) {
     if (end == ending) return reader;
@@ -49,64 +51,98 @@ Reader readerOf(const std::string& name) {
 
 }  // namespace
 
-bool isSurfaceName(const std::string& name) { return readerOf(name) != nullptr; }
+std::string surfaceNameFault(const std::string& name) {
+  if (readerOf(name) != nullptr) return {};
+  constexpr std::pair<std::string_view, std::string_view> others[] = {
+      {".vtp .vtk .vtu", "; 3D Slicer and ParaView save a surface as .stl or .ply"},
+      {".glb .gltf .fbx .dae .blend .usdz .wrl .x3d", "; Blender exports such a model as .stl or .obj"},
+      {".3mf .amf .step .stp .iges .igs", "; the program that wrote it exports a surface as .stl"},
+      {".nii .nii.gz .nrrd .mha .dcm", "; this is a volume: 3D Slicer exports a segmentation's surface as .stl"}};
+  std::string fault = "surfaces are read from .obj, .stl, .ply and .off files";
+  for (const auto& [endings, advice] : others) {
+    Words words(endings);
+    for (std::string_view ending = words.next(); !ending.empty(); ending = words.next())
+      if (lowerCase(name).ends_with(ending)) fault += advice;
+  }
+  return fault;
+}
 
 TriangleMesh parseSurface(std::span<const std::byte> bytes, const std::string& name, LengthUnit unit,
-                          const SurfaceLimits& limits) {
-  const SurfaceReader start({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, name, unit, limits);
+                          const SurfaceLimits& limits, std::vector<std::string>* notes) {
+  std::vector<std::string> done;
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  const SurfaceReader start(text, name, unit, limits, done);
   const Reader read = readerOf(name);
-  if (read == nullptr) start.failFile("surfaces are read from .obj, .stl and .ply files");
+  if (read == nullptr) start.failFile(surfaceNameFault(name));
   if (bytes.size() > limits.bytes) start.failFile(fmt::format("larger than {} bytes", limits.bytes));
-  return read(start);
+  TriangleMesh mesh = read(start);
+  if (text.substr(0, frameBytes).find("SPACE=LPS") != std::string_view::npos) {
+    for (Vec3& p : mesh.vertex) p = Vec3(-p[0], -p[1], p[2]);
+    done.emplace_back("the file says that it is in LPS: x and y were turned to RAS");
+  }
+  if (notes != nullptr) notes->insert(notes->end(), done.begin(), done.end());
+  return mesh;
 }
 
 namespace {
 
-constexpr std::array<std::string_view, 17> passedOver = {"vt",     "vn",     "vp",       "g",      "o",       "s",
-                                                         "usemtl", "mtllib", "l",        "p",      "mg",      "lod",
-                                                         "bevel",  "usemap", "c_interp", "maplib", "d_interp"};
+constexpr std::string_view passedOver[] = {"vt", "vn",  "vp",    "s",        "l",       "p",
+                                           "mg", "lod", "bevel", "c_interp", "d_interp"};
+/// Keywords before a name, in which \ is a character like others.
+constexpr std::string_view naming[] = {"g", "o", "usemtl", "mtllib", "usemap", "maplib"};
+
+bool isAmong(std::string_view word, std::span<const std::string_view> words) {
+  return std::find(words.begin(), words.end(), word) != words.end();
+}
 
 class ObjReader : public SurfaceReader {
  public:
   explicit ObjReader(const SurfaceReader& start) : SurfaceReader(start) {}
 
   TriangleMesh read() {
+    passByteOrderMark();
     while (!text_.empty()) readLine(nextLine());
-    checkTriangles("line", 1, "");
     if (mesh_.vertex.empty()) failFile("no vertex; not an OBJ file, or an empty one");
-    if (mesh_.triangle.empty()) failFile("vertices but no face; a surface is expected");
-    return std::move(mesh_);
+    TriangleMesh mesh = finish("line", 1, "");
+    if (mesh.triangle.empty()) failFile("vertices but no face; a surface is expected");
+    return mesh;
   }
 
  private:
   void readLine(std::string_view line) {
     Words words(line, '#');
-    const std::string_view keyword = words.next();
-    if (keyword.empty()) return;
-    if (line.back() == '\\' || (line.size() > 1 && line.back() == '\r' && line[line.size() - 2] == '\\')) {
-      fail("a line continued with \\ is not understood; join the lines");
+    std::string_view keyword = words.next();
+    if (keyword.empty() || isAmong(keyword, naming)) return;
+    const std::size_t first = number_;
+    if (isContinued(line)) {
+      joined_.clear();
+      for (; isContinued(line); line = nextLine()) joined_.append(line.substr(0, line.rfind('\\'))).push_back(' ');
+      words = Words(joined_.append(line), '#');
+      keyword = words.next();
     }
     if (keyword == "v") {
       readVertex(words);
     } else if (keyword == "f") {
-      readFace(words);
-    } else if (std::find(passedOver.begin(), passedOver.end(), keyword) == passedOver.end()) {
+      readFace(words, first);
+    } else if (!isAmong(keyword, passedOver)) {
       fail(fmt::format("\"{}\" is not a keyword of a polygonal OBJ file", shown(keyword)));
     }
   }
 
+  /// Does it end with \, the last line of the file apart?
+  [[nodiscard]] bool isContinued(std::string_view line) const {
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    return line.ends_with('\\') && line.find('#') == std::string_view::npos && !text_.empty();
+  }
+
   void readVertex(Words& words) {
-    if (mesh_.vertex.size() >= limits_.vertices) fail(fmt::format("more than {} vertices", limits_.vertices));
     Vec3 p;
     for (int k = 0; k < 3; ++k) {
       const std::string_view word = words.next();
       if (word.empty()) fail(fmt::format("a vertex with {} of 3 coordinates", k));
       p[k] = coordinate(finiteNumber(word));
     }
-    // A weight or a colour may follow.
-    for (std::string_view word = words.next(); !word.empty(); word = words.next())
-      static_cast<void>(finiteNumber(word));
-    mesh_.vertex.push_back(p);
+    addVertex(p);
   }
 
   /// One index of "v/vt/vn". @return it from 0
@@ -122,31 +158,109 @@ class ObjReader : public SurfaceReader {
     return counted;
   }
 
+  /// Exporters leave out texture and normal before and after each "/".
   int readCorner(std::string_view word) const {
-    const std::size_t slash = word.find('/');
+    const std::size_t slash = std::min(word.find('/'), word.size());
     const int vertex = readIndex(word.substr(0, slash), true);
-    if (slash == std::string_view::npos) return vertex;
-    const std::string_view rest = word.substr(slash + 1);
-    const std::size_t second = rest.find('/');
-    const std::string_view texture = rest.substr(0, second);
-    if (!texture.empty() || second == std::string_view::npos) static_cast<void>(readIndex(texture, false));
-    if (second != std::string_view::npos) static_cast<void>(readIndex(rest.substr(second + 1), false));
+    std::string_view rest = word.substr(slash);
+    for (int part = 0; part < 2 && !rest.empty(); ++part) {
+      rest.remove_prefix(1);
+      const std::string_view index = part == 0 ? rest.substr(0, rest.find('/')) : rest;
+      if (!index.empty()) static_cast<void>(readIndex(index, false));
+      rest.remove_prefix(index.size());
+    }
     return vertex;
   }
 
-  void readFace(Words& words) {
+  void readFace(Words& words, std::size_t line) {
     corner_.clear();
     for (std::string_view word = words.next(); !word.empty(); word = words.next()) corner_.push_back(readCorner(word));
     if (corner_.size() < 3) fail(fmt::format("a face with {} corners", corner_.size()));
-    for (std::size_t k = 2; k < corner_.size(); ++k) addTriangle(corner_[0], corner_[k - 1], corner_[k], number_);
+    for (std::size_t k = 2; k < corner_.size(); ++k) addTriangle(corner_[0], corner_[k - 1], corner_[k], line);
   }
 
+  std::string joined_;       ///< lines that continue each other
   std::vector<int> corner_;  ///< of the face being read
+};
+
+class OffReader : public SurfaceReader {
+ public:
+  explicit OffReader(const SurfaceReader& start) : SurfaceReader(start) {}
+
+  TriangleMesh read() {
+    passByteOrderMark();
+    Words words = nextWords();
+    if (const std::string_view kind = words.next(); !kind.ends_with("OFF") || kind.find_first_of("4n") < kind.size())
+      fail("\"OFF\" is expected");
+    std::string_view word = words.next();
+    if (word == "BINARY") fail("a binary OFF file is not read; export it as text, or as .ply");
+    if (word.empty()) word = (words = nextWords()).next();
+    const std::size_t vertices = count(word, limits_.vertices);
+    const std::size_t faces = count(words.next(), limits_.triangles);
+    for (std::size_t i = 0; i < vertices; ++i) {
+      words = nextWords();
+      Vec3 p;
+      for (int k = 0; k < 3; ++k) p[k] = coordinate(finiteNumber(words.next()));
+      addVertex(p);
+    }
+    for (std::size_t i = 0; i < faces; ++i) {
+      words = nextWords();
+      const std::size_t corners = count(words.next(), limits_.vertices);
+      if (corners < 3) fail(fmt::format("a face with {} corners", corners));
+      const auto index = [&] { return static_cast<int>(count(words.next(), limits_.vertices)); };
+      const int first = index();
+      int before = index();
+      for (std::size_t k = 2; k < corners; ++k) {
+        const int last = index();
+        addTriangle(first, before, last, number_);
+        before = last;
+      }
+    }
+    if (mesh_.triangle.empty()) failFile("no face; a surface is expected");
+    return finish("line", 0, " (from 0)");
+  }
+
+ private:
+  /// Words of the next line that has some.
+  Words nextWords() {
+    while (!text_.empty()) {
+      const std::string_view line = nextLine();
+      if (!Words(line, '#').next().empty()) return Words(line, '#');
+    }
+    fail("the file ends here");
+  }
+
+  [[nodiscard]] std::size_t count(std::string_view word, std::size_t most) const {
+    std::string fault;
+    const long long value = readWholeNumber(word, fault);
+    if (!fault.empty()) fail(fault);
+    if (value < 0 || static_cast<std::size_t>(value) > most) fail(fmt::format("{}: 0 to {} is expected", value, most));
+    return static_cast<std::size_t>(value);
+  }
 };
 
 }  // namespace
 
 TriangleMesh readObj(const SurfaceReader& start) { return ObjReader(start).read(); }
+TriangleMesh readOff(const SurfaceReader& start) { return OffReader(start).read(); }
+
+int dropUnusedVertices(TriangleMesh& mesh) {
+  std::vector<int> number(mesh.vertex.size(), -1);
+  for (const Index3& t : mesh.triangle) {
+    for (const int v : t) number[slot(v)] = 0;
+  }
+  int used = 0;
+  for (std::size_t v = 0; v < number.size(); ++v) {
+    if (number[v] < 0) continue;
+    mesh.vertex[slot(used)] = mesh.vertex[v];
+    number[v] = used++;
+  }
+  mesh.vertex.resize(slot(used));
+  for (Index3& t : mesh.triangle) {
+    for (int& v : t) v = number[slot(v)];
+  }
+  return static_cast<int>(number.size()) - used;
+}
 
 std::string formatObj(const TriangleMesh& mesh, const std::string& comment) {
   std::string text;

@@ -260,7 +260,7 @@ FileAppender::FileAppender(const std::filesystem::path& path, const Layout& layo
   const hdf5::Session session;
   const hdf5::Id access = hdf5::fileAccess(0);
   if (!hdf5::useOwnDriver(access.get())) fail("cannot be opened for writing");
-  open_.file = hdf5::file(H5Fopen(path.c_str(), H5F_ACC_RDWR | (swmr ? H5F_ACC_SWMR_WRITE : 0U), access.get()));
+  open_.file = hdf5::open(path, H5F_ACC_RDWR | (swmr ? H5F_ACC_SWMR_WRITE : 0U), access, &locked_);
   if (!open_.file.valid()) fail("cannot be opened for writing");
   const auto open = [this](const Column& column) {
     hdf5::Rows set(open_.file, column);

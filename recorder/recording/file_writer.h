@@ -45,6 +45,8 @@ class FileAppender {
   void close();
 
   [[nodiscard]] const StatusRow& last() const { return last_; }
+  /// Does a lock keep other programs from writing it? Not on a file system that grants none.
+  [[nodiscard]] bool locked() const { return locked_; }
 
  private:
   void write(const hdf5::Rows& set, std::uint64_t first, std::uint64_t rows, const void* values);
@@ -52,7 +54,7 @@ class FileAppender {
 
   std::filesystem::path path_;
   const Layout& layout_;
-  bool swmr_ = false;
+  bool swmr_ = false, locked_ = false;
   StatusRow last_;
   std::uint64_t statusRows_ = 1;
   Column signatureColumn_;

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <cerrno>
+#include <cstring>
 #include <limits>
 #include <memory>
 #include <type_traits>
@@ -47,8 +49,19 @@ std::string reason() {
   std::string text;
   // Upward: innermost call first.
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, calotCollectReason, &text);
+  if (text == std::strerror(EWOULDBLOCK)) return lockedByAnother;
   return text.empty() ? "unknown reason" : text;
 }
+
+namespace {
+
+/// Also where this program has it open without a lock already.
+bool grantsNoLock(const std::string& why) {
+  return why == "file locking flag values don't match" || why == std::strerror(ENOLCK) ||
+         why == std::strerror(EOPNOTSUPP) || why == std::strerror(ENOSYS);
+}
+
+}  // namespace
 
 Error damaged(const std::filesystem::path& file, const std::string& place, const std::string& what) {
   return {ErrorKind::damaged, Where{file.string(), place}, what};
@@ -145,6 +158,18 @@ Id fileAccess(unsigned metadataAttempts) {
   return p;
 }
 
+Id open(const std::filesystem::path& path, unsigned flags, const Id& access, bool* locked) {
+  Id opened;
+  // Not under the library's lock: it takes ENOSYS alone for a file system without locks, and NFS says ENOLCK.
+  for (const bool lock : {true, false}) {
+    H5Pset_file_locking(access.get(), lock, true);
+    if (locked != nullptr) *locked = lock;
+    opened = file(H5Fopen(path.c_str(), flags, access.get()));
+    if (opened.valid() || !grantsNoLock(reason())) break;
+  }
+  return opened;
+}
+
 Rows::Rows(const Id& file, const Column& column) : column_(&column), type_(elementType(column.element)) {
   if (column.width == 0) return;
   // A chunk cache that holds two chunks: whole chunks are written once.
@@ -217,7 +242,11 @@ H5FD_t* calotFileOpen(const char* name, unsigned flags, hid_t /*fileAccess*/, ha
 
 herr_t calotFileClose(H5FD_t* file) {
   const std::unique_ptr<OpenFile> owned(&of(file));
-  return H5FDclose(owned->plain) >= 0 || owned->frozen ? 0 : -1;
+  // Closing begins a new list of errors: where a file could not be opened, it would hide why.
+  const hid_t errors = H5Eget_current_stack();
+  const bool closed = H5FDclose(owned->plain) >= 0;
+  closed ? H5Eset_current_stack(errors) : H5Eclose_stack(errors);
+  return closed || owned->frozen ? 0 : -1;
 }
 
 int calotFileCompare(const H5FD_t* a, const H5FD_t* b) { return H5FDcmp(plainOf(a), plainOf(b)); }

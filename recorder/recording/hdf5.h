@@ -67,8 +67,11 @@ class Session {
 /// The process-wide lock under Session.
 std::mutex& processLock();
 
-/// Reason why the last HDF5 call of this thread failed: "bad checksum", the system's message ("No space left on
-/// device"), or the innermost description.
+/// The reason where another program has the lock.
+inline constexpr const char* lockedByAnother = "another program has it open; end that one, or wait for it";
+
+/// Reason why the last HDF5 call of this thread failed: "bad checksum", lockedByAnother, the system's message ("No
+/// space left on device"), or the innermost description.
 std::string reason();
 
 /// Message of a damaged file: FILE: PLACE: WHAT.
@@ -82,6 +85,11 @@ Id stringType(std::size_t bytes);
 
 /// Access with V110 bounds. @param metadataAttempts for SWMR readers; 0: the library's default.
 Id fileAccess(unsigned metadataAttempts);
+
+/// Opens a file under the library's lock of it, or without one where the file system grants none.
+/// @param access whose lock is set by this. @param[out] locked may be null. @return invalid where it cannot be opened:
+/// reason() says why
+Id open(const std::filesystem::path& path, unsigned flags, const Id& access, bool* locked = nullptr);
 
 /// The data set of a column, read and written by whole rows.
 class Rows {

@@ -57,7 +57,7 @@ hdf5::Id openForReading(const std::filesystem::path& path, Access access) {
   // An existing handle of the file in this process decides how it is closed: another file library has the default.
   for (const H5F_close_degree_t degree : {H5F_CLOSE_DEFAULT, H5F_CLOSE_STRONG}) {
     H5Pset_fclose_degree(how.get(), degree);
-    const auto open = [&] { return hdf5::file(H5Fopen(path.c_str(), H5F_ACC_RDONLY | swmr, how.get())); };
+    const auto open = [&] { return hdf5::open(path, H5F_ACC_RDONLY | swmr, how); };
     Id file = open();
     if (!file.valid()) continue;
     checkShape(path, file, sizeOfFile(path));
@@ -73,7 +73,8 @@ hdf5::Id openForReading(const std::filesystem::path& path, Access access) {
     throw Error(ErrorKind::damaged, Where{path.string()},
                 fmt::format("is cut off: {} of {} bytes are there", bytes, superblock.endOfFile), {Remedy::recover});
   }
-  throw Error(ErrorKind::damaged, Where{path.string()}, fmt::format("cannot be opened: {}", why));
+  throw Error(why == hdf5::lockedByAnother ? ErrorKind::failure : ErrorKind::damaged, Where{path.string()},
+              fmt::format("cannot be opened: {}", why));
 }
 
 namespace {

@@ -11,6 +11,7 @@
 
 #include "recorder/base/csv.h"
 #include "recorder/base/errors.h"
+#include "recorder/base/files.h"
 #include "recorder/recording/block.h"
 #include "recorder/recording/layout.h"
 
@@ -251,7 +252,8 @@ std::vector<std::filesystem::path> exportCsv(Recording& recording, const std::fi
     std::filesystem::create_directories(folder);
     for (std::filesystem::path& file : files) {
       const std::filesystem::path target = folder / file.filename();
-      std::filesystem::rename(file, target);
+      refuseOutput(target, true);
+      std::filesystem::rename(file, linkTarget(target));
       file = target;
     }
     std::filesystem::remove_all(stage, error);

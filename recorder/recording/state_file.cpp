@@ -79,7 +79,7 @@ std::string onlyMember(const std::filesystem::path& file, const std::string& pla
 /// Reads everything; runs in the child.
 StateFile readHere(const std::filesystem::path& path) {
   const hdf5::Session session;
-  const hdf5::Id file = hdf5::file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
+  const hdf5::Id file = hdf5::open(path, H5F_ACC_RDONLY, hdf5::properties(H5Pcreate(H5P_FILE_ACCESS)));
   if (!file.valid()) throw hdf5::damaged(path, "/", "is not a state file that can be opened (" + hdf5::reason() + ")");
   checkShape(path, file, std::filesystem::file_size(path));
   StateFile state;

@@ -52,7 +52,7 @@ struct RecordingWriter::Impl {
   Block* filling = nullptr;
   std::uint64_t nextStep = 0;
   KeyframeSchedule schedule;
-  bool ended = false;
+  bool ended = false, stopped = false;
   RawSampleFeed* feed = nullptr;
   std::uint64_t feedFirstTick = 0;
   std::array<std::uint64_t, handCount> dropped{};  // reported by the feed so far
@@ -69,6 +69,9 @@ struct RecordingWriter::Impl {
   std::exception_ptr error;
   std::atomic<bool> failed{false};
   std::thread thread;
+
+  /// Stopped before its first step, which is no attempt.
+  [[nodiscard]] bool unbegun() const { return stopped && nextStep == 0; }
 
   Block* freshBlock() {
     Block* block = nullptr;
@@ -148,6 +151,7 @@ struct RecordingWriter::Impl {
   void end(bool completed, Outcome outcome) {
     if (ended) return;
     ended = true;
+    stopped = outcome == Outcome::stopped;
     filling->completed = completed;
     filling->outcome = outcome;
     handOver(true);
@@ -211,9 +215,14 @@ void RecordingWriter::finish() {
   if (impl.thread.joinable()) impl.thread.join();
   impl.file.reset();
   if (impl.error != nullptr) std::rethrow_exception(impl.error);
+  if (!impl.unbegun()) return;
+  std::error_code ignored;
+  std::filesystem::remove(linkTarget(impl.target), ignored);
 }
 
 bool RecordingWriter::failed() const { return impl_->failed.load(std::memory_order_acquire); }
+
+bool RecordingWriter::locked() const { return impl_->file->locked(); }
 
 WriterStatistics RecordingWriter::statistics() const {
   const std::lock_guard lock(impl_->statisticsLock);

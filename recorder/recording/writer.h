@@ -62,14 +62,18 @@ class RecordingWriter final : public Observer {
   /// Hands over the last block with the outcome; no onStep after it.
   void onEnd(Outcome outcome) override;
 
-  /// Waits until all is written and the file is closed. @throws Error failure: naming the file and what went wrong;
-  /// what had been flushed before can be read. @pre onEnd was called.
+  /// Waits until all is written and the file is closed; one that was stopped before its first step is removed. @throws
+  /// Error failure: naming the file and what went wrong; what had been flushed before can be read. @pre onEnd was
+  /// called.
   void finish();
 
   /// Has writing stopped (disk full)? finish() reports the reason. Thread-safe.
   [[nodiscard]] bool failed() const;
 
   [[nodiscard]] WriterStatistics statistics() const;
+
+  /// As FileAppender::locked(). @pre finish() was not called
+  [[nodiscard]] bool locked() const;
 
  private:
   struct Impl;

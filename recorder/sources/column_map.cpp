@@ -59,6 +59,8 @@ std::vector<Field> HandColumns::fields() {
       optional("status", at<S, &S::status>, columnName, "Column of the tracker's state, with valid"),
       optional("valid", at<S, &S::valid>, columnName, "States in which the pose was measured; others are missing")
           .items(1, 20),
+      optional("jaw", at<S, &S::jaw>, columnName, "Column of the jaw's opening angle (rad)"),
+      optional("pedal", at<S, &S::pedal>, columnName, "Column of a pedal or button of this hand: 0 is released"),
   };
 }
 

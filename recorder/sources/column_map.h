@@ -28,6 +28,7 @@ struct HandColumns {
   Quat axis = Quat::Identity();    ///< rotates z onto the instrument's axis in its own frame, towards the tip
   std::string status;              ///< column of the tracker's state, or empty
   std::vector<std::string> valid;  ///< its words for a measured pose
+  std::string jaw, pedal;          ///< columns, or empty
 
   static std::vector<Field> fields();
 };
@@ -45,6 +46,7 @@ struct ColumnMap {
   ClockFormat clock;
   bool dropsDisorder = false;  ///< rows whose time is not after the one before are left out
   bool verified = false;       ///< units and samples are right, whatever they look like
+  std::string source;          ///< what a file without a map was recognised as, or empty
   std::vector<std::string> notes;
   std::array<std::optional<HandColumns>, handCount> hand;
 
@@ -62,16 +64,19 @@ ColumnMap parseColumnMap(std::span<const std::byte> bytes, const std::string& fi
 TrackedMotion readCsvMotion(const std::filesystem::path& file, const ColumnMap& map);
 TrackedMotion parseCsvMotion(std::span<const std::byte> bytes, const std::string& file, const ColumnMap& map);
 
-/// A map for a table of motion, as far as the file says: its header as Motive, Vicon Nexus and Tracker, NDI's programs
-/// and ROS write it, or names and units of columns. What the file leaves open is "?" in it.
+/// A map for a table of motion, as far as the file says: its header as one of motion_formats.h, or names and units of
+/// columns. What the file leaves open is "?" in it.
 struct GuessedMap {
   std::string source;  ///< "OptiTrack Motive", or "table"
   std::string json;
   std::vector<std::string> open;  ///< places of the map that are to be filled in
 };
 
-/// @throws Error (damaged) where the file is no table of motion, naming what it seems to be and what reads it.
+/// Reads a file's beginning.
+/// @throws Error (damaged) where it is no table of motion, naming what it seems to be and what reads it.
 GuessedMap guessColumns(const std::filesystem::path& file);
+/// The map of a file that leaves nothing open. @throws Error as above; invalid, naming what is open
+ColumnMap recognisedMap(const std::filesystem::path& file);
 GuessedMap guessColumns(std::span<const std::byte> bytes, const std::string& file);
 
 }  // namespace calot::recorder

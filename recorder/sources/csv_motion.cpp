@@ -7,6 +7,7 @@
 
 #include "recorder/base/errors.h"
 #include "recorder/base/files.h"
+#include "recorder/base/hash_beside.h"
 #include "recorder/base/text_words.h"
 #include "recorder/sources/column_map.h"
 #include "recorder/sources/pose_checks.h"
@@ -22,7 +23,7 @@ constexpr std::size_t noPlace = static_cast<std::size_t>(-1);
 
 /// Numbers of a hand's wanted columns among all that are wanted.
 struct HandPlaces {
-  std::size_t position = noPlace, orientation = noPlace, status = noPlace;
+  std::size_t position = noPlace, orientation = noPlace, status = noPlace, jaw = noPlace, pedal = noPlace;
 };
 
 /// Poses of one hand, row by row.
@@ -35,7 +36,7 @@ class HandReader {
   bool read(MotionTable& table, Vec3& position, Quat& orientation) const {
     if (places_.status != noPlace) {
       const std::string_view state = table.text(places_.status);
-      const auto is = [&](const std::string& word) { return lowerCase(word) == lowerCase(state); };
+      const auto is = [&](const std::string& word) { return word == state || lowerCase(word) == lowerCase(state); };
       if (std::none_of(columns_.valid.begin(), columns_.valid.end(), is)) return false;
     }
     std::array<double, 9> values{};
@@ -59,6 +60,14 @@ class HandReader {
     return true;
   }
 
+  /// Further columns of a row, which may be missing alone.
+  void readFurther(MotionTable& table, TrackedHand& hand) const {
+    std::array<double, 9> value{};
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    if (places_.jaw != noPlace) hand.jaw.push_back(numbers(table, places_.jaw, 1, value) ? value[0] : none);
+    if (places_.pedal != noPlace) hand.pedal.push_back(numbers(table, places_.pedal, 1, value) && value[0] != 0.0);
+  }
+
  private:
   bool numbers(MotionTable& table, std::size_t first, std::size_t count, std::array<double, 9>& values) const {
     bool measured = true;
@@ -66,8 +75,7 @@ class HandReader {
     for (std::size_t i = 0; i < count; ++i) {
       const MotionTable::Cell cell = table.number(first + i, values[i], fault);
       if (cell == MotionTable::Cell::fault) {
-        const std::string& name = first == places_.position ? columns_.position[i] : columns_.orientation[i];
-        table.fail(fmt::format("column \"{}\": {}", shown(name), fault));
+        table.fail(fmt::format("column \"{}\": {}", shown(table.name(first + i)), fault));
       }
       measured = measured && cell == MotionTable::Cell::number;
     }
@@ -128,19 +136,29 @@ TrackedMotion parseCsvMotion(std::span<const std::byte> bytes, const std::string
   for (std::size_t h = 0; h < map.hand.size(); ++h) {
     if (!map.hand[h]) continue;
     const HandColumns& columns = *map.hand[h];
-    HandPlaces places{want(columns.position), want(columns.orientation), noPlace};
-    if (!columns.status.empty()) places.status = want(std::array{columns.status});
+    HandPlaces places{want(columns.position), want(columns.orientation)};
+    for (const auto& [name, place] :
+         {std::pair(&columns.status, &places.status), {&columns.jaw, &places.jaw}, {&columns.pedal, &places.pedal}}) {
+      if (!name->empty()) *place = want(std::array{*name});
+    }
     readers.emplace_back(h, HandReader(map, columns, places));
     motion.hand[h].present = true;
     motion.hand[h].oriented = !columns.orientation.empty();
   }
+  HashBeside hash(bytes);
   MotionTable table(bytes, file, map.style, wanted);
   motion.file = file;
-  motion.sha256 = sha256Hex(bytes);
   motion.device = map.device;
   motion.frame = map.frame;
   motion.rate = map.rate;
+  if (!map.source.empty()) motion.notes.push_back("read as " + map.source);
 
+  const std::size_t expected = table.rowsExpected();
+  motion.time.reserve(expected);
+  for (TrackedHand& hand : motion.hand) {
+    hand.position.reserve(hand.present ? expected : 0);
+    hand.orientation.reserve(hand.present ? expected : 0);
+  }
   MotionClock clock(map.clock);
   std::size_t dropped = 0;
   std::array<std::size_t, handCount> unmeasured{};
@@ -176,8 +194,10 @@ TrackedMotion parseCsvMotion(std::span<const std::byte> bytes, const std::string
       hand.position.push_back(position);
       hand.orientation.push_back(orientation);
       hand.missing.push_back(!measured);
+      reader.readFurther(table, hand);
     }
   }
+  motion.sha256 = hash.get();
   const std::size_t rows = motion.time.size();
   if (rows < 2)
     throw Error(ErrorKind::damaged, Where{file}, fmt::format("{}; a motion has at least 2", counted(rows, "row")));

@@ -9,6 +9,7 @@
 #include <optional>
 #include <vector>
 
+#include "recorder/base/dates.h"
 #include "recorder/base/text_words.h"
 
 namespace calot::recorder {
@@ -34,18 +35,18 @@ bool readDigits(std::string_view text, std::int64_t& value) {
   return code == std::errc() && end == text.data() + text.size() && !text.empty() && text.front() != '-';
 }
 
-/// Minutes of "Z", "+02:00", "-0530" or "+2".
-bool readZone(std::string_view text, std::int64_t& minutes) {
-  minutes = 0;
-  if (text == "Z" || text == "z" || text == "UTC") return true;
-  if (text.size() < 2 || (text[0] != '+' && text[0] != '-')) return false;
-  std::string digits(text.substr(1));
-  digits.erase(std::remove(digits.begin(), digits.end(), ':'), digits.end());
-  std::int64_t number = 0;
-  if (!readDigits(digits, number) || digits.size() > 4) return false;
-  minutes = digits.size() <= 2 ? 60 * number : 60 * (number / 100) + number % 100;
-  if (text[0] == '-') minutes = -minutes;
-  return minutes >= -14 * 60 && minutes <= 14 * 60;
+/// "250" as 0.250. @pre digits
+double readFraction(std::string_view digits) {
+  constexpr std::size_t exact = 15;  // digits and powers of ten that doubles hold: the quotient is the nearest one
+  std::int64_t value = 0;
+  if (digits.empty()) return 0.0;
+  if (digits.size() <= exact && readDigits(digits, value)) {
+    double power = 1.0;
+    for (std::size_t i = 0; i < digits.size(); ++i) power *= 10.0;
+    return static_cast<double>(value) / power;
+  }
+  std::string fault;
+  return readFiniteNumber("0." + std::string(digits), fault);
 }
 
 }  // namespace
@@ -57,9 +58,9 @@ MotionClock::Time MotionClock::number(std::string_view text, std::string& fault)
     fault = fmt::format("\"{}\" is not a number", shown(text));
     return {};
   }
-  const std::string fraction = point < text.size() ? "0." + std::string(text.substr(point + 1)) : "0";
-  if (fraction.find_first_not_of("0123456789.") == std::string::npos && readDigits(text.substr(0, point), time.whole)) {
-    time.part = readFiniteNumber(fraction, fault);
+  const std::string_view fraction = text.substr(std::min(point + 1, text.size()));
+  if (fraction.find_first_not_of("0123456789") == std::string::npos && readDigits(text.substr(0, point), time.whole)) {
+    time.part = readFraction(fraction);
     return time;
   }
   const double value = readFiniteNumber(text, fault);  // signs, exponents
@@ -90,12 +91,13 @@ MotionClock::Time MotionClock::timeOfDay(std::string_view text, std::string& fau
     }
     rest.remove_prefix(end + 1);
   }
-  if (count < 3 || !rest.empty() || parts[0] > 23 || parts[1] > 59 || parts[2] > 60 || parts[3] > 999) {
+  if (count < 3 || !rest.empty() || parts[0] > 23 || parts[1] > 59 || parts[2] > 60 || parts[3] > 999 ||
+      fraction.find_first_not_of("0123456789") != std::string_view::npos) {
     fault = fmt::format("\"{}\" is no time of day; 13:05:09.250 or 13:05:09:250 is expected", shown(text));
     return {};
   }
   Time time{3600 * parts[0] + 60 * parts[1] + parts[2], static_cast<double>(parts[3]) / 1000.0};
-  if (!fraction.empty()) time.part = readFiniteNumber("0." + std::string(fraction), fault);
+  if (!fraction.empty()) time.part = readFraction(fraction);
   return time;
 }
 
@@ -114,12 +116,12 @@ MotionClock::Time MotionClock::date(std::string_view text, std::string& fault) c
   const std::string_view zone = zoneAt < text.size() ? text.substr(zoneAt) : std::string_view(format_.zone);
   if (zone.empty())
     return fail("states no zone, and local time is put back in autumn: say \"zone\" in the map (\"+02:00\", \"Z\")");
-  std::int64_t minutes = 0;
-  if (!readZone(zone, minutes)) return fail("has an unknown zone; Z or +02:00 is expected");
+  const std::optional<int> minutes = readZone(zone);
+  if (!minutes) return fail("has an unknown zone; Z or +02:00 is expected");
   std::string_view clock = text.substr(11, zoneAt - 11);
   while (!clock.empty() && clock.back() == ' ') clock.remove_suffix(1);
   Time time = timeOfDay(clock, fault);
-  time.whole += *day * 86400 - 60 * minutes;
+  time.whole += *day * 86400 - 60 * *minutes;
   return time;
 }
 

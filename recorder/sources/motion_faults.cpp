@@ -180,7 +180,9 @@ double fastSpeedOf(const std::vector<double>& time, const TrackedHand& hand) {
 void markInvalidSamples(TrackedMotion& motion) {
   for (std::size_t h = 0; h < motion.hand.size(); ++h) {
     TrackedHand& hand = motion.hand[h];
-    if (!hand.present || HandSamples(motion.time, hand).size() < fewestSamples) continue;
+    if (!hand.present) continue;
+    HandSamples samples(motion.time, hand);
+    if (samples.size() < fewestSamples) continue;
     const auto note = [&](std::size_t rows, double begin, const char* why) {
       if (rows == 0) return;
       hand.leftOut += rows;
@@ -188,9 +190,9 @@ void markInvalidSamples(TrackedMotion& motion) {
           fmt::format("{} hand: {} left out, from {:.3f} s: {}", handNames[h], rowsText(rows), begin, why));
     };
     double begin = 0.0;
-    const std::size_t beyond = HandSamples(motion.time, hand).markBeyondJumps(begin);
+    const std::size_t beyond = samples.markBeyondJumps(begin);
     note(beyond, begin, "positions to which no hand jumps");
-    const std::size_t held = HandSamples(motion.time, hand).markHeld(begin);
+    const std::size_t held = (beyond > 0 ? HandSamples(motion.time, hand) : samples).markHeld(begin);
     note(held, begin, "the same pose held, then left with a jump, as trackers do that have lost it");
     if (!hand.jumps.empty())
       motion.notes.push_back(fmt::format(

@@ -9,6 +9,7 @@
 
 #include "recorder/base/errors.h"
 #include "recorder/base/text_words.h"
+#include "recorder/sources/motion_text.h"
 
 namespace calot::recorder {
 namespace {
@@ -46,12 +47,12 @@ void splitCells(std::string_view line, char delimiter, std::vector<std::string_v
   cells.clear();
   const bool quotes = line.find('"') != std::string_view::npos;
   for (;;) {
-    std::size_t from = 0;
+    std::size_t end = 0;
     if (quotes) {
       const std::size_t start = std::min(line.find_first_not_of(' '), line.size());
-      if (start < line.size() && line[start] == '"') from = std::min(line.find('"', start + 1), line.size());
+      if (start < line.size() && line[start] == '"') end = std::min(line.find('"', start + 1), line.size());
     }
-    const std::size_t end = std::min(line.find(delimiter, from), line.size());
+    while (end < line.size() && line[end] != delimiter) ++end;  // cells are too short for find()
     std::string_view cell = trimmed(line.substr(0, end));
     if (cell.size() >= 2 && cell.front() == '"' && cell.back() == '"') cell = trimmed(cell.substr(1, cell.size() - 2));
     cells.push_back(cell);
@@ -91,7 +92,9 @@ std::vector<std::size_t> TableHeader::find(const std::string& name) const {
 
 MotionTable::MotionTable(std::span<const std::byte> bytes, const std::string& file, const TableStyle& style,
                          std::span<const std::string> wanted)
-    : rest_(decodedText(bytes, converted_)), file_(file), style_(style) {
+    : rest_(motionText(bytes, file, converted_)), file_(file), style_(style) {
+  wanted_ = wanted;
+  rewritten_ = isRewritten({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
   if (rest_.empty()) throw Error(ErrorKind::damaged, Where{file}, "the file is empty");
   const std::string_view text = rest_;
   for (const char delimiter : style.delimiter == '\0' ? std::string(",;\t") : std::string(1, style.delimiter)) {
@@ -115,6 +118,10 @@ bool MotionTable::findNames(std::string_view text, char delimiter, std::span<con
     }
     if (place_.size() != wanted.size()) continue;
     columns_ = named_ = cells_.size();
+    slot_.assign(columns_, noSlot);
+    for (std::size_t w = 0; w < place_.size(); ++w) slot_[place_[w]] = w;
+    value_.resize(place_.size());
+    isNumber_.assign(place_.size(), 0);
     while (named_ > 1 && cells_[named_ - 1].empty()) --named_;
     for (std::size_t i = 0; i < style_.skip; ++i, ++line_) takeLine(text);
     rest_ = text;
@@ -152,7 +159,10 @@ void MotionTable::failNames(std::string_view text, std::span<const std::string> 
 }
 
 void MotionTable::fail(const std::string& fault) const {
-  throw Error(ErrorKind::damaged, Where{file_, fmt::format("line {}", line_)}, fault);
+  constexpr std::size_t head = 2;  // lines of names in front of what was rewritten
+  const std::string place =
+      rewritten_ ? fmt::format("row {}", std::max(line_, head) - head) : fmt::format("line {}", line_);
+  throw Error(ErrorKind::damaged, Where{file_, place}, fault);
 }
 
 bool MotionTable::isUnits() const {
@@ -165,11 +175,42 @@ bool MotionTable::isUnits() const {
   return any;
 }
 
+void MotionTable::splitRow() {
+  const char *const begin = rest_.data(), *const end = begin + rest_.size();
+  cells_.clear();
+  std::fill(isNumber_.begin(), isNumber_.end(), 0);
+  for (const char *at = begin, *cell = begin;; ++at) {
+    // A number ends its cell: looking for the separator first would read it twice.
+    if (at == cell && cells_.size() < slot_.size() && slot_[cells_.size()] != noSlot) {
+      const std::size_t wanted = slot_[cells_.size()];
+      const auto [stop, code] = std::from_chars(at, end, value_[wanted]);
+      if (code == std::errc() && stop != end && (*stop == delimiter_ || *stop == '\n')) {
+        isNumber_[wanted] = 1;
+        at = stop;
+      }
+    }
+    const char c = at < end ? *at : '\n';
+    if (c == '"') {
+      std::fill(isNumber_.begin(), isNumber_.end(), 0);
+      return splitCells(takeLine(rest_), delimiter_, cells_);
+    }
+    if (c != delimiter_ && c != '\n') continue;
+    cells_.push_back(trimmed({cell, static_cast<std::size_t>(at - cell)}));
+    cell = at + 1;
+    if (c == '\n') return rest_.remove_prefix(static_cast<std::size_t>(std::min(cell, end) - begin));
+  }
+}
+
+std::size_t MotionTable::rowsExpected() const {
+  const std::size_t row = std::max<std::size_t>(std::min(rest_.find('\n'), rest_.size()), 1);
+  return std::min(rest_.size() / row + 1, maxTableRows);
+}
+
 bool MotionTable::next() {
   std::size_t blank = 0;
   while (!rest_.empty()) {
     ++line_;
-    splitCells(takeLine(rest_), delimiter_, cells_);
+    splitRow();
     if (std::all_of(cells_.begin(), cells_.end(), [](std::string_view cell) { return cell.empty(); })) {
       if (blank == 0) blank = line_;
       continue;
@@ -192,23 +233,25 @@ bool MotionTable::next() {
   return false;
 }
 
-bool MotionTable::isMissing(std::string_view cell) const {
-  return isMissingWord(cell) || std::find(style_.missing.begin(), style_.missing.end(), cell) != style_.missing.end();
-}
-
 MotionTable::Cell MotionTable::number(std::size_t wanted, double& value, std::string& fault) {
+  const bool commas = style_.decimal == ',' || (style_.decimal == '\0' && delimiter_ != ',');
+  if (isNumber_[wanted] != 0 && style_.missing.empty() && !commas && std::abs(value_[wanted]) < noNumber) {
+    fault.clear();
+    value = value_[wanted];
+    return Cell::number;
+  }
   std::string_view cell = text(wanted);
-  if (isMissing(cell)) return Cell::missing;
+  if (cell.empty() || std::find(style_.missing.begin(), style_.missing.end(), cell) != style_.missing.end())
+    return Cell::missing;
   std::array<char, 64> copy{};
-  const std::size_t comma = cell.find(',');
-  if (comma != std::string_view::npos && cell.size() <= copy.size() && cell.find('.') == std::string_view::npos &&
-      (style_.decimal == ',' || (style_.decimal == '\0' && delimiter_ != ','))) {
+  const std::size_t comma = commas ? cell.find(',') : std::string_view::npos;
+  if (commas && comma == std::string_view::npos) {
+    point_ = point_ || cell.find('.') != std::string_view::npos;
+  } else if (commas && cell.size() <= copy.size() && cell.find('.') == std::string_view::npos) {
     std::copy(cell.begin(), cell.end(), copy.begin());
     copy[comma] = '.';
     cell = {copy.data(), cell.size()};
     comma_ = true;
-  } else {
-    point_ = point_ || cell.find('.') != std::string_view::npos;
   }
   if (point_ && comma_ && style_.decimal == '\0') {
     fault = "decimal points and decimal commas in one file: say \"decimal\" in the map";
@@ -217,10 +260,10 @@ MotionTable::Cell MotionTable::number(std::size_t wanted, double& value, std::st
   fault.clear();
   value = readFiniteNumber(cell, fault);
   if (fault.empty()) return std::abs(value) < noNumber ? Cell::number : Cell::missing;
-  if (comma != std::string_view::npos)
-    fault += "; \"decimal\": \",\" in the map reads commas";
-  else
-    fault += "; a word that marks what was not measured belongs in \"missing\" of the map";
+  if (isMissingWord(text(wanted))) return Cell::missing;
+  fault += text(wanted).find(',') != std::string_view::npos
+               ? "; \"decimal\": \",\" in the map reads commas"
+               : "; a word that marks what was not measured belongs in \"missing\" of the map";
   return Cell::fault;
 }
 

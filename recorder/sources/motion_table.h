@@ -47,7 +47,7 @@ class MotionTable {
  public:
   enum class Cell { number, missing, fault };
 
-  /// Finds the line of names. @param bytes and `file` outlive the table. @param wanted names of columns
+  /// Finds the line of names. @param bytes, `file` and `wanted` outlive the table. @param wanted names of columns
   /// @throws Error (damaged) naming file and line: no such column, or more than one
   MotionTable(std::span<const std::byte> bytes, const std::string& file, const TableStyle& style,
               std::span<const std::string> wanted);
@@ -55,8 +55,11 @@ class MotionTable {
   /// @return false at the end. @throws Error (damaged): another number of cells, an empty line between rows
   bool next();
   [[nodiscard]] std::size_t line() const { return line_; }
+  /// Rows to come, at most, by the length of the first one.
+  [[nodiscard]] std::size_t rowsExpected() const;
   /// Text of a wanted column in this row.
   [[nodiscard]] std::string_view text(std::size_t wanted) const { return cells_[place_[wanted]]; }
+  [[nodiscard]] const std::string& name(std::size_t wanted) const { return wanted_[wanted]; }
   /// @param[out] fault of a cell that is neither a number nor marked as missing
   Cell number(std::size_t wanted, double& value, std::string& fault);
   [[noreturn]] void fail(const std::string& fault) const;
@@ -64,10 +67,12 @@ class MotionTable {
  private:
   bool findNames(std::string_view text, char delimiter, std::span<const std::string> wanted);
   [[noreturn]] void failNames(std::string_view text, std::span<const std::string> wanted);
+  /// Takes the next line and its cells.
+  void splitRow();
   [[nodiscard]] bool isUnits() const;
-  [[nodiscard]] bool isMissing(std::string_view cell) const;
 
   std::string converted_;
+  std::span<const std::string> wanted_;
   std::string_view rest_;
   const std::string& file_;
   const TableStyle& style_;
@@ -75,6 +80,11 @@ class MotionTable {
   std::size_t columns_ = 0, named_ = 0, line_ = 0, rows_ = 0;
   std::vector<std::size_t> place_;
   std::vector<std::string_view> cells_;
+  static constexpr std::size_t noSlot = static_cast<std::size_t>(-1);
+  std::vector<std::size_t> slot_;  ///< wanted column that each is
+  std::vector<double> value_;      ///< of wanted columns that are numbers followed by the separator
+  std::vector<char> isNumber_;
+  bool rewritten_ = false;              ///< rows are no lines of the file
   bool point_ = false, comma_ = false;  ///< decimal ones that were found
 };
 

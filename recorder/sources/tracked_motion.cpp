@@ -2,6 +2,7 @@
 #include "recorder/sources/tracked_motion.h"
 
 #include <fmt/format.h>
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <fstream>
@@ -10,6 +11,7 @@
 #include "recorder/base/errors.h"
 #include "recorder/base/files.h"
 #include "recorder/base/text_words.h"
+#include "recorder/sources/motion_text.h"
 #include "recorder/sources/pose_checks.h"
 
 namespace calot::recorder {
@@ -21,6 +23,15 @@ constexpr std::array<std::size_t, handCount> slaveColumn{2 * groupColumns, 3 * g
 constexpr std::size_t maxBytes = std::size_t{1} << 30U;
 constexpr std::size_t maxRows = 1000000;
 
+/// With blanks for commas and semicolons, where these are as many as stand between the columns.
+std::string blankSeparated(std::string_view line) {
+  constexpr auto separates = [](char c) { return c == ',' || c == ';'; };
+  std::string out(line);
+  if (std::count_if(out.begin(), out.end(), separates) + 1 >= static_cast<std::ptrdiff_t>(columns))
+    std::replace_if(out.begin(), out.end(), separates, ' ');
+  return out;
+}
+
 class LineReader {
  public:
   LineReader(const std::string& file, std::size_t line) : file_(file), line_(line) {}
@@ -30,7 +41,8 @@ class LineReader {
   }
 
   void numbers(std::string_view text, std::array<double, columns>& out) const {
-    Words words(text);
+    const std::string separated = blankSeparated(text);
+    Words words(separated);
     std::size_t count = 0;
     for (std::string_view word = words.next(); !word.empty(); word = words.next(), ++count) {
       if (count < columns) out[count] = number(word, count + 1);
@@ -73,15 +85,20 @@ KinematicsMotion readKinematics(const std::filesystem::path& file) {
 }
 
 bool isKinematicsFile(const std::filesystem::path& file) {
-  if (file.extension() == ".csv") return false;
   std::ifstream in(file, std::ios::binary);
-  std::string line;
-  std::getline(in, line);
-  Words words(line);
-  std::size_t count = 0;
-  while (!words.next().empty()) ++count;
+  std::string begin(std::size_t{1} << 16U, '\0');  // a line may be the whole file
+  in.read(begin.data(), static_cast<std::streamsize>(begin.size()));
+  begin.resize(static_cast<std::size_t>(in.gcount()));
+  std::string_view rest(begin);
+  const std::string_view line = takeLine(rest);
+  const std::string separated = blankSeparated(line);
+  Words words(separated);
+  std::size_t count = 0, numbers = 0;
+  for (std::string_view word = words.next(); !word.empty(); word = words.next(), ++count)
+    if (word.find_first_of("0123456789") <= 2) ++numbers;  // behind a sign and a point
+  if (count == columns && numbers == columns) return true;
   // Files without separators are described by the reader's own faults.
-  return count == columns || line.find_first_of(",;\t") == std::string::npos;
+  return file.extension() != ".csv" && line.find_first_of(",;\t") == std::string::npos && !isRewritten(line);
 }
 
 KinematicsMotion parseKinematics(std::span<const std::byte> bytes, const std::string& file) {
@@ -125,6 +142,7 @@ TrackedMotion trackedMotion(const KinematicsMotion& motion) {
     for (const auto& row : motion.rows) {
       hand.position.push_back(row[h].position);
       hand.orientation.push_back(row[h].orientation);
+      hand.jaw.push_back(row[h].gripper);
     }
   }
   for (std::size_t i = 0; i < motion.rows.size(); ++i)

@@ -41,7 +41,7 @@ inline constexpr int kinematicsRowsPerSecond = 30;
 /// @throws Error (damaged) naming the file's base name and the line.
 KinematicsMotion readKinematics(const std::filesystem::path& file);
 
-/// Is it such a file, by its name and its first line? It has no separators but blanks.
+/// Is it such a file, by its name and its first line? Blanks, commas or semicolons stand between its numbers.
 bool isKinematicsFile(const std::filesystem::path& file);
 
 /// The same from bytes.
@@ -52,6 +52,8 @@ struct TrackedHand {
   bool oriented = false;           ///< and its orientation
   std::vector<Vec3> position;      ///< p of the tip in the file's frame (m); NaN where the file has none
   std::vector<Quat> orientation;   ///< unit; z along the shaft towards the tip. Identities where not oriented
+  std::vector<double> jaw;         ///< opening angle (rad), NaN where it is missing; empty: the file has none
+  std::vector<bool> pedal;         ///< pressed; empty: the file has none
   std::vector<bool> missing;       ///< rows that are no sample: not measured, or invalid (markInvalidSamples())
   std::vector<std::size_t> jumps;  ///< rows from which the motion goes on elsewhere, in order
   std::size_t leftOut = 0;         ///< rows that are missing because their sample is invalid

@@ -13,6 +13,7 @@ void registerHaptics();        ///< haptics/tick
 void registerCarving();        ///< carving/transform, carving/stroke, carving/growth
 void registerFat();            ///< fat/step, fat/stroke
 void registerCheckpoints();    ///< checkpoints/motion
+void registerMotionFile();     ///< motion/file: a table of motion against bare numbers
 void registerCohort();         ///< cohort/import, cohort/study, cohort/list
 void registerScenes();         ///< scene/step, scene/operation: whole steps of every scene
 void registerSkipping();       ///< skip: what rests is not worked out
@@ -37,6 +38,7 @@ inline void registerAll() {
   registerCarving();
   registerFat();
   registerCheckpoints();
+  registerMotionFile();
   registerCohort();
   registerScenes();
   registerSkipping();

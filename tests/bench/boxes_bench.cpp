@@ -35,7 +35,7 @@ double errorOf(const HangingBody& body, const std::vector<Vec3>& position, const
 }
 
 void boxes(benchmark::State& bench, const BoxSize& size) {
-  const HangingBody body = hangingBox(size, Box::soft);
+  const HangingBody body = hangingBox(size, HangingBox::soft);
   const SolidModel model = modelOf(body);
   const Own exact = hangOurs(model, body, size.steps, 1e-7);
   // The loosest tolerance that is good enough here.
@@ -59,7 +59,7 @@ void boxes(benchmark::State& bench, const BoxSize& size) {
   const std::string name = "boxes." + std::to_string(size.tetrahedra);
   figures().add(name + ".steps_per_s", 1.0 / own.hung.seconds);
   figures().add(name + ".error", error);
-  const HangingBody plain = hangingBox(size, Box::framework);
+  const HangingBody plain = hangingBox(size, HangingBox::framework);
   const double plainMs = 1e3 * hangOurs(modelOf(plain), plain, size.steps, tolerance).hung.seconds;
   counters["framework_box_ms"] = plainMs;
   counters["over_framework"] = size.frameworkMs / plainMs;
@@ -77,7 +77,7 @@ void boxes(benchmark::State& bench, const BoxSize& size) {
 
 /// Ours at several tolerances and, where Bullet is there, its body at several budgets: a line each of the diagram.
 void precision(benchmark::State& bench, const BoxSize& size) {
-  const HangingBody body = hangingBox(size, Box::stiff);
+  const HangingBody body = hangingBox(size, HangingBox::stiff);
   const SolidModel model = modelOf(body);
   constexpr int steps = 25;
   const std::vector<Vec3> exact = hangOurs(model, body, steps, 1e-7).hung.position;

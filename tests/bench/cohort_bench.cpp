@@ -14,6 +14,7 @@
 
 #include "analytics/checkpoints/checkpoint.h"
 #include "analytics/cohort/cohort_database.h"
+#include "analytics/cohort/page_sums.h"
 #include "analytics/report/study.h"
 #include "tests/bench/benchmarks.h"
 #include "tests/bench/figures.h"
@@ -33,8 +34,10 @@ double now() { return std::chrono::duration<double>(std::chrono::steady_clock::n
 /// SQLite by its own interface.
 class Bare {
  public:
-  explicit Bare(const std::string& path) {
-    if (sqlite3_open(path.c_str(), &db_) != SQLITE_OK) throw std::runtime_error(sqlite3_errmsg(db_));
+  /// @param layer writes a cohort's checksums; none: plain files
+  explicit Bare(const std::string& path, const char* layer = nullptr) {
+    if (sqlite3_open_v2(path.c_str(), &db_, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, layer) != SQLITE_OK)
+      throw std::runtime_error(sqlite3_errmsg(db_));
   }
   ~Bare() { sqlite3_close(db_); }
   Bare(const Bare&) = delete;
@@ -104,7 +107,7 @@ class Cohort {
     CohortDatabase(path, CohortDatabase::Access::create)
         .storeAttempt(attemptOf("00000000-0000-4000-8000-000000000000", "P000"), oneOfEach());
     // The others by one statement a table: what is measured is not how they came in.
-    Bare bare(path);
+    Bare bare(path, pageSumLayer());
     const std::string numbers =
         fmt::format("WITH RECURSIVE n (i) AS (SELECT 2 UNION ALL SELECT i + 1 FROM n WHERE i < {}) ", attempts);
     bare.run("BEGIN; UPDATE participant SET study_group = 'expert'");
@@ -128,9 +131,10 @@ class Cohort {
              "JOIN verification ON attempt = 1");
     bare.run(numbers +
              "INSERT INTO checkpoint_value SELECT i, position, name, subject, version, availability, "
-             "1.0 + (i * 7919 + position * 104729) % 1009 / 100.0, reason, note, unit, origin, filter, coverage FROM n "
+             "1.0 + (i * 7919 + position * 104729) % 1009 / 100.0, reason, note, unit, origin, filter, coverage, rate, "
+             "noise FROM n "
              "JOIN checkpoint_value ON attempt = 1 ORDER BY 1, 2");
-    bare.run("COMMIT; ANALYZE; PRAGMA wal_checkpoint(TRUNCATE)");
+    bare.run("COMMIT; ANALYZE");
   }
   ~Cohort() {
     std::error_code ignored;
@@ -177,7 +181,7 @@ void import(benchmark::State& bench) {
     const double middle = now();
     {
       Bare bare(path + ".bare");
-      bare.run("PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL");
+      bare.run("PRAGMA synchronous = FULL");
       bare.run("CREATE TABLE IF NOT EXISTS one (uuid TEXT PRIMARY KEY) STRICT");
     }
     const double before = now();

@@ -98,7 +98,7 @@ SweptCapsule sweep(Random& random, const Vec3& half) {
 }
 
 /// Motion, surface and bounds in every step; a stroke in each where `strokes`.
-void steps(benchmark::State& bench, bool strokes) {
+void fatSteps(benchmark::State& bench, bool strokes) {
   const auto which = static_cast<int>(bench.range(0));
   static std::array<std::unique_ptr<const FatModel>, 2> models;
   std::unique_ptr<const FatModel>& model = models[static_cast<std::size_t>(which)];
@@ -207,6 +207,8 @@ void steps(benchmark::State& bench, bool strokes) {
 void calot::bench::registerFat() {
   using namespace fat_bench;
 
-  repeated(benchmark::RegisterBenchmark("fat/step", [](benchmark::State& b) { steps(b, false); })->Arg(0)->Arg(1), 3);
-  repeated(benchmark::RegisterBenchmark("fat/stroke", [](benchmark::State& b) { steps(b, true); })->Arg(0)->Arg(1), 3);
+  repeated(benchmark::RegisterBenchmark("fat/step", [](benchmark::State& b) { fatSteps(b, false); })->Arg(0)->Arg(1),
+           3);
+  repeated(benchmark::RegisterBenchmark("fat/stroke", [](benchmark::State& b) { fatSteps(b, true); })->Arg(0)->Arg(1),
+           3);
 }

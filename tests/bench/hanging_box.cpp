@@ -27,7 +27,7 @@ std::vector<Vec3> movingLoad(const test::KuhnBox& box, const BoxSize& size, int 
 
 }  // namespace
 
-HangingBody hangingBox(const BoxSize& size, Box kind) {
+HangingBody hangingBox(const BoxSize& size, HangingBox kind) {
   const test::KuhnBox box =
       test::kuhnBox(size.nx, size.ny, size.nz, Vec3(0.0, -0.0375, -0.0375), Vec3(0.15, 0.0375, 0.0375));
   HangingBody body;
@@ -41,16 +41,16 @@ HangingBody hangingBox(const BoxSize& size, Box kind) {
       for (int i = 0; i <= size.nx; ++i) {
         const auto n = static_cast<std::size_t>(box.index(i, j, k));
         body.fixed[n] = i == 0;
-        if (kind == Box::framework || i == 0 || i == size.nx || j == 0 || j == size.ny || k == 0 || k == size.nz)
+        if (kind == HangingBox::framework || i == 0 || i == size.nx || j == 0 || j == size.ny || k == 0 || k == size.nz)
           continue;
         for (int a = 0; a < 3; ++a) body.node[n][a] += 0.15 * cell[a] * (2.0 * random.uniform() - 1.0);
       }
     }
   }
   body.gravity = [](int) { return Vec3(0.0, -9.81, 0.0); };
-  if (kind == Box::soft) body.load = [box, size](int step) { return movingLoad(box, size, step); };
-  if (kind == Box::stiff) body.youngModulus = 50e3;
-  if (kind == Box::framework) body.youngModulus = 10e3;
+  if (kind == HangingBox::soft) body.load = [box, size](int step) { return movingLoad(box, size, step); };
+  if (kind == HangingBox::stiff) body.youngModulus = 50e3;
+  if (kind == HangingBox::framework) body.youngModulus = 10e3;
   return body;
 }
 

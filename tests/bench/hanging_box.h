@@ -18,13 +18,13 @@ inline constexpr BoxSize boxSizes[] = {{504, 7, 4, 3, 100, 60, 0.86},    {1500, 
                                        {5040, 15, 8, 7, 60, 40, 5.1},    {10800, 18, 10, 10, 60, 40, 10.3},
                                        {49152, 32, 16, 16, 20, 0, 59.0}, {202800, 50, 26, 26, 8, 0, 261.0}};
 
-enum class Box {
+enum class HangingBox {
   soft,      ///< E = 5 kPa: hangs down by its length under a load of 1 N that goes to and fro over its free end
   stiff,     ///< E = 50 kPa: falls without a load
   framework  ///< as the framework was measured: no jitter, E = 10 kPa, gravity alone
 };
 
-HangingBody hangingBox(const BoxSize& size, Box kind);
+HangingBody hangingBox(const BoxSize& size, HangingBox kind);
 
 SolidModel modelOf(const HangingBody& body);
 

@@ -145,7 +145,7 @@ void put(benchmark::State& bench, const std::string& size, const std::string& ke
 }
 
 void roofline(benchmark::State& bench, const BoxSize& size) {
-  const HangingBody body = hangingBox(size, Box::soft);
+  const HangingBody body = hangingBox(size, HangingBox::soft);
   const SolidModel model = modelOf(body);
   SolidState state = restState(model);
   SerialExecutor executor;

@@ -9,7 +9,7 @@ from contextlib import closing
 import h5py
 import program
 import recording_file
-from cohort_content import content, query
+from cohort_content import content, edited, query
 from program import calot, recording
 
 
@@ -200,11 +200,10 @@ class Participants(program.ProgramTest):
     def test_a_database_of_later_software(self):
         later = self.path("later.db")
         self.well("participant", "add", "P1", "--cohort", later)
-        with closing(sqlite3.connect(later)) as database:
+        with edited(later) as database:
             version = database.execute("PRAGMA user_version").fetchone()[0]
             self.assertGreater(version, 0)
             database.execute(f"PRAGMA user_version = {version + 1}")
-            database.commit()
         answer = calot("participant", "add", "P2", "--cohort", later)
         self.assertIn(answer.code, (4, 5), answer)
         self.assertOneLine(answer, later)

@@ -172,7 +172,7 @@ class WrongUse(program.ProgramTest):
                           ["participant"], ["participant", "add", "P"], ["participant", "remove", "P", "--cohort", o],
                           ["mesh", "x.obj", "--unit", "ft", "--tetrahedra", "100", "-o", "x.vtk"],
                           ["mesh", "x.obj", "--unit", "m", "--tetrahedra", "0", "-o", "x.vtk"],
-                          ["mesh", "x.off", "--unit", "m", "--tetrahedra", "100", "-o", "x.vtk"],
+                          ["mesh", "x.dxf", "--unit", "m", "--tetrahedra", "100", "-o", "x.vtk"],
                           ["mesh", "x.obj", "--unit", "m", "--tetrahedra", "100", "-o", "x.obj"], ["scenes", "x"], ["checkpoints", "--no"]):
             with self.subTest(" ".join(map(str, arguments))):
                 try:

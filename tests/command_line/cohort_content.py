@@ -1,13 +1,34 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What a cohort database holds, read with another program than ours."""
 
+import hashlib
+import pathlib
 import sqlite3
-from contextlib import closing
+from contextlib import closing, contextmanager
 
 
 def opened(path):
     """A database that must be there. Not read-only: a program that was killed may have left a journal, which SQLite rolls back first."""
     return closing(sqlite3.connect(f"file:{path}?mode=rw", uri=True))
+
+
+def seal(path):
+    """Gives each page the checksum that Calot would write (docs/reference/cohort.md, "Pages")."""
+    held = bytearray(pathlib.Path(path).read_bytes())
+    size = int.from_bytes(held[16:18], "big")
+    for number, end in enumerate(range(size, len(held) + 1, size), 1):
+        page = bytes(held[end - size:end - 8]) + number.to_bytes(4, "little")
+        held[end - 8:end] = hashlib.blake2b(page, digest_size=16).digest()[:8]
+    pathlib.Path(path).write_bytes(held)
+
+
+@contextmanager
+def edited(path):
+    """The database, to be changed past the program's rules but with its checksums."""
+    with closing(sqlite3.connect(path)) as database:
+        yield database
+        database.commit()
+    seal(path)
 
 
 def content(path):

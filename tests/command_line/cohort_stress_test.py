@@ -11,7 +11,7 @@ import time
 from contextlib import closing
 
 import program
-from cohort_content import content, query
+from cohort_content import content, edited, query
 from program import PROGRAM, SOURCE, calot, recording
 
 
@@ -161,10 +161,9 @@ class Stress(program.ProgramTest):
     def test_newer_schema_is_refused_by_everything(self):
         cohort = self.path("c.db")
         self.well("assess", runs()[0], "--cohort", cohort)
-        with closing(sqlite3.connect(cohort)) as database:
+        with edited(cohort) as database:
             version = database.execute("PRAGMA user_version").fetchone()[0]
             database.execute(f"PRAGMA user_version = {version + 1}")
-            database.commit()
         before = content(cohort)
         other = self.path("other.db")
         self.well("participant", "add", "P", "--cohort", other)

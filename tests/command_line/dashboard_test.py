@@ -94,6 +94,7 @@ class Dashboard(ProgramTest):
 
     def test_without_a_screen(self):
         self.assertIn("screen", self.declined(1, environment=NO_SCREEN))
+        self.assertIn(":77", self.declined(1, environment={"QT_QPA_PLATFORM": "xcb", "DISPLAY": ":77"}))
 
 
 if __name__ == "__main__":

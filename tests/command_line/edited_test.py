@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Edited recordings and databases: no value that no writer makes is accepted, wherever it stands, even if the chain was made to fit."""
 
-import os
 import sqlite3
 
 import h5py
 import numpy as np
 import program
 import recording_file
+from cohort_content import edited
 from program import calot, recording, short, skilled
 
 
@@ -136,10 +136,8 @@ class EditedDatabase(program.ProgramTest):
     def test_study_and_grade_check_first(self):
         for command in self.ask:
             self.well(*command)
-        with sqlite3.connect(self.cohort) as db:
-            db.execute("PRAGMA foreign_keys = OFF")
+        with edited(self.cohort) as db:
             db.execute("DELETE FROM recording WHERE attempt = (SELECT id FROM attempt WHERE uuid = ?)", (self.attempt,))
-        db.close()
         self.assertEqual(calot("cohort", "check", self.cohort).code, 4)
         norm = ("norm", "create", self.cohort, "m", "--by", "test", "--rule", "at-least:1", "--checkpoints", "all", *self.who)
         for command in (*self.ask, norm):
@@ -148,28 +146,18 @@ class EditedDatabase(program.ProgramTest):
 
     def test_changed_bytes(self):
         draw = program.seeded("changed bytes of a database")
-        self.query("PRAGMA wal_checkpoint(TRUNCATE)")
         whole = self.cohort.read_bytes()
-        as_it_was = [calot(*command).out for command in self.ask]
-        silent = changes = 0
         for _ in range(300 if program.HEAVY else 25):
             at = draw.randrange(100, len(whole))
             changed = bytearray(whole)
             changed[at] ^= 1 << draw.randrange(8)
-            for beside in ("-wal", "-shm"):
-                if os.path.exists(str(self.cohort) + beside):
-                    os.remove(str(self.cohort) + beside)
             self.cohort.write_bytes(changed)
-            sound = calot("cohort", "check", self.cohort).code == 0
-            for command, before in zip(self.ask, as_it_was):
+            for command in (("cohort", "check", self.cohort), *self.ask):
                 answer = calot(*command)
                 with self.subTest(at=at, command=command[0]):
-                    if not sound:
-                        self.assertNotEqual(answer.code, 0, answer)
-                        self.assertEqual(answer.out, "")
-                changes += 1
-                silent += answer.code == 0 and answer.out != before
-        print(f"{changes} answers of changed databases: {silent} differ in silence (values that SQLite cannot check: regrade does)")
+                    self.assertIn(answer.code, (4, 5), answer)
+                    self.assertOneLine(answer, self.cohort)
+                    self.assertEqual(answer.out, "")
 
 
 if __name__ == "__main__":

@@ -10,7 +10,7 @@ from contextlib import closing
 
 import numpy
 import program
-from cohort_content import query
+from cohort_content import edited, query
 from program import calot
 
 try:
@@ -405,9 +405,8 @@ class Identity(program.ProgramTest):
         first = self.stored(self.motion)
         digest = first[0]["sha256"]
         earlier = f"{digest[:8]}-{digest[8:12]}-8{digest[13:16]}-{int(digest[16:18], 16) & 0x3f | 0x80:02x}{digest[18:20]}-{digest[20:32]}"
-        with closing(sqlite3.connect(self.cohort)) as database:
+        with edited(self.cohort) as database:
             database.execute("UPDATE attempt SET uuid = ?", (earlier,))
-            database.commit()
         self.assertEqual(self.stored(self.motion)[0]["stored"], "unchanged")
         self.assertEqual(query(self.cohort, "SELECT uuid FROM attempt"), [(earlier,)])
 

@@ -5,16 +5,14 @@ and is sound, nothing that was flushed is lost, and the same command, run again,
 import json
 import shutil
 import signal
-import sqlite3
 import subprocess
 import time
-from contextlib import closing
 
 import h5py
 import numpy
 import program
 import recording_file
-from cohort_content import content, query
+from cohort_content import content, edited, query
 from import_test import synthetic, text_of
 from program import PROGRAM, SCENE, calot, recording
 
@@ -114,9 +112,8 @@ class Regrade(Cohort):
         for file in attempts():
             shutil.copy(file, folder / "data")
         self.test.well("assess", *attempts(), "--cohort", folder / "c.db")
-        with closing(sqlite3.connect(folder / "c.db")) as database:
+        with edited(folder / "c.db") as database:
             database.execute("DELETE FROM checkpoint_value")
-            database.commit()
 
     def command(self, work):
         return "regrade", work / "c.db", work / "data"

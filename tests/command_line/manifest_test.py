@@ -112,6 +112,43 @@ class Motion(Manifest):
         self.refused(4, "import", "--manifest", self.table, "--cohort", self.cohort, names=(self.table, "line 2"))
         self.well("import", "--manifest", self.table, "--cohort", self.cohort, "--columns", self.path("maps/m.json"))
 
+    def test_files_that_say_all_need_no_map(self):
+        rows = "".join(f"{i / 100:.2f},{i % 7},{i % 5},{i % 3}\n" for i in range(200))
+        self.path("b.csv").write_text("time (s),left_x_mm,left_y_mm,left_z_mm\n" + rows)
+        self.path("c.csv").write_text("time (s),left_x,left_y,left_z\n" + rows)
+        self.write([{"file": "b.csv", "participant": "P1"}, {"file": "c.csv", "participant": "P2"}])
+        self.refused(4, "import", "--manifest", self.table, "--cohort", self.cohort, names=(self.table, "line 3", "c.csv", '"columns"'))
+        self.assertFalse(self.path("c.db").exists())
+        self.write([{"file": "b.csv", "participant": "P1"}])
+        self.well("import", "--manifest", self.table, "--cohort", self.cohort)
+
+    def test_as_spreadsheets_write_them(self):
+        rows = [{**r, "start": f"{45957 + i},5", "consent": "study:45957", "experience": ""} for i, r in enumerate(self.make(2, 2))]
+        self.write(rows, ";")
+        text = "sep=;\n" + self.table.read_text() + ";" * (len(rows[0]) - 1) + "\n"
+        command = ("import", "--manifest", self.table, "--cohort", self.cohort)
+        for encoding in ("utf-8-sig", "utf-16"):
+            self.table.write_bytes(text.replace("\n", "\r\n").encode(encoding))
+            answer = calot(*command)
+            self.assertEqual((answer.code, answer.err.count("--zone")), (4, 4), answer)
+            self.well(*command, "--zone", "+01:00")
+        with closing(sqlite3.connect(self.cohort)) as database:
+            self.assertEqual(database.execute("SELECT start_utc FROM attempt ORDER BY 1 LIMIT 1").fetchall(), [("2025-10-27T11:00:00Z",)])
+        self.write([{**r, "start": "3/4/2026"} for r in rows], ";")
+        answer = calot(*command, "--zone", "Z")
+        self.assertEqual((answer.code, answer.err.count("--dates")), (4, 4), answer)
+
+    def test_names_that_are_similar_are_asked_about(self):
+        rows = self.make(2, 2)
+        rows[1]["participant"], rows[3]["group"] = "p0", "Novice"
+        self.write(rows)
+        command = ("import", "--manifest", self.table, "--cohort", self.cohort)
+        self.refused(3, *command, names=(self.table, "line 3", '"participant"', "p0", "P0", "--similar-names"))
+        self.assertFalse(self.cohort.exists())
+        self.assertIn("2 participants (expert 1, novice 1)", self.well(*command, "--similar-names", "one").out)
+        self.write([{**rows[0], "participant": "P00"}])
+        self.refused(3, *command, names=("line 2", "P00", "P0"))
+
     def test_a_wrong_row_stores_nothing(self):
         rows = self.make(2, 2)
         for change, names in (({"file": "motion/none.txt"}, ('"file"', "none.txt", "relative to the manifest")),
@@ -225,6 +262,7 @@ class Ratings(Manifest):
         for row in self.rows:
             uuid = self.uuids[row["file"].split("/")[1]]
             self.assertEqual([scores.get((uuid, row["rater"], i), "NA") for i in ITEMS], [row[i] for i in ITEMS])
+        self.write([{**row, **{i: row[i] if row[i] == "NA" else f"{row[i]},0" for i in ITEMS}} for row in self.rows], ";")
         self.assertIn("8 unchanged", self.well(*self.rate()).out)
         self.assertEqual(self.ratings(), stored)
         self.assertEqual(json.loads(self.well("rate", self.cohort, "--json").out)["forms"][0]["filled"], 8)
@@ -237,7 +275,9 @@ class Ratings(Manifest):
     def test_attempts_and_participants(self):
         file = self.rows[0]["file"].split("/")[1]
         rest = {k: v for k, v in self.rows[0].items() if k != "file"}
-        self.write([{"attempt": self.uuids[file][:9], **rest, "form": "goals"}])
+        self.write([{"attempt": self.uuids[file][:7], **rest, "form": "goals"}])
+        self.refused(4, *self.rate(), names=("line 2", '"attempt"', self.uuids[file][:7]))
+        self.write([{"attempt": self.uuids[file][:9].upper(), **rest, "form": "goals"}])
         self.well("rate", self.cohort, "--manifest", self.table)
         self.write([{"participant": "P0", **rest}])
         self.assertIn("1 unchanged", self.well(*self.rate()).out)

@@ -95,7 +95,7 @@ class Start(ProgramTest):
         if os.environ.get("CALOT_BUILD_TYPE", "Release") != "Release" or not MODULES.exists():
             self.skipTest("this build has no modules")
         loaded = subprocess.run(["ldd", str(PROGRAM)], capture_output=True, text=True, check=True).stdout
-        heavy = re.findall(r"\b(lib(?:av|sw|SDL|OpenIGTLink|apriltag|spnav|Qt|OSMesa|LLVM)\S*) =>", loaded)
+        heavy = re.findall(r"\b(lib(?:av|sw|SDL|gmp|mpfr|OpenIGTLink|apriltag|spnav|Qt|OSMesa|LLVM)\S*) =>", loaded)
         self.assertEqual(heavy, [])
 
 

@@ -3,12 +3,11 @@
 
 import json
 import re
-import sqlite3
-from contextlib import closing
 
 import numpy as np
 import program
 from blinding_test import PROTOCOL
+from cohort_content import edited
 from manifest_test import Manifest
 
 
@@ -86,10 +85,9 @@ class People(Manifest):
         for i in range(10):
             self.set(f"P{i}", "--site", ("north", "south")[i // 2 % 2])
         self.assertNotIn("Warning: site", self.text())
-        with closing(sqlite3.connect(self.cohort)) as database:  # as two stations would give it
+        with edited(self.cohort) as database:  # as two stations would give it
             database.execute("UPDATE attempt SET device = (SELECT study_group FROM participant p WHERE p.id = participant) || ' device', "
                              "comparability_key = comparability_key || (participant % 2)")
-            database.commit()
         self.assertIn("Warning: device is confounded with group", " ".join(self.text("--mix-keys").split()))
 
     def test_unequal_numbers_of_attempts_are_a_warning(self):

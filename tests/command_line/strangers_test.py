@@ -226,13 +226,93 @@ class MotionFiles(program.ProgramTest):
                "right.pose.position.z\n"
                + "".join(stamp(t) + "," + ",".join(f"{v / 1000:.9f}" for v in [*a, *b]) + "\n" for t, a, b in ROWS))
         for name, text in (("Motive", self.motive()), ("Vicon", vicon), ("ROS", ros)):
+            self.assertRecognised(name, text, name, jerk=0.2)
+
+    def assertRecognised(self, name, content, word, file="m.csv", jerk=0.05):
+        """Read without a map, and by the map that --guess prints. @return the map"""
+        with self.subTest(name):
+            path = self.write(file, content)
+            figures = self.figures(path)
+            self.assertMotion(figures, jerk=jerk)
+            self.assertIn(word, figures["notes"][0])
+            guess = json.loads(self.well("import", path, "--guess").out)
+            self.assertMotion(self.figures(path, "--columns", self.write("guess.json", json.dumps(guess))), jerk=jerk)
+            return guess
+
+    def sequence(self, equals, end, status=lambda i: "OK", target=("Reference", "Reference")):
+        """Transforms of two tools as PLUS and Slicer write them into the header of an image."""
+        pose = lambda p: f"1 0 0 {p[0]:.6f} 0 0.6 -0.8 {p[1]:.6f} 0 0.8 0.6 {p[2]:.6f} 0 0 0 1"
+        lines = []
+        for i, (t, a, b) in enumerate(ROWS):
+            for tool, place, to in (("LeftTool", a, target[0]), ("RightTool", b, target[1])):
+                lines += [f"{tool}To{to}Transform{equals}{pose(place)}", f"{tool}To{to}TransformStatus{equals}{status(i)}"]
+            lines += [f"Timestamp{equals}{t:.6f}", f"ImageStatus{equals}OK"]
+            lines[-6:] = [f"Seq_Frame{i:04d}_{line}" for line in lines[-6:]]
+        return "\n".join(lines) + "\n" + end
+
+    MHA = "ObjectType = Image\nNDims = 3\nDimSize = 0 0 2001\nKinds = domain domain list\n"
+
+    def test_sequences(self):
+        guess = self.assertRecognised("PLUS", (self.MHA + self.sequence(" = ", "ElementDataFile = LOCAL\n")).encode() + bytes(range(256)), "PLUS",
+                                      file="m.seq.mha")
+        self.assertEqual((guess["frame"], guess["length"], len(guess["left"]["matrix"])), ("plus-Reference", "mm", 9))
+        self.assertRecognised("Slicer", "NRRD0004\ndimension: 3\nsizes: 0 0 2001\n" + self.sequence(":=", "\n"), "Slicer", file="m.igs.nrrd")
+        lost = self.write("lost.mha", self.MHA + self.sequence(" = ", "ElementDataFile = LOCAL\n", lambda i: "INVALID" if i in LOST else "OK"))
+        self.assertAlmostEqual(self.figures(lost)["path-length", "left"]["coverage"], 1 - 0.33 / 20, delta=0.001)
+        mixed = self.write("mixed.mha", self.MHA + self.sequence(" = ", "ElementDataFile = LOCAL\n", target=("Tracker", "Probe")))
+        self.refusedWith(2, mixed, names=("mixed.mha", "PLUS", "frame"))
+        broken = self.write("broken.mha", self.MHA + self.sequence(" = ", "ElementDataFile = LOCAL\n").replace("0 0.8 0.6", "0 0.8 0.7", 1))
+        self.refusedWith(4, broken, names=("broken.mha", "row 1"))
+
+    def test_polhemus(self):
+        number = lambda v: f"{v:10.5f}"
+        record = lambda station, place: f"0{station} " + "".join(number(v) for v in [*(v / 25.4 for v in place), -170.25, 20.5, 0.0]) + "\r\n"
+        text = "".join(record(1, b) + record(2, a) for t, a, b in ROWS)
+        sensors = "marker,sensor,sample,timestamp,position_x,position_y,position_z,orientation_x,orientation_y,orientation_z\n" + "".join(
+            f"0,{s},{i},{5000 + 10 * i}," + ",".join(number(v / 25.4) for v in place) + ",-170.25,20.5,0\n"
+            for i, (t, a, b) in enumerate(ROWS) for s, place in ((1, b), (2, a)))
+        for name, content, rate in (("fastrak.txt", text, {"rate": 100}), ("liberty.csv", sensors, {})):
             with self.subTest(name):
-                path = self.write("m.csv", text)
-                figures = self.figures(path)
-                self.assertMotion(figures, jerk=0.2)
-                self.assertIn(name, figures["notes"][0])
+                path = self.write(name, content)
+                self.refusedWith(2, path, names=(name, "Polhemus", "--guess"))
                 guess = json.loads(self.well("import", path, "--guess").out)
-                self.assertMotion(self.figures(path, "--columns", self.write("guess.json", json.dumps(guess))), jerk=0.2)
+                self.assertEqual(guess["?1"]["order"], "zyx")
+                filled = {**{key: value for key, value in guess.items() if "?" not in key}, "length": "inch", "left": guess["?2"], "right": guess["?1"],
+                          **rate}
+                figures = self.figures(path, "--columns", self.write("filled.json", json.dumps(filled)))
+                self.assertMotion(figures)
+        self.refusedWith(4, self.write("cut.txt", text + "01   1.0\n"), "--columns", self.path("filled.json"), names=("cut.txt", "line 4003", "six numbers"))
+
+    def test_da_vinci(self):
+        kit = "timestamp (ns)," + ",".join(f"PSM{h}_{kind}_{axis}" for h in "LR" for kind, axes in (("position", "xyz"), ("orientation", "xyzw"))
+                                           for axis in axes) + ",PSML_gripper_angle,PSMR_gripper_angle\n"
+        kit += "".join(f"{1700000000000000000 + round(t * 1e9)}," + ",".join(",".join(f"{v / 1000:.9f}" for v in p) + ",0,0,0,1" for p in (a, b))
+                       + ",0.5,-0.1\n" for t, a, b in ROWS)
+        guess = self.assertRecognised("da Vinci", kit, "da Vinci", jerk=0.2)
+        self.assertEqual((guess["right"]["jaw"], guess["right"]["quaternion"][0]), ("PSMR_gripper_angle", "PSMR_orientation_w"))
+        # A first and a second arm are nobody's hands yet.
+        numbered = self.write("arms.csv", kit.replace("PSML", "PSM1").replace("PSMR", "PSM2"))
+        self.refusedWith(2, numbered, names=("arms.csv", "da Vinci", "hand"))
+        self.assertEqual(json.loads(self.well("import", numbered, "--guess").out)["?2"]["position"][0], "PSM2_position_x")
+
+    def test_jigsaws(self):
+        rows = [(a, b) for t, a, b in ROWS[::3]]
+        group = lambda p: [f"{v / 1000:.9f}" for v in p] + "1 0 0 0 1 0 0 0 1 0 0 0 0 0 0 0.5".split()
+        numbers = [[*group(b), *group(a), *group(a), *group(b)] for a, b in rows]  # masters are elsewhere
+        names = [f"{arm}_{name}" for arm in ("MTML", "MTMR", "PSML", "PSMR") for name in
+                 ["position_x", "position_y", "position_z", *(f"rotation_{i}" for i in range(9)), "velocity_x", "velocity_y", "velocity_z",
+                  "velocity_rot0", "velocity_rot1", "velocity_rot2", "gripper_angle"]]
+        lines = [separator.join(row) for separator, row in ((s, r) for s in (" ", ",") for r in numbers)]
+        text = self.figures(self.write("k.txt", "\n".join(lines[:len(rows)]) + "\n"))
+        for name, content in (("commas", lines[len(rows):]), ("names", [",".join(names), *lines[len(rows):]])):
+            with self.subTest(name):
+                figures = self.figures(self.write("k.csv", "\n".join(content) + "\n"))
+                for side in ("left", "right"):
+                    self.assertEqual(figures["path-length", side]["value"], text["path-length", side]["value"])
+                    self.assertEqual(figures["log-dimensionless-jerk", side]["value"], text["log-dimensionless-jerk", side]["value"])
+        self.assertAlmostEqual(text["path-length", "left"]["value"], 0.379, delta=0.002)
+        guess = json.loads(self.well("import", self.path("k.csv"), "--guess").out)
+        self.assertEqual((guess["rate"], guess["left"]["jaw"], guess["left"]["matrix"][8]), (30, "PSML_gripper_angle", "PSML_rotation_8"))
 
     def test_files_that_leave_something_open(self):
         # Which body is which hand is not in the names; the tool of one port, without a clock; no units.

@@ -54,6 +54,11 @@ class Trainer(ProgramTest):
         self.assertIn("/proc", self.declined(1, "--scene", SCENE, "-o", "/proc"))
         self.declined(2, "--no-such-option")
 
+    def test_a_screen_that_is_not_there(self):
+        answer = program.calot("-o", self.folder, program=TRAINER, environment={"QT_QPA_PLATFORM": "xcb", "DISPLAY": ":77"})
+        self.assertEqual((answer.code, answer.out), (1, ""), answer)
+        self.assertRegex(answer.err, r"^calot-trainer: .*screen.*:77\n$")
+
     def test_damaged_input(self):
         scene = self.folder / "bad.json"
         scene.write_text('{"format": "calot-scene"')
@@ -86,7 +91,9 @@ class Trainer(ProgramTest):
                                    env={**os.environ, **OFFSCREEN}, text=True)
         try:
             limit = time.monotonic() + program.PATIENCE
-            while not list(self.folder.glob("*.h5")) and time.monotonic() < limit:
+            sizes = set()  # the second one is that of a recording with steps
+            while len(sizes) < 2 and time.monotonic() < limit:
+                sizes.update(file.stat().st_size for file in self.folder.glob("*.h5"))
                 time.sleep(0.05)
             running.send_signal(signal.SIGTERM)
             out, err = running.communicate(timeout=program.PATIENCE)
@@ -112,7 +119,9 @@ class Trainer(ProgramTest):
             running = subprocess.Popen([str(TRAINER), "--scene", SCENE, "--device", "null", "-o", str(self.folder)], stdout=subprocess.PIPE,
                                        stderr=subprocess.PIPE, env={**os.environ, "DISPLAY": display, "QT_QPA_PLATFORM": "xcb"}, text=True)
             limit = time.monotonic() + program.PATIENCE
-            while not list(self.folder.glob("*.h5")) and time.monotonic() < limit:
+            sizes = set()  # the second one is that of a recording with steps
+            while len(sizes) < 2 and time.monotonic() < limit:
+                sizes.update(file.stat().st_size for file in self.folder.glob("*.h5"))
                 time.sleep(0.05)
             screen.kill()
             out, err = running.communicate(timeout=program.PATIENCE)

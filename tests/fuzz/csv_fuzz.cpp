@@ -14,7 +14,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   return fuzz::tried([&] {
     const std::uint8_t choice = fuzz::takeByte(bytes);
     if (choice % 4 == 0) {
-      recorder::guessColumns(bytes, "a.csv");
+      const recorder::GuessedMap guess = recorder::guessColumns(bytes, "a.csv");
+      if (guess.open.empty())
+        recorder::parseCsvMotion(bytes, "a.csv",
+                                 recorder::parseColumnMap(std::as_bytes(std::span(guess.json)), "map.json"));
     } else if (choice % 4 == 1) {
       recorder::parseColumnMap(bytes, "map.json");
     } else if (choice % 4 == 2) {

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A surface: the first byte says of which format.
+// A surface: the first byte says of which format, and whether it is mended, too.
 #include <array>
 
 #include "recorder/formats/surface_bytes.h"
+#ifdef CALOT_SURFACE_UNION
+#include "recorder/surfaces/surface_mending.h"
+#endif
 
 #include "tests/fuzz/support/fuzz_target.h"
 
@@ -11,9 +14,14 @@ using namespace calot;
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   std::span bytes(reinterpret_cast<const std::byte*>(data), size);
   return fuzz::tried([&] {
-    static constexpr std::array<const char*, 3> names{"a.obj", "a.stl", "a.ply"};
+    static constexpr std::array<const char*, 4> names{"a.obj", "a.stl", "a.ply", "a.off"};
     const std::uint8_t choice = fuzz::takeByte(bytes);
-    recorder::parseSurface(bytes, names[choice % names.size()], recorder::LengthUnit::millimetre,
-                           {std::size_t{1} << 20U, 20'000, 40'000});
+    const TriangleMesh mesh = recorder::parseSurface(
+        bytes, names[choice % names.size()], recorder::LengthUnit::millimetre, {std::size_t{1} << 20U, 20'000, 40'000});
+#ifdef CALOT_SURFACE_UNION
+    constexpr int mended = 100;
+    if ((choice & 4U) != 0 && mesh.triangles() <= mended)
+      static_cast<void>(recorder::mendSurface(mesh, (choice & 8U) != 0));
+#endif
   });
 }

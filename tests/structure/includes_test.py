@@ -28,6 +28,7 @@ MAY_SEE = {
     "sim/bullet": SIM,  # a library of its own above the core
     "recorder/base": ("sim",),
     "recorder/formats": ("sim", "recorder/base"),
+    "recorder/surfaces": ("sim", "recorder/base", "recorder/formats"),
     "recorder/engine": ("sim", "recorder/base", "recorder/formats"),
     "recorder/recording": ("sim", "recorder/base", "recorder/formats", "recorder/engine"),
     "recorder/kept": ("sim", "recorder/base", "recorder/formats", "recorder/engine", "recorder/recording"),
@@ -74,6 +75,7 @@ BULLET = "BulletCollision/"  # that one folder sees Bullet
 # Foreign headers that only some rooms may see: prefix -> rooms.
 ONLY = {
     "Q": ("gui/view", "gui/attempt", "gui/dashboard", "gui/trainer", "gui/report", "apps"),
+    "CGAL/": ("recorder/surfaces",),
     "hdf5": ("recorder/recording",),
     "H5": ("recorder/recording",),
     "SQLiteCpp/": ("analytics/cohort",),

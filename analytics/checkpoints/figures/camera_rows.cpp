@@ -258,6 +258,7 @@ std::vector<CheckpointEntry> cameraRows() {
        .definition = {.name = "cut-out-of-view",
                       .title = "Clips, cuts and openings out of view",
                       .direction = Direction::lower,
+                      .domain = Domain::whole,
                       .definition = "#{clips set or dropped, vessels cut, burned through or torn, vessels' walls "
                                     "injured and organs opened at a place outside of the picture, or behind the lens}; "
                                     "what organs hide counts as in view"},

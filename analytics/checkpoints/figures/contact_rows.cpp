@@ -211,6 +211,7 @@ std::vector<CheckpointEntry> contactRows() {
                       .title = "Times that the instruments touched each other",
                       .direction = Direction::lower,
                       .instruments = "both together",
+                      .domain = Domain::whole,
                       .definition = "#{touches of both instruments}; contact that is interrupted for less than 0.1 s "
                                     "is one touch"},
        .results = 6,

@@ -270,6 +270,7 @@ std::vector<CheckpointEntry> motionRows() {
            .definition = {.name = "movements",
                           .title = "Number of movements",
                           .direction = Direction::lower,
+                          .domain = Domain::whole,
                           .version = 3,
                           .definition = "#{maximal stretches of points with v(k) >= max(v_95 / 2, 5 mm/s) that "
                                         "last 0.2 s or longer}, v as in speed-mean, v_95 the hand's speed-p95 over "
@@ -330,6 +331,7 @@ std::vector<CheckpointEntry> motionRows() {
   addBoth({.place = {CheckpointFamily::motion, 130},
            .definition = {.name = "bimanual-correlation",
                           .title = "Correlation of both hands' speeds",
+                          .domain = Domain::any,
                           .version = 3,
                           .definition = "Pearson's correlation of v_left(k) and v_right(k), v as in "
                                         "speed-mean, over the points at which both hands are measured"}},
@@ -338,6 +340,7 @@ std::vector<CheckpointEntry> motionRows() {
            .definition = {.name = "bimanual-lag",
                           .title = "Lag of the right hand behind the left",
                           .unit = "s",
+                          .domain = Domain::any,
                           .version = 3,
                           .definition = "the l within 1 s either way for which the correlation of v_left(t) "
                                         "and v_right(t + l) is greatest, if above 0 and not at the edge; "

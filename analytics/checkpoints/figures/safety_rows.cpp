@@ -213,6 +213,7 @@ std::vector<CheckpointEntry> safetyRows() {
        .definition = {.name = "retraction-requests",
                       .title = "Times that the assistant was asked to retract more or less",
                       .instruments = "both together",
+                      .domain = Domain::whole,
                       .definition = "#{requests for more retraction} + #{requests for less}, those at a limit of the "
                                     "pull too"},
        .needs = {hasRequests},
@@ -222,6 +223,7 @@ std::vector<CheckpointEntry> safetyRows() {
                       .title = "Times that a request to the assistant was taken back",
                       .direction = Direction::lower,
                       .instruments = "both together",
+                      .domain = Domain::whole,
                       .definition = "#{requests for less whose last one before was for more, and the reverse}"},
        .needs = {hasRequests},
        .accumulate = accumulating<Retraction>(true)},
@@ -230,6 +232,7 @@ std::vector<CheckpointEntry> safetyRows() {
                       .title = "Clips misplaced or lost",
                       .direction = Direction::lower,
                       .instruments = "sum over instruments",
+                      .domain = Domain::whole,
                       .version = judgedVersion(1),
                       .definition = "E = #{clips set half on, on another clip, too near to something, or on a vessel "
                                     "that is not cystic} + #{clips dropped}; a clip with several faults counts once"},
@@ -242,6 +245,7 @@ std::vector<CheckpointEntry> safetyRows() {
                       .direction = Direction::lower,
                       .aggregation = Aggregation::organ,
                       .instruments = "sum over instruments",
+                      .domain = Domain::whole,
                       .version = 2,
                       .definition = "P(o) = #{events organPerforated of organ o}; at most one an organ"},
        .accumulate = accumulating<OrganPerforations>(),
@@ -264,6 +268,7 @@ std::vector<CheckpointEntry> safetyRows() {
                       .window = "until the first clip, where the view is frozen",
                       .instruments = "none",
                       .finality = Finality::final,
+                      .domain = Domain::whole,
                       .version = judgedVersion(1),
                       .definition = "sum of 0 to 2 points each for the cleared triangle, the freed lower third of the "
                                     "bed, and two structures alone entering the gallbladder; satisfactory from 5 of "
@@ -276,6 +281,7 @@ std::vector<CheckpointEntry> safetyRows() {
                       .title = "Critical errors",
                       .direction = Direction::lower,
                       .instruments = "sum over instruments",
+                      .domain = Domain::whole,
                       .version = judgedVersion(1),
                       .definition = "#{clips on, and cuts, burns and tears through, vessels that the scene's procedure "
                                     "tells to spare}; one fails the attempt"},

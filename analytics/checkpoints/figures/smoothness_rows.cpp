@@ -141,6 +141,7 @@ std::vector<CheckpointEntry> smoothnessRows() {
                       .title = "Spectral arc length (SPARC)",
                       .direction = Direction::higher,
                       .minCoverage = minSparcCoverage,
+                      .domain = Domain::any,
                       .version = 4,
                       .definition = "-sum sqrt((df / (fc - f0))^2 + dM^2) from f0 to fc, the first and last frequency, "
                                     "at most 10 Hz, with M >= 0.05; M the amplitude spectrum of v as a share of M(0 "
@@ -153,6 +154,7 @@ std::vector<CheckpointEntry> smoothnessRows() {
        .definition = {.name = "log-dimensionless-jerk",
                       .title = "Log dimensionless jerk (LDLJ of the speed profile)",
                       .direction = Direction::higher,
+                      .domain = Domain::any,
                       .version = 3,
                       .definition = "-ln(T^3 / v_peak^2 * sum (v'')^2 dt), v'' = (v(k+1) - 2 v(k) + v(k-1)) / dt^2, T "
                                     "= n dt, v as in speed-mean; of segments of 1 s or longer, averaged by their "
@@ -164,6 +166,7 @@ std::vector<CheckpointEntry> smoothnessRows() {
        .definition = {.name = "movement-jerk",
                       .title = "Log dimensionless jerk of a movement (mean)",
                       .direction = Direction::higher,
+                      .domain = Domain::any,
                       .version = 3,
                       .definition = "mean over movements of log-dimensionless-jerk of each; movements as in movements, "
                                     "and outwards to where v stops falling or falls below 5 mm/s"}},

@@ -11,6 +11,7 @@
 #include <system_error>
 
 #include "recorder/base/errors.h"
+#include "recorder/base/files.h"
 
 extern "C" {
 #include <libavcodec/avcodec.h>
@@ -55,18 +56,14 @@ void removeQuietly(const std::filesystem::path& file) {
 
 class Encoder final : public FilmWriter {
  public:
-  Encoder(const std::filesystem::path& file, int width, int height) : file_(file), width_(width), height_(height) {
-    temporary_ += fmt::format(".{}.part", ::getpid());
-  }
-  ~Encoder() override {
-    if (!finished_) removeQuietly(temporary_);
-  }
+  Encoder(const std::filesystem::path& file, int width, int height)
+      : file_(file), made_(file, true, fmt::format(".{}.part", ::getpid())), width_(width), height_(height) {}
 
   void open(int fps) {
     AVFormatContext* made = nullptr;
     // By the name that the file will have; the temporary one has no ending.
     need(avformat_alloc_output_context2(&made, nullptr, file_.extension() == ".mkv" ? "matroska" : "mp4",
-                                        temporary_.c_str()));
+                                        made_.path().c_str()));
     format_.reset(made);
     format_->flags |= AVFMT_FLAG_BITEXACT;
     const AVCodec* codec = avcodec_find_encoder_by_name("libx264");
@@ -118,12 +115,12 @@ class Encoder final : public FilmWriter {
     const int* const bt709 = sws_getCoefficients(SWS_CS_ITU709);
     need(sws_setColorspaceDetails(scaler_.get(), bt709, 1, bt709, 0, 0, 1 << 16, 1 << 16));
 
-    need(avio_open(&format_->pb, temporary_.c_str(), AVIO_FLAG_WRITE));
+    need(avio_open(&format_->pb, made_.path().c_str(), AVIO_FLAG_WRITE));
     need(avformat_write_header(format_.get(), nullptr));
   }
 
   void add(const Image& image) override {
-    assert(image.width == width_ && image.height == height_ && !finished_);
+    assert(image.width == width_ && image.height == height_);
     need(av_frame_make_writable(frame_.get()));
     const std::uint8_t* const rows[1] = {image.rgba.data()};
     const int stride[1] = {4 * image.width};
@@ -136,10 +133,7 @@ class Encoder final : public FilmWriter {
     encode(nullptr);
     need(av_write_trailer(format_.get()));
     need(avio_closep(&format_->pb));
-    std::error_code error;
-    std::filesystem::rename(temporary_, file_, error);
-    if (error) fail(error.message());
-    finished_ = true;
+    made_.publish();
   }
 
   [[nodiscard]] std::int64_t pictures() const override { return next_; }
@@ -166,7 +160,8 @@ class Encoder final : public FilmWriter {
     }
   }
 
-  std::filesystem::path file_, temporary_ = file_;
+  std::filesystem::path file_;
+  recorder::NewFile made_;
   int width_, height_;
   Held<AVFormatContext> format_;
   Held<AVCodecContext> encoder_;
@@ -175,7 +170,6 @@ class Encoder final : public FilmWriter {
   Held<SwsContext> scaler_;
   AVStream* stream_ = nullptr;  // of the format
   std::int64_t next_ = 0;
-  bool finished_ = false;
 };
 
 void needFilm(int result, const std::filesystem::path& film) {

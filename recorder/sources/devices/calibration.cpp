@@ -5,9 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <ctime>
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-#include <Eigen/SVD>
 #include <iterator>
 #include <numeric>
 #include <utility>
@@ -16,6 +13,7 @@
 #include "recorder/base/errors.h"
 #include "recorder/base/files.h"
 #include "recorder/base/record_json.h"
+#include "recorder/sources/devices/dense_solvers.h"
 #include "recorder/sources/devices/mouse_device.h"
 #include "recorder/sources/pointing.h"
 
@@ -296,6 +294,22 @@ std::vector<DeviceSample> samplesIn(const DeviceScript& stream, Hand hand, const
   return out;
 }
 
+namespace {
+
+/// The form whose largest value is taken by the quaternion w, x, y, z that turns measured into true directions best
+/// (Horn, J. Opt. Soc. Am. A 4 (1987) 629). @param c sum of true times measured directions
+Eigen::Matrix4d rotationForm(const Mat3& c) {
+  const Vec3 turned(c(2, 1) - c(1, 2), c(0, 2) - c(2, 0), c(1, 0) - c(0, 1));
+  Eigen::Matrix4d out;
+  out(0, 0) = c.trace();
+  out.block<1, 3>(0, 1) = turned.transpose();
+  out.block<3, 1>(1, 0) = turned;
+  out.block<3, 3>(1, 1) = c + c.transpose() - c.trace() * Mat3::Identity();
+  return out;
+}
+
+}  // namespace
+
 std::optional<PivotFit> fitPivot(std::span<const DeviceSample> samples) {
   if (samples.size() < fewestPoses) return std::nullopt;
   const auto n = static_cast<double>(samples.size());
@@ -313,9 +327,8 @@ std::optional<PivotFit> fitPivot(std::span<const DeviceSample> samples) {
     right.head<3>() -= r.transpose() * t / n;
     right.tail<3>() += t / n;
   }
-  const Eigen::SelfAdjointEigenSolver<Mat6> values(normal, Eigen::EigenvaluesOnly);
-  if (!(values.eigenvalues()[0] >= minTurn)) return std::nullopt;
-  const Vec6 solution = normal.ldlt().solve(right);
+  if (!(eigenOf(normal).values[0] >= minTurn)) return std::nullopt;
+  const Vec6 solution = solved(normal, right);
   PivotFit fit;
   fit.tipOffset = solution.head<3>();
   fit.pivot = solution.tail<3>() + middle;
@@ -340,14 +353,14 @@ std::optional<StrokeFit> fitStrokes(const std::array<Vec3, 3>& strokes, double l
   }
   if (!(longest > 0.0) || shortest < 0.1 * longest) return std::nullopt;
   if (!(covariance.determinant() > 0.0)) return std::nullopt;  // mirrored
-  const Eigen::JacobiSVD<Mat3> svd(covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Mat3 rotation = svd.matrixU() * svd.matrixV().transpose();
-  if (!(rotation.determinant() > 0.0)) return std::nullopt;
+  const SymmetricEigen best = eigenOf(rotationForm(covariance));
+  const Eigen::Vector4d q = best.vectors.col(3);
+  const Mat3 rotation = Quat(q[0], q[1], q[2], q[3]).toRotationMatrix();
   StrokeFit fit;
   fit.axes = quaternionOf(rotation);
   double squares = 0.0;
   for (const Vec3& d : strokes) squares += d.squaredNorm();
-  fit.scale = length * svd.singularValues().sum() / squares;
+  fit.scale = length * best.values[3] / squares;
   for (int i = 0; i < 3; ++i) {
     const Vec3 d = rotation * strokes[static_cast<std::size_t>(i)];
     fit.scaleSpread = std::max(fit.scaleSpread, std::abs(length / d.norm() / fit.scale - 1.0));

@@ -42,6 +42,8 @@ TEST(ReplayWords, SayWhatWasFound) {
   report.error = "structure 0 is called a, and by its scene b";
   EXPECT_EQ(wordsFor(report), "structure 0 is called a, and by its scene b; content chain broken: " + broken);
   report.finding = ReplayFinding::unread;
+  EXPECT_EQ(wordsFor(report), "structure 0 is called a, and by its scene b; content chain broken: " + broken);
+  report.chain.reset();
   EXPECT_EQ(wordsFor(report), "structure 0 is called a, and by its scene b");
   report.finding = ReplayFinding::otherLayout;
   EXPECT_EQ(wordsFor(report), "the recorded digests have other components than this build's State: nothing to compare");

@@ -11,13 +11,16 @@
 
 #include <SQLiteCpp/SQLiteCpp.h>
 
+#include <algorithm>
 #include <array>
 #include <fstream>
 #include <random>
+#include <sstream>
 #include <thread>
 
 #include "analytics/assess.h"
 #include "analytics/cohort/embedded.h"
+#include "analytics/cohort/page_sums.h"
 #include "analytics/cohort/tables.h"
 #include "recorder/base/errors.h"
 #include "tests/analytics/cohort/support/cohort_support.h"
@@ -28,32 +31,12 @@ namespace {
 
 using Access = CohortDatabase::Access;
 using support::attemptOf;
+using support::dump;
 using support::Folder;
 using support::humanAttempt;
+using support::integrity;
 using support::uuidOf;
 using support::valuesOf;
-
-/// Every row of every table, to compare two states of a database.
-std::string dump(const std::string& path) {
-  SQLite::Database db(path, SQLite::OPEN_READONLY);
-  std::string text;
-  SQLite::Statement tables(db, "SELECT name FROM sqlite_master WHERE type = 'table' ORDER BY name");
-  while (tables.executeStep()) {
-    const std::string name = tables.getColumn(0).getString();
-    text += name + "\n";
-    SQLite::Statement rows(db, "SELECT * FROM " + name);
-    while (rows.executeStep()) {
-      for (int c = 0; c < rows.getColumnCount(); ++c) text += rows.getColumn(c).getString() + "|";
-      text += "\n";
-    }
-  }
-  return text;
-}
-
-std::string integrity(const std::string& path) {
-  SQLite::Database db(path, SQLite::OPEN_READONLY);
-  return db.execAndGet("PRAGMA integrity_check").getString();
-}
 
 TEST(CohortDatabase, isMadeWithItsSchema) {
   const Folder folder;
@@ -65,7 +48,7 @@ TEST(CohortDatabase, isMadeWithItsSchema) {
   }
   SQLite::Database raw(path, SQLite::OPEN_READONLY);
   EXPECT_EQ(raw.execAndGet("PRAGMA application_id").getInt(), 0x43616C6F);
-  EXPECT_EQ(raw.execAndGet("PRAGMA journal_mode").getString(), "wal");
+  EXPECT_EQ(raw.execAndGet("PRAGMA journal_mode").getString(), "delete");
   SQLite::Statement tables(raw,
                            "SELECT name, strict FROM pragma_table_list WHERE schema = 'main' AND type = 'table' AND "
                            "name NOT LIKE 'sqlite_%'");
@@ -144,7 +127,7 @@ TEST(CohortDatabase, refusesWhatIsNotItsOwn) {
   }
   const std::string newer = folder.file("newer.db");
   { const CohortDatabase database(newer, Access::create); }
-  { SQLite::Database(newer, SQLite::OPEN_READWRITE).exec("PRAGMA user_version = 99"); }
+  { SQLite::Database(newer, SQLite::OPEN_READWRITE, 0, pageSumLayer()).exec("PRAGMA user_version = 99"); }
   expectFault(ErrorKind::undecided, newer, {"99"}, [&] { CohortDatabase(newer, Access::read); });
   expectFault(ErrorKind::undecided, newer, {"99"}, [&] { CohortDatabase(newer, Access::create); });
   std::vector<std::string> faults;
@@ -190,9 +173,14 @@ TEST(CohortDatabase, truncatedOrOverwrittenFilesAreReportedNotCrashedOn) {
                   error.kind() == ErrorKind::failure)
           << error.what();
     }
-    for (const char* suffix : {"-wal", "-shm"}) std::filesystem::remove(path + suffix);
   }
   EXPECT_GE(errors, 40);
+}
+
+TEST(CohortDatabase, saysWhatTheMachineLacks) {
+  expectDistinct({databaseError(SQLITE_NOMEM, "", "c.db").fault(), databaseError(SQLITE_FULL, "", "c.db").fault(),
+                  databaseError(SQLITE_BUSY, "", "c.db").fault(), databaseError(SQLITE_INTERNAL, "", "c.db").fault()});
+  expectNames(databaseError(SQLITE_NOMEM, "", "c.db").fault(), {"memory"});
 }
 
 TEST(CohortDatabase, keepsEverythingOfAnAttempt) {

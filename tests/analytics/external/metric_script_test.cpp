@@ -87,7 +87,8 @@ TEST(MetricScript, TheSameInputGivesTheSameValue) {
   const MetricScript script(
       writtenScript(folder,
                     "NAME='p95'; VERSION=2; UNIT='m'; BETTER='higher'\nimport numpy as np\n"
-                    "def compute(a): return np.percentile(a.samples['left_position'][:, 0], 95)\n"),
+                    "def compute(a): return np.percentile(a.samples['left_position'][:, 0], 95) + "
+                    "np.nanmax(a.samples['left_jaw']) + a.samples['left_pedal'].sum()\n"),
       {});
   EXPECT_EQ(script.metric()->definition.name, "p95");
   EXPECT_EQ(script.metric()->definition.direction, Direction::higher);
@@ -96,11 +97,13 @@ TEST(MetricScript, TheSameInputGivesTheSameValue) {
   for (int i = 0; i <= 100; ++i) {
     motion.time.push_back(0.01 * i);
     motion.hand[0].position.emplace_back(0.001 * i, 0.0, 0.0);
+    motion.hand[0].jaw.push_back(i == 7 ? 0.5 : std::numeric_limits<double>::quiet_NaN());
+    motion.hand[0].pedal.push_back(i == 3);
   }
   const TemporaryFolder input = writeMetricInput(motion, recorder::Outcome::completed, "right", "reach");
   const CheckpointValue value = script.compute(input.path());
   ASSERT_TRUE(value.value);
-  EXPECT_NEAR(*value.value, 0.095, 1e-12);
+  EXPECT_NEAR(*value.value, 1.595, 1e-12);
   EXPECT_EQ(value.origin, Origin::external);
   EXPECT_EQ(value, script.compute(input.path()));
 }

@@ -33,12 +33,39 @@ TEST(CsvTable, readsWhatRfc4180Allows) {
   EXPECT_FALSE(table.has("e"));
 }
 
+TEST(CsvTable, readsWhatSpreadsheetsWrite) {
+  const auto same = [](const std::string& text) {
+    SCOPED_TRACE(text);
+    const CsvTable table = parseCsvTable(text, "t.csv");
+    EXPECT_EQ(table.columns, (Cells{"a", "b, c"}));
+    ASSERT_EQ(table.rows.size(), 2U);
+    EXPECT_EQ(table.rows[0].cells, (Cells{"\xC3\xA9", "2.5"}));
+    EXPECT_EQ(table.rows[1].cells, (Cells{"", "3"}));
+  };
+  same("a,\"b, c\",,\n\xC3\xA9,2.5,,\n,3,,\n,,,\n,,,\n");
+  same("sep=;\r\na;b, c\r\n\xC3\xA9;2.5\r\n;3\r\n;\r\n");
+  same("\"sep=|\"\na|b, c\n\xC3\xA9|2.5\n|3\n");
+  same("a\tb, c\n\xC3\xA9\t2.5\n\t3\n");
+  same("a;\"b, c\"\n\xE9;2.5\n;3\n");  // Latin-1
+  std::string wide = "\xFF\xFE";
+  for (const char c : std::string("a\tb, c\r\n\xE9\t2.5\r\n\t3\r\n")) wide += {c, '\0'};
+  same(wide);
+  EXPECT_EQ(parseCsvTable("sep=;\na;b\n1;2\n", "t.csv").rows[0].line, 3U);
+}
+
+TEST(CsvTable, takesADecimalCommaWhereCellsAreSeparatedOtherwise) {
+  EXPECT_EQ(parseCsvTable("a;b\n1,5;2\n", "t.csv").withPoint("1,5"), "1.5");
+  EXPECT_EQ(parseCsvTable("a\tb\n1,5\t2\n", "t.csv").withPoint("1,5"), "1.5");
+  EXPECT_EQ(parseCsvTable("a;b\n1;2\n", "t.csv").withPoint("1.234,5"), "1.234,5");
+  EXPECT_EQ(parseCsvTable("a,b\n1,2\n", "t.csv").withPoint("1,5"), "1,5");
+}
+
 TEST(CsvTable, namesWhereItIsWrong) {
   using enum ErrorKind;
   expectRefused(damaged, "", ": line 1", {"empty"});
   expectRefused(damaged, "\n\n", ": line 1", {"empty"});
   expectRefused(damaged, "a,b\n", ": line 1", {"header", "rows"});
-  expectRefused(damaged, "a\tb\n1\t2\n", ": line 1", {"column", "separator"});
+  expectRefused(damaged, "a|b\n1|2\n", ": line 1", {"column", "separator"});
   expectRefused(damaged, "a,b\n1,2\n1,2,3\n", ": line 3", {"3", "2"});
   expectRefused(damaged, "a,b\n1\n", ": line 2", {"1", "2"});
   expectRefused(damaged, "a,b\n1,\"2\n", ": line 2", {"quote"});

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "analytics/cohort/page_sums.h"
 #include "analytics/report/study_output.h"
 #include "analytics/report/study_protocol.h"
 #include "analytics/statistics/rank_tests.h"
@@ -87,7 +88,7 @@ class ProtocolStudy : public testing::Test {
   /// Registered the day before the attempts. Every one of them comes in now.
   RegisteredProtocol putBefore(const json& text) {
     const Protocol p = protocolOf(text);
-    SQLite::Database raw(path_, SQLite::OPEN_READWRITE);
+    SQLite::Database raw(path_, SQLite::OPEN_READWRITE, 0, pageSumLayer());
     SQLite::Statement insert(raw,
                              "INSERT INTO protocol (name, version, sha256, text, registered_utc, registered_by) VALUES "
                              "(?, ?, ?, ?, '2020-01-01T00:00:00Z', 'me')");
@@ -137,7 +138,8 @@ TEST_F(ProtocolStudy, isExploratoryUnlessRegisteredBeforeTheFirstAttempt) {
 
 TEST_F(ProtocolStudy, attemptsThatCameInBeforeTheRegistrationAreNoPrediction) {
   put(document());  // now, and the clocks of the stations were wrong: they say tomorrow
-  SQLite::Database(path_, SQLite::OPEN_READWRITE).exec("UPDATE attempt SET start_utc = '2999-01-01T00:00:00Z'");
+  SQLite::Database(path_, SQLite::OPEN_READWRITE, 0, pageSumLayer())
+      .exec("UPDATE attempt SET start_utc = '2999-01-01T00:00:00Z'");
   const Study late = study(document());
   EXPECT_EQ(late.heading, "exploratory");
   expectNames(late.protocol->whyExploratory, {uuidOf(0)});

@@ -20,7 +20,7 @@ int main(int count, char** argument) {
     std::fprintf(stderr, "usage: %s TETRAHEDRA [ROUNDS]: 504, 1500, 5040, 10800, 49152 or 202800\n", argument[0]);
     return 2;
   }
-  const HangingBody body = hangingBox(*size, Box::soft);
+  const HangingBody body = hangingBox(*size, HangingBox::soft);
   const calot::SolidModel model = modelOf(body);
   Own least;
   least.hung.seconds = 1e300;

@@ -173,7 +173,7 @@ TEST_F(FilmFile, RefusesWhatNoFilmIs) {
   EXPECT_EQ(kindOf(folder_ / "a.mp4", width, 63, 25), ErrorKind::invalid);
   EXPECT_EQ(kindOf(folder_ / "a.mp4", width, height, 0), ErrorKind::invalid);
   EXPECT_EQ(kindOf(folder_ / "a.mp4", width, height, 121), ErrorKind::invalid);
-  EXPECT_EQ(kindOf(folder_ / "missing" / "a.mp4", width, height, 25), ErrorKind::failure);
+  EXPECT_EQ(kindOf(folder_ / "missing" / "a.mp4", width, height, 25), ErrorKind::invalid);
   EXPECT_EQ(files(), 0);
 }
 

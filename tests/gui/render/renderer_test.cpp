@@ -329,10 +329,10 @@ TEST_F(PngFile, NothingIsLeftBehindWhenItCannotBeWritten) {
   const Image image{2, 2, std::vector<std::uint8_t>(16, 7)};
   std::filesystem::create_directories(folder_ / "taken" / "inside");
   std::string message;
-  EXPECT_EQ(kindOf([&] { writePng(image, folder_ / "taken"); }, &message), ErrorKind::failure);
+  EXPECT_EQ(kindOf([&] { writePng(image, folder_ / "taken"); }, &message), ErrorKind::invalid);
   EXPECT_NE(message.find("taken"), std::string::npos);
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), std::filesystem::directory_iterator()), 1);
-  EXPECT_EQ(kindOf([&] { writePng(image, folder_ / "missing" / "a.png"); }), ErrorKind::failure);
+  EXPECT_EQ(kindOf([&] { writePng(image, folder_ / "missing" / "a.png"); }), ErrorKind::invalid);
   EXPECT_EQ(kindOf([&] { writePng(Image{2, 2, {}}, folder_ / "b.png"); }), ErrorKind::failure);
   EXPECT_FALSE(std::filesystem::exists(folder_ / "b.png"));
 }

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <vector>
 
 #include "recorder/base/errors.h"
 #include "recorder/base/files.h"
@@ -28,8 +29,10 @@ std::optional<Error> refusal(const std::string& text, const SurfaceLimits& limit
 const std::string square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
 TEST(Obj, ReadsTheFormsOfAFace) {
-  for (const char* face : {"f 1 2 3 4", "f 1/1 2/2 3/3 4/4", "f 1//9 2//9 3//9 4//9", "f 1/1/9 2/1/9 3/1/9 4/1/9",
-                           "f -4 -3 -2 -1", "f -4//-1 2 -2/7 4 # and a comment", "  f\t1  2\t3 4  \r"}) {
+  for (const char* face :
+       {"f 1 2 3 4", "f 1/1 2/2 3/3 4/4", "f 1//9 2//9 3//9 4//9", "f 1/1/9 2/1/9 3/1/9 4/1/9", "f -4 -3 -2 -1",
+        "f 1// 2// 3/ 4/5/", "f 1 \\\n2 3\\\r\n 4", "mtllib c:\\a\\\n# \\\nf 1 2 3 4",
+        "f -4//-1 2 -2/7 4 # and a comment", "  f\t1  2\t3 4  \r"}) {
     const TriangleMesh mesh = parse(square + face + "\n");
     ASSERT_EQ(mesh.triangles(), 2) << face;
     EXPECT_EQ(mesh.triangle[0], Index3(0, 1, 2)) << face;
@@ -49,6 +52,30 @@ TEST(Obj, ScalesToMetresAndPassesOverDrawing) {
   EXPECT_THROW(parseLengthUnit("inch"), Error);
 }
 
+TEST(Obj, ConcavePolygonsAreCutInsideThem) {
+  // An arrow: a fan from its first corner lies beside it. Only the corner beside the notch would do.
+  for (const char* face : {"f 1 2 3 4", "f 2 3 4 1", "f 3 4 1 2", "f 4 1 2 3", "f 4 3 2 1"}) {
+    std::vector<std::string> notes;
+    const std::string text = std::string("v 0 0 0\nv 4 0 0\nv 1 1 0\nv 0 4 0\n") + face + "\n";
+    const TriangleMesh mesh =
+        parseSurface(std::as_bytes(std::span(text.data(), text.size())), "t.obj", LengthUnit::metre, {}, &notes);
+    ASSERT_EQ(mesh.triangles(), 2);
+    EXPECT_NEAR(surfaceArea(mesh), 4.0, 1e-15) << face;
+    EXPECT_TRUE(notes.empty());
+  }
+  std::vector<std::string> notes;
+  const std::string bow = "v 0 0 0\nv 2 2 0\nv 2 0 0\nv 0 3 0\nf 1 2 3 4\n";
+  parseSurface(std::as_bytes(std::span(bow.data(), bow.size())), "t.obj", LengthUnit::metre, {}, &notes);
+  ASSERT_EQ(notes.size(), 1U);
+  EXPECT_EQ(notes[0].substr(0, 2), "1 ");
+}
+
+TEST(Obj, VerticesThatAreFarAwayMayBeUnused) {
+  const TriangleMesh mesh = parse("v 1e9 0 0\n" + square + "v 7 7 7\nf 2 3 4\n");
+  ASSERT_EQ(mesh.vertices(), 3);
+  EXPECT_EQ(mesh.triangle[0], Index3(0, 1, 2));
+}
+
 TEST(Obj, FacesMayComeBeforeTheirVertices) { EXPECT_EQ(parse("f 1 2 3\n" + square).triangles(), 1); }
 
 TEST(Obj, RefusesWithTheLine) {
@@ -61,16 +88,14 @@ TEST(Obj, RefusesWithTheLine) {
       {"v 1 2 1e999", "t.obj: line 6", {"\"1e999\""}},
       {"v 1 2 3x", "t.obj: line 6", {"\"3x\""}},
       {"v 1,5 2 3", "t.obj: line 6", {"\"1,5\""}},
-      {"v 1 2 5000", "t.obj: line 6", {"5000"}},
+      {"v 1 2 5000\nf 1 2 5", "t.obj: line 6", {"5000"}},
       {"v 0x10 2 3", "t.obj: line 6", {"\"0x10\""}},
       {"f 1 2 5", "t.obj: line 6", {"5", "4"}},
       {"f 1 2 0", "t.obj: line 6", {"0", "1"}},
       {"f 1 2 -5", "t.obj: line 6", {"-5", "4"}},
       {"f 1 2", "t.obj: line 6", {"2"}},
       {"f", "t.obj: line 6", {"0"}},
-      {"f 1 2 3/", "t.obj: line 6", {"\"\""}},
       {"f 1 2 3/x", "t.obj: line 6", {"\"x\""}},
-      {"f 1 2 3//", "t.obj: line 6", {"\"\""}},
       {"f 1 2 3/1/1/1", "t.obj: line 6", {"\"1/1\""}},
       {"f 1 2 99999999999", "t.obj: line 6", {"\"99999999999\""}},
       {"f 1 2 1.5", "t.obj: line 6", {"\"1.5\""}},

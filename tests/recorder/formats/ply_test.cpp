@@ -194,8 +194,8 @@ TEST(Ply, DamagedBytesAreReadOrRefusedButNeverMore) {
 TEST(SurfaceFile, TheNameSaysTheFormat) {
   const auto bytes = std::as_bytes(std::span(pyramid.data(), pyramid.size()));
   EXPECT_EQ(parseSurface(bytes, "a/b.PLY", LengthUnit::metre).triangles(), 6);
-  EXPECT_TRUE(isSurfaceName("x.Stl") && isSurfaceName("x.obj"));
-  for (const char* name : {"x.vtk", "ply", "", "x.ply.gz"}) EXPECT_FALSE(isSurfaceName(name)) << name;
+  EXPECT_EQ(surfaceNameFault("x.Stl") + surfaceNameFault("x.obj") + surfaceNameFault("x.OFF"), "");
+  for (const char* name : {"x.vtk", "ply", "", "x.ply.gz"}) EXPECT_NE(surfaceNameFault(name), "") << name;
   EXPECT_THROW(parseSurface(bytes, "x.vtk", LengthUnit::metre), Error);
   EXPECT_THROW(parseSurface(bytes, "x.stl", LengthUnit::metre), Error);
 }

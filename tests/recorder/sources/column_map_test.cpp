@@ -105,6 +105,24 @@ TEST(CsvMotion, aMatrixARateAndAnotherDelimiter) {
   expectFault(ErrorKind::damaged, "m.csv: line 3", {"2", "0.001"}, motionFault(mirrored, map));
 }
 
+TEST(CsvMotion, jawsAndPedalsMayBeMissingAlone) {
+  json map = validMap();
+  map["right"]["jaw"] = "note";
+  map["left"]["pedal"] = "qz";
+  const TrackedMotion m =
+      parseCsvMotion(bytesOf(names + "0.5,1000,10,20,30,1,0,0,0,-1,-2,-3\n,1010,11,20,30,0.8,0.6,0,0,-1,-2,-4\n" +
+                             "-0.1,1020,11,20,30,0,0,0,1,-1,-2,-4\n"),
+                     "m.csv", mapOf(map));
+  ASSERT_EQ(m.hand[1].jaw.size(), 3U);
+  EXPECT_EQ(m.hand[1].jaw[0], 0.5);
+  EXPECT_TRUE(std::isnan(m.hand[1].jaw[1]));
+  EXPECT_EQ(m.hand[1].jaw[2], -0.1);
+  EXPECT_FALSE(m.hand[1].isMissing(1));
+  EXPECT_EQ(m.hand[0].pedal, (std::vector<bool>{false, false, true}));
+  EXPECT_TRUE(m.hand[0].jaw.empty());
+  expectFault(ErrorKind::damaged, "m.csv: line 2: column \"note\"", {"\"a\""}, motionFault(names + rowA + rowB, map));
+}
+
 TEST(CsvMotion, everyFaultIsNamedWithItsLine) {
   EXPECT_FALSE(motionFault(names + rowA + rowB));
   expectFault(ErrorKind::damaged, "m.csv", {}, motionFault(""));

@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <optional>
 #include <sstream>
 
@@ -14,6 +12,7 @@
 #include "recorder/sources/devices/camera/frame_source.h"
 #include "recorder/sources/devices/camera/lens_calibration.h"
 #include "recorder/sources/devices/camera/marker_sheets.h"
+#include "recorder/sources/devices/dense_solvers.h"
 
 namespace calot::recorder {
 namespace {
@@ -148,10 +147,9 @@ std::optional<Trocar> fitTrocar(std::span<const DeviceSample> samples) {
     normal += across / n;
     right += across * s.position / n;
   }
-  if (!(Eigen::SelfAdjointEigenSolver<Mat3>(normal, Eigen::EigenvaluesOnly).eigenvalues()[0] >= fewestSpread))
-    return std::nullopt;
+  if (!(eigenOf(normal).values[0] >= fewestSpread)) return std::nullopt;
   Trocar out;
-  out.point = normal.ldlt().solve(right);
+  out.point = solved(normal, right);
   double squares = 0.0;
   for (const DeviceSample& s : samples) {
     const Vec3 shaft = s.orientation * Vec3::UnitZ();

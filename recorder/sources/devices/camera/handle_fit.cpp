@@ -3,11 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 #include <limits>
 
+#include "recorder/sources/devices/dense_solvers.h"
 #include "recorder/sources/pointing.h"
 
 namespace calot::recorder {
@@ -112,7 +110,7 @@ std::optional<PoseFit> fitPose(const CameraRig& rig, std::span<const CornerSight
   for (int round = 0; round < mostRounds; ++round) {
     Normal6 damped = here.normal;
     damped.diagonal() += damping * here.normal.diagonal();
-    const Pose6 step = -damped.ldlt().solve(here.gradient);
+    const Pose6 step = -solved(damped, here.gradient);
     if (!step.allFinite()) return std::nullopt;
     const Pose next = moved(pose, step);
     Linearised there;
@@ -131,11 +129,11 @@ std::optional<PoseFit> fitPose(const CameraRig& rig, std::span<const CornerSight
   out.pose = pose;
   out.cost = here.cost;
   out.residual = std::sqrt(here.squares / static_cast<double>(corners.size()));
-  const Eigen::FullPivLU<Eigen::MatrixXd> inverse(here.normal);  // unrolled it takes seconds to compile
-  if (!inverse.isInvertible()) return std::nullopt;
-  const Mat3 covariance = inverse.inverse().topLeftCorner<3, 3>();
+  const SymmetricEigen normal = eigenOf(here.normal);
+  if (!(normal.values[0] > 1e-15 * normal.values[5])) return std::nullopt;
+  const Eigen::MatrixXd covariance = inverseOf(here.normal).topLeftCorner(3, 3);
   const double noise = std::max(cornerSigma, out.residual / std::sqrt(2.0));
-  const double largest = Eigen::SelfAdjointEigenSolver<Mat3>(covariance, Eigen::EigenvaluesOnly).eigenvalues()[2];
+  const double largest = eigenOf(covariance).values[2];
   out.uncertainty = noise * std::sqrt(std::max(0.0, largest));
   return out;
 }
@@ -159,7 +157,7 @@ std::vector<Pose> posesOfSquare(const CameraRig& rig, std::span<const CornerSigh
     equations.block<1, 2>(2 * i + 1, 6) = -c.direction.y() * at.head<2>();
     seen.segment<2>(2 * i) = c.direction;
   }
-  const Eigen::VectorXd h = equations.partialPivLu().solve(seen);
+  const Eigen::VectorXd h = solved(equations, seen);
   Mat3 homography;
   homography << h[0], h[1], h[2], h[3], h[4], h[5], h[6], h[7], 1.0;
   const double size = 0.5 * (homography.col(0).norm() + homography.col(1).norm());

@@ -4,9 +4,6 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
-#include <Eigen/SVD>
 #include <functional>
 #include <map>
 #include <optional>
@@ -15,6 +12,7 @@
 #include "recorder/base/errors.h"
 #include "recorder/sources/devices/camera/handle_tracker.h"
 #include "recorder/sources/devices/camera/marker_sheets.h"
+#include "recorder/sources/devices/dense_solvers.h"
 #include "recorder/sources/pointing.h"
 
 namespace calot::recorder {
@@ -54,8 +52,7 @@ Mat3 homographyOf(const BoardCorners& corners, const Eigen::Vector2d& middle, do
     equations.block<1, 3>(row + 1, 3) = at;
     equations.block<1, 3>(row + 1, 6) = -seen.y() * at;
   }
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(equations, Eigen::ComputeThinV);
-  const Eigen::VectorXd h = svd.matrixV().col(8);
+  const Eigen::VectorXd h = eigenOf(equations.transpose() * equations).vectors.col(0);
   Mat3 out;
   out << h[0], h[1], h[2], h[3], h[4], h[5], h[6], h[7], h[8];
   if (out(2, 2) < 0.0) out = -out;
@@ -170,7 +167,7 @@ BlockSolution solveBlocks(BlockProblem& problem) {
       Eigen::MatrixXd matrix = system.matrix;
       matrix.diagonal() *= 1.0 + damping;
       BlockProblem next = problem;
-      next.unknowns -= matrix.ldlt().solve(system.gradient);
+      next.unknowns -= solved(matrix, system.gradient);
       const double cost = costOf(next);
       if (std::isfinite(cost) && cost <= system.cost) {
         out.converged = system.cost - cost <= 1e-10 * (1.0 + system.cost);
@@ -189,7 +186,7 @@ BlockSolution solveBlocks(BlockProblem& problem) {
   if (!std::isfinite(system.cost) || system.count == 0) return {};
   out.residual = std::sqrt(2.0 * system.cost / static_cast<double>(system.count));  // of points: two residuals each
   const Eigen::Index freedom = std::max<Eigen::Index>(1, system.count - problem.unknowns.size());
-  const Eigen::MatrixXd covariance = system.cost / static_cast<double>(freedom) * system.matrix.inverse();
+  const Eigen::MatrixXd covariance = system.cost / static_cast<double>(freedom) * inverseOf(system.matrix);
   out.uncertainty = covariance.diagonal().head(problem.step.size()).cwiseMax(0.0).cwiseSqrt();
   return out;
 }

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <fmt/format.h>
+#include <SQLiteCpp/SQLiteCpp.h>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -96,6 +97,29 @@ inline std::vector<CheckpointValue> valuesOf(double seconds, double left) {
           makeValue(*findCheckpoint("path-length"), "left", Origin::samples, left),
           makeMissing(*findCheckpoint("path-length"), "right", Origin::samples, Availability::notApplicable,
                       "no instrument in this hand")};
+}
+
+/// Every row of every table, to compare two states of a database.
+inline std::string dump(const std::string& path) {
+  SQLite::Database db(path, SQLite::OPEN_READONLY);
+  std::string text;
+  SQLite::Statement tables(db, "SELECT name FROM sqlite_master WHERE type = 'table' ORDER BY name");
+  while (tables.executeStep()) {
+    const std::string name = tables.getColumn(0).getString();
+    text += name + "\n";
+    SQLite::Statement rows(db, "SELECT * FROM " + name);
+    while (rows.executeStep()) {
+      for (int c = 0; c < rows.getColumnCount(); ++c) text += rows.getColumn(c).getString() + "|";
+      text += "\n";
+    }
+  }
+  return text;
+}
+
+/// What SQLite says of it.
+inline std::string integrity(const std::string& path) {
+  SQLite::Database db(path, SQLite::OPEN_READONLY);
+  return db.execAndGet("PRAGMA integrity_check").getString();
 }
 
 }  // namespace calot::analytics::support

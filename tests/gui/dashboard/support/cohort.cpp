@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <vector>
@@ -70,9 +71,12 @@ void makeLargeCohort(const std::string& path, int attempts) {
                                    1 + i / 3 % 28, i % 24, i % 60, i / 24 % 60);
     std::vector<analytics::CheckpointValue> values;
     values.reserve(figures);
-    for (std::size_t f = 0; f < std::min(figures, registry.size()); ++f)
+    for (std::size_t f = 0; f < std::min(figures, registry.size()); ++f) {
+      const double value = 1.0 + 0.3 * (i % 2) + next();
+      const bool count = registry[f].definition.domain == analytics::Domain::whole;
       values.push_back(analytics::makeValue(registry[f].definition, "", analytics::Origin::observables,
-                                            1.0 + 0.3 * (i % 2) + next()));
+                                            count ? std::floor(value) : value));
+    }
     database.storeAttempt(attempt, values);
   }
 }

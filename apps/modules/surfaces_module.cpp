@@ -1,0 +1,7 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "apps/modules/module.h"
+
+extern "C" const calot::apps::Module* calotModule() {
+  static constexpr calot::apps::SurfaceModule table{{CALOT_MODULE_BUILD}, calot::recorder::uniteSurfaces};
+  return &table;
+}

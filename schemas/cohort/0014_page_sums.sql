@@ -1,0 +1,3 @@
+-- SPDX-License-Identifier: GPL-3.0-or-later
+-- No table changes: from this schema on each page of the file ends with a checksum (docs/reference/cohort.md, "Pages"), which a
+-- program of an earlier schema would not write.
