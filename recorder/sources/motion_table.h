@@ -47,7 +47,7 @@ class MotionTable {
  public:
   enum class Cell { number, missing, fault };
 
-  /// Finds the line of names. @param bytes, `file` and `wanted` outlive the table. @param wanted names of columns
+  /// Finds the line of names. The bytes, `file` and `wanted` outlive the table. @param wanted names of columns
   /// @throws Error (damaged) naming file and line: no such column, or more than one
   MotionTable(std::span<const std::byte> bytes, const std::string& file, const TableStyle& style,
               std::span<const std::string> wanted);
