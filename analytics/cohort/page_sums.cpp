@@ -113,7 +113,7 @@ int markFirstPage(sqlite3_file* f, bool writing) {
   SummedFile& file = of(f);
   std::vector<unsigned char> page(static_cast<std::size_t>(file.pageSize));
   const int code = passed<&sqlite3_io_methods::xRead>(f, static_cast<void*>(page.data()), file.pageSize, 0);
-  if (code == SQLITE_IOERR_SHORT_READ) return SQLITE_OK;  // there is none yet
+  if (code == SQLITE_IOERR_SHORT_READ) return SQLITE_OK;  // an empty file
   if (code != SQLITE_OK) return code;
   const Sum sum = sumOf(page.data(), file.pageSize, 0);
   file.writing = writing;

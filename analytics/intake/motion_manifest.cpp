@@ -86,7 +86,7 @@ class Reader {
   }
 
  private:
-  /// A date as ISO 8601 has it; nothing happens where there is none.
+  /// Rewrites a date as ISO 8601; an empty cell stays.
   void readDate(const CsvRow& row, const char* column, decltype(recorder::readDay)& read, std::string& date) const {
     try {
       if (!date.empty()) date = read(date, dates_);

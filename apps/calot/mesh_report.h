@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What `calot mesh` says of a surface, and of what it made of it.
+// The report of `calot mesh`: the surface as it was read, and what was made of it.
 #pragma once
 
 #include <string>

@@ -88,7 +88,7 @@ class PlanePolygon {
   [[nodiscard]] bool samePlace(int a, int b) const { return !lower(a, b) && !lower(b, a); }
 
   /// The corner of the ring in the triangle of the last, first and second corners, or on its sides, that is farthest
-  /// from the line that would cut the first one off; 0: there is none.
+  /// from the line that would cut the first one off; 0 for none.
   [[nodiscard]] std::size_t inTheWay(const std::vector<int>& ring) const {
     const int before = ring.back(), tip = ring[0], after = ring[1];
     const bool flat = !(turn(before, tip, after) > 0.0);

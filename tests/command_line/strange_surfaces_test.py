@@ -232,7 +232,7 @@ class Surfaces(program.ProgramTest):
                         self.assertBody(self.mend(name, form(together(*surfaces))), 9.0, words=("2 parts that overlap were joined", "10 mL together, 9 mL"))
         two = obj(together(ellipsoid(), ellipsoid(60)))
         said = self.mend("two.obj", two, "--tetrahedra", 1000, "-o", self.path("two.vtk"))
-        # Of two smooth ellipsoids of 100.53 mL less twice a cap of a quarter of the radius.
+        # Two smooth ellipsoids of 100.53 mL, less twice a cap that is a quarter of the radius high.
         self.assertBody(said, 2 * (32 - 0.25**2 * 2.75 * 8) * math.pi, words=("200.3 mL together", "191.7 mL as one body"), delta=0.005)
         self.assertAlmostEqual(1e6 * said["surface_volume_m3"], said["volume"], delta=1e-6)
         self.assertLess(said["volume_error"], 0.01)

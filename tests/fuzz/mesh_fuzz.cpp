@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A surface: the first byte says of which format, and whether it is mended, too.
+// A surface: the first byte chooses the format, and whether it is mended.
 #include <array>
 
 #include "recorder/formats/surface_bytes.h"

@@ -116,7 +116,7 @@ inline std::string dump(const std::string& path) {
   return text;
 }
 
-/// What SQLite says of it.
+/// The answer of SQLite's own check.
 inline std::string integrity(const std::string& path) {
   SQLite::Database db(path, SQLite::OPEN_READONLY);
   return db.execAndGet("PRAGMA integrity_check").getString();
