@@ -3,7 +3,6 @@
 #include "analytics/assess.h"
 
 #include <fmt/format.h>
-#include <sodium.h>
 #include <algorithm>
 #include <array>
 #include <cassert>
@@ -166,8 +165,7 @@ namespace {
 
 std::array<std::byte, 32> bytesOf(const std::string& hexadecimal) {
   std::array<std::byte, 32> bytes{};
-  sodium_hex2bin(reinterpret_cast<unsigned char*>(bytes.data()), bytes.size(), hexadecimal.data(), hexadecimal.size(),
-                 nullptr, nullptr, nullptr);
+  recorder::readHex(hexadecimal, bytes);
   return bytes;
 }
 

@@ -84,7 +84,7 @@ and stations, and the bill of materials.")
 calot_package(development NAME libcalot-dev SECTION libdevel SUMMARY "headers and static libraries of Calot"
   TEXT "${calot_about}This package has headers, static libraries and a CMake package: simulation,
 recorder and analytics for programs of one's own."
-  DEPENDS "libboost-dev, libeigen3-dev (>= 3.4), libfmt-dev, libhdf5-dev, libsodium-dev, libspdlog-dev, libsqlite3-dev, libsqlitecpp-dev, libutf8proc-dev, libxxhash-dev, nlohmann-json3-dev, pkg-config")
+  DEPENDS "libboost-dev, libeigen3-dev (>= 3.4), libfmt-dev, libhdf5-dev, libsodium-dev, libspdlog-dev, libsqlite3-dev, libsqlitecpp-dev, libssl-dev, libutf8proc-dev, libxxhash-dev, nlohmann-json3-dev, pkg-config")
 if(TARGET calot_python)
   calot_package(python NAME python3-calot SECTION python SUMMARY "Python module of Calot"
     TEXT "${calot_about}This package has the module for Python 3."

@@ -43,7 +43,7 @@ one() {
   fi
   if [[ -f $folder/cohort.db && $assessed -nt $recording && $assessed -nt $calot ]]; then
     echo "$name: $made, assessed before"
-  elif "$calot" assess "$recording" --cohort "$folder/cohort.db" >"$recording.log" 2>&1; then
+  elif "$calot" assess "$recording" --threads "$jobs" --cohort "$folder/cohort.db" >"$recording.log" 2>&1; then
     rm -f "$recording.log"
     touch "$assessed"
     echo "$name: $made, assessed"
@@ -52,7 +52,7 @@ one() {
   fi
 }
 export -f one
-export root folder scene calot
+export root folder scene calot jobs
 
 total=$((count * ${#profiles[@]}))
 say "$total attempts at $scene, $jobs at once, in $folder (each is re-simulated as it is assessed)"

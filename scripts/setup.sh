@@ -10,7 +10,7 @@ set -euo pipefail
 
 demo=(
   cmake ninja-build g++ pkg-config git ca-certificates
-  libeigen3-dev libxxhash-dev libhdf5-dev libsodium-dev libutf8proc-dev libsqlite3-dev libsqlitecpp-dev libboost-dev
+  libeigen3-dev libxxhash-dev libhdf5-dev libsodium-dev libssl-dev libutf8proc-dev libsqlite3-dev libsqlitecpp-dev libboost-dev
   nlohmann-json3-dev libfmt-dev libspdlog-dev libcli11-dev libpng-dev libosmesa6-dev libegl-dev libfreetype-dev
   libseccomp-dev fonts-dejavu-core python3 python3-h5py
   # Optional, but whoever adds it later links the programs anew.

@@ -120,7 +120,7 @@ void rebuild(SQLite::Database& db, const std::string& path) {
   } catch (const SQLite::Exception& error) {
     if (isBusy(error))
       throw Error(ErrorKind::failure, Where{path},
-                  "another program reads it, so that what was deleted cannot be overwritten", {Remedy::emptyLog});
+                  "another program reads it, so that what was deleted cannot be overwritten", {Remedy::endReader});
     throw;
   }
 }

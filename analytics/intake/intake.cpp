@@ -142,8 +142,9 @@ std::optional<IntakeItem> Intake::take(const Candidate& c, IntakeRest& rest, con
     ++rest.growing;
     return std::nullopt;
   }
-  CohortDatabase database(settings_.cohort, CohortDatabase::Access::create);
-  if (isVerified(database, identity))
+  std::error_code ignored;
+  if (std::filesystem::exists(settings_.cohort, ignored) &&
+      isVerified(CohortDatabase(settings_.cohort, CohortDatabase::Access::read), identity))
     return IntakeItem{.file = c.file, .how = TakenIn::known, .attempt = identity.attempt};
   JudgedRecording judged;
   try {
@@ -166,7 +167,8 @@ std::optional<IntakeItem> Intake::take(const Candidate& c, IntakeRest& rest, con
     item.fault = Error(ErrorKind::damaged, Where{c.file}, wordsFor(item.judged.report), item.judged.report.remedies);
     return item;
   }
-  const Imported imported = database.storeAttempt(*item.judged.record, item.judged.values);
+  const Imported imported = CohortDatabase(settings_.cohort, CohortDatabase::Access::create)
+                                .storeAttempt(*item.judged.record, item.judged.values);
   item.how = imported == Imported::added      ? TakenIn::added
              : imported == Imported::extended ? TakenIn::extended
                                               : TakenIn::unchanged;

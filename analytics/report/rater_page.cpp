@@ -3,12 +3,12 @@
 #include "analytics/report/rater_page.h"
 
 #include <fmt/format.h>
-#include <sodium.h>
-#include <array>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <string_view>
 
 #include "analytics/report/report_document.h"
+#include "recorder/base/files.h"
 
 namespace calot::analytics {
 namespace {
@@ -17,11 +17,7 @@ using Json = nlohmann::ordered_json;
 
 /// "sha256-...", as a content security policy names what it lets run.
 std::string policyDigest(std::string_view text) {
-  std::array<unsigned char, crypto_hash_sha256_BYTES> digest{};
-  crypto_hash_sha256(digest.data(), reinterpret_cast<const unsigned char*>(text.data()), text.size());
-  std::array<char, sodium_base64_ENCODED_LEN(crypto_hash_sha256_BYTES, sodium_base64_VARIANT_ORIGINAL)> encoded{};
-  sodium_bin2base64(encoded.data(), encoded.size(), digest.data(), digest.size(), sodium_base64_VARIANT_ORIGINAL);
-  return std::string("sha256-") + encoded.data();
+  return "sha256-" + recorder::base64(recorder::sha256(std::as_bytes(std::span(text))));
 }
 
 /// Data within a page: no "</script>" can end it early.

@@ -141,10 +141,15 @@ void record(const RecordOptions& o) {
   const recorder::AttemptHeader header =
       recorder::makeHeader(model, std::move(scene.assets), source->provenance(),
                            {o.participant, stationOf(o.station, key), o.purpose, o.handedness, who.mode, o.seed});
-  recorder::RecordingWriter writer(o.output, header, {o.force, std::move(key)});
-  warnUnlocked(writer, o.output);
   recorder::WorkerPool pool(o.threads);
   recorder::Session session(model, o.seed, pool, prepared->services(broadPhaseOf(o.broadPhase)));
+  const auto stopped = [&] {
+    return Error(ErrorKind::failure, Where{o.output}, "stopped before its first step: nothing was recorded");
+  };
+  if (stopRequested()) throw stopped();
+  // From here on --force has replaced what was there.
+  recorder::RecordingWriter writer(o.output, header, {o.force, std::move(key)});
+  warnUnlocked(writer, o.output);
   session.join(writer);
   Progress progress("recording, seconds", o.json);
   recorder::RunSettings run{.seconds = o.seconds, .paced = o.paced, .live = o.live, .stop = &stopRequested()};
@@ -160,8 +165,7 @@ void record(const RecordOptions& o) {
   writer.finish();
   prepared->save();
   Progress::erase();
-  if (report.steps == 0 && report.outcome == recorder::Outcome::stopped)
-    throw Error(ErrorKind::failure, Where{o.output}, "stopped before its first step: nothing was recorded");
+  if (report.steps == 0 && report.outcome == recorder::Outcome::stopped) throw stopped();
   if (!o.json) printDevice(*source);
   reportRun({header.attempt, o.output, stepSeconds, report, source->statusText(), run.paced || o.live, o.live}, o.json);
 }

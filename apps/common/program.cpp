@@ -3,12 +3,16 @@
 #include "apps/common/program.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <CLI/CLI.hpp>
+#include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <iostream>
 #include <new>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <system_error>
 #include <utility>
 
 #include "recorder/base/remedy_words.h"
@@ -111,13 +115,35 @@ int endWith(ExitCode code, const std::string& program, const std::string& messag
   return static_cast<int>(code);
 }
 
+namespace {
+
+constexpr const char* noMemory = "not enough memory";
+
+/// Memory may end in a thread, or where nothing may throw.
+[[noreturn]] void endUncaught() {
+  try {
+    if (const std::exception_ptr e = std::current_exception()) std::rethrow_exception(e);
+  } catch (const std::bad_alloc&) {
+    std::fprintf(stderr, "%s: %s\n", program_invocation_short_name, noMemory);
+    std::_Exit(static_cast<int>(ExitCode::failure));
+  } catch (...) {  // a fault of the program
+  }
+  std::abort();
+}
+
+}  // namespace
+
 int runProgram(const std::string& program, const std::function<int()>& body) {
+  std::set_terminate(endUncaught);
   try {
     return body();
   } catch (const Error& e) {
     return endWith(codeOf(e.kind()), program, messageOf(e));
   } catch (const std::bad_alloc&) {
-    return endWith(ExitCode::failure, program, "not enough memory");
+    return endWith(ExitCode::failure, program, noMemory);
+  } catch (const std::system_error& e) {
+    const bool thread = e.code() == std::errc::resource_unavailable_try_again;
+    return endWith(ExitCode::failure, program, thread ? noMemory : e.what());
   } catch (const std::exception& e) {
     return endWith(ExitCode::failure, program, e.what());
   }

@@ -89,7 +89,8 @@ QString resultText(const TrainingStatus& status) {
   const bool why = status.report.outcome == recorder::Outcome::abandoned && !status.undone.empty();
   text += why ? ": " + QString::fromStdString(status.undone) + '.' : QString('.');
   if (!status.parent.empty()) text += QString("\nA branch, from %1 on.").arg(clockText(status.branchedAt));
-  return text + "\nRecorded in " + QString::fromStdString(status.file.string());
+  text += "\nRecorded in " + QString::fromStdString(status.file.string());
+  return status.locked ? text : text + ", without a lock, which its file system does not grant";
 }
 
 QString pointerText(const TrainingStatus& status, recorder::Mode mode, Pointer pointer) {

@@ -313,6 +313,7 @@ void TrainingSession::run(recorder::Session& session, recorder::SampleSource& so
       monitor_ = &monitor;
       status_.stage = Stage::running;
       status_.file = file;
+      status_.locked = writer.locked();
       status_.attempt = header.attempt;
       status_.parent = header.parent;
       status_.branchedAt = static_cast<double>(header.forkStep + 1) * session.model().stepSeconds();

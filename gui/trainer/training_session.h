@@ -91,6 +91,7 @@ struct TrainingStatus {
   bool waiting = false;         ///< it runs and no step has come for half a second: the device is gone
   std::string problem;          ///< why it could not go on, in one line; or empty
   std::filesystem::path file;   ///< of the attempt; empty before there is one
+  bool locked = true;           ///< its file system granted a lock
   std::string attempt, parent;  ///< uuids; parent empty unless it is a branch
   double branchedAt = 0.0;      ///< where a branch left its parent (s)
   recorder::OperatorKind operatorKind = recorder::OperatorKind::human;

@@ -16,7 +16,7 @@ constexpr std::pair<Remedy, const char*> advice[] = {
     {Remedy::measureCalibration, "measure its calibration again"},
     {Remedy::addParticipant, "add the participant first"},
     {Remedy::upgradeCohort, "open it alone, which brings it there and keeps a copy"},
-    {Remedy::emptyLog, "end that program"},
+    {Remedy::endReader, "end that program"},
     {Remedy::importAgain, "import its file again"},
     {Remedy::assessAgain, "import the older recordings again"},
     {Remedy::chooseKey, "choose one scene, device and version"},

@@ -32,7 +32,7 @@ enum class Remedy : std::uint8_t {
   addParticipant,         ///< register the participant first
   changeParticipant,      ///< change the entry that is there
   upgradeCohort,          ///< bring the cohort database to the schema of this version
-  emptyLog,               ///< end the other program, then empty the database's log
+  endReader,              ///< end the other program, then overwrite what was deleted
   nameCohort,             ///< make the named cohort
   importAgain,            ///< import the file of a motion again
   rateAttempts,           ///< rate attempts with the form

@@ -3,6 +3,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <openssl/sha.h>  // the processor's own instructions: four times as fast as libsodium
 #include <sodium.h>
 #include <stdio.h>
 #include <sys/stat.h>
@@ -64,11 +65,14 @@ bool readHex(std::string_view text, std::span<std::byte> out) {
          written == out.size();
 }
 
-std::string sha256Hex(std::span<const std::byte> bytes) {
-  std::array<unsigned char, crypto_hash_sha256_BYTES> hash{};
-  crypto_hash_sha256(hash.data(), reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size());
-  return hexOf(hash);
+std::array<std::byte, 32> sha256(std::span<const std::byte> bytes) {
+  std::array<std::byte, SHA256_DIGEST_LENGTH> hash{};
+  SHA256(reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size(),
+         reinterpret_cast<unsigned char*>(hash.data()));
+  return hash;
 }
+
+std::string sha256Hex(std::span<const std::byte> bytes) { return hexOf(sha256(bytes)); }
 
 std::string base64(std::span<const std::byte> bytes) {
   std::string text(sodium_base64_ENCODED_LEN(bytes.size(), sodium_base64_VARIANT_ORIGINAL), '\0');

@@ -2,6 +2,7 @@
 // Files: whole ones read and written, those that only their owner may read, and where Calot's own are.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <filesystem>
 #include <map>
@@ -48,7 +49,9 @@ std::string hexOf(const Range& bytes) {
 /// @return false unless the text is as many bytes in hexadecimal
 bool readHex(std::string_view text, std::span<std::byte> out);
 
-/// SHA-256 of bytes (FIPS 180-4) in lower-case hexadecimal, 64 characters.
+/// SHA-256 of bytes (FIPS 180-4).
+std::array<std::byte, 32> sha256(std::span<const std::byte> bytes);
+/// In lower-case hexadecimal, 64 characters.
 std::string sha256Hex(std::span<const std::byte> bytes);
 
 /// Bytes as base64 (RFC 4648, with padding).

@@ -26,7 +26,7 @@ inline constexpr RemedyWords remedyCommands[] = {
     {Remedy::addParticipant, "register one with calot participant add"},
     {Remedy::changeParticipant, "change it with calot participant set"},
     {Remedy::upgradeCohort, "bring it there with calot cohort upgrade, which keeps a copy"},
-    {Remedy::emptyLog, "end that program and run calot cohort scrub"},
+    {Remedy::endReader, "end that program and run calot cohort scrub"},
     {Remedy::nameCohort, "make one with calot cohort name"},
     {Remedy::importAgain, "run calot import on its file"},
     {Remedy::rateAttempts, "rate one with calot rate"},

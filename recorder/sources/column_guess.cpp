@@ -7,7 +7,9 @@
 #include <utility>
 
 #include "recorder/base/errors.h"
+#include "recorder/base/files.h"
 #include "recorder/base/text_words.h"
+#include "recorder/recording/demonstrations.h"
 #include "recorder/sources/column_map.h"
 #include "recorder/sources/motion_formats.h"
 #include "recorder/sources/motion_text.h"
@@ -127,6 +129,8 @@ class Guesser {
     map_["frame"] = f_.frame;
     const std::string length = points.empty() ? "" : lengthOf(points.front().x);
     map_["length"] = length.empty() ? leaveOpen("the unit of length") : length;
+    if (const std::string count = stated("@demonstrations"); count != "" && count != "1")
+      map_["demonstration"] = leaveOpen(fmt::format("which of its {} demonstrations", count));
     if (h_.delimiter != ',') map_["delimiter"] = h_.delimiter == ';' ? ";" : "tab";
     putClock();
     putHands(points);
@@ -368,6 +372,7 @@ GuessedMap guessColumns(const std::filesystem::path& file) {
   in.read(begin.data(), static_cast<std::streamsize>(begin.size()));
   begin.resize(static_cast<std::size_t>(in.gcount()));
   if (begin.empty()) throw Error(ErrorKind::damaged, Where{name}, "cannot be read, or is empty");
+  if (isDemonstrations(begin)) return guessColumns(readFileBytes(file, name, maxMotionBytes), name);
   return guessColumns(std::as_bytes(std::span(begin)), name);
 }
 
@@ -383,10 +388,11 @@ ColumnMap recognisedMap(const std::filesystem::path& file) {
 
 GuessedMap guessColumns(std::span<const std::byte> bytes, const std::string& file) {
   using namespace motion_formats;
-  Text text(reinterpret_cast<const char*>(bytes.data()), std::min(bytes.size(), headerBytes));
-  if (bytes.size() > headerBytes) text = text.substr(0, text.rfind('\n') + 1);
+  Text text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  if (!isDemonstrations(text) && text.size() > headerBytes)
+    text = text.substr(0, text.substr(0, headerBytes).rfind('\n') + 1);
   std::string converted;
-  text = motionText(bytes.first(text.size()), file, converted);
+  text = motionText(bytes.first(text.size()), file, std::nullopt, converted);
   std::optional<Heading> best;
   for (const char delimiter : {',', ';', '\t'}) {
     std::optional<Heading> heading = headingOf(text, delimiter);

@@ -91,6 +91,8 @@ std::vector<Field> ColumnMap::fields() {
           .items(1, 20),
       optional("skip", at<S, &S::style, &TableStyle::skip>, "", within(0, 40),
                "Lines below the names that are no rows; a line of units is found"),
+      optional("demonstration", at<S, &S::style, &TableStyle::demonstration>, columnName,
+               "Demonstration of a robomimic file that has several: demo_0"),
       optional("rate", at<S, &S::rate>, "Hz", within(1, 100000),
                "Rate of rows, where there is no column of times, or of frames. Either this or time"),
       optional("time", keyGroup<S, timeFields>, "Column of times"),

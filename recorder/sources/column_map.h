@@ -57,6 +57,9 @@ struct ColumnMap {
 ColumnMap readColumnMap(const std::filesystem::path& file);
 ColumnMap parseColumnMap(std::span<const std::byte> bytes, const std::string& file);
 
+/// Largest file of a motion (bytes).
+inline constexpr std::size_t maxMotionBytes = std::size_t{1} << 30U;
+
 /// Reads a CSV file by its map.
 /// @throws Error (damaged) naming the file's base name and the line: as MotionTable; times that do not increase,
 /// or go beyond 1e6 s; positions beyond 5 m; invalid orientations (quaternions of a length off 1 by more than

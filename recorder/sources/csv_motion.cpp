@@ -7,7 +7,6 @@
 
 #include "recorder/base/errors.h"
 #include "recorder/base/files.h"
-#include "recorder/base/hash_beside.h"
 #include "recorder/base/text_words.h"
 #include "recorder/sources/column_map.h"
 #include "recorder/sources/pose_checks.h"
@@ -16,7 +15,6 @@
 namespace calot::recorder {
 namespace {
 
-constexpr std::size_t maxMotionBytes = std::size_t{1} << 30U;
 constexpr double maxMotion = 1e6;  // s
 constexpr double unitLength = 1e-2;
 constexpr std::size_t noPlace = static_cast<std::size_t>(-1);
@@ -71,8 +69,9 @@ class HandReader {
  private:
   bool numbers(MotionTable& table, std::size_t first, std::size_t count, std::array<double, 9>& values) const {
     bool measured = true;
-    std::string fault;
     for (std::size_t i = 0; i < count; ++i) {
+      if (table.plainNumber(first + i, values[i])) continue;
+      std::string fault;
       const MotionTable::Cell cell = table.number(first + i, values[i], fault);
       if (cell == MotionTable::Cell::fault) {
         table.fail(fmt::format("column \"{}\": {}", shown(table.name(first + i)), fault));
@@ -145,7 +144,6 @@ TrackedMotion parseCsvMotion(std::span<const std::byte> bytes, const std::string
     motion.hand[h].present = true;
     motion.hand[h].oriented = !columns.orientation.empty();
   }
-  HashBeside hash(bytes);
   MotionTable table(bytes, file, map.style, wanted);
   motion.file = file;
   motion.device = map.device;
@@ -197,7 +195,7 @@ TrackedMotion parseCsvMotion(std::span<const std::byte> bytes, const std::string
       reader.readFurther(table, hand);
     }
   }
-  motion.sha256 = hash.get();
+  motion.sha256 = sha256Hex(bytes);
   const std::size_t rows = motion.time.size();
   if (rows < 2)
     throw Error(ErrorKind::damaged, Where{file}, fmt::format("{}; a motion has at least 2", counted(rows, "row")));

@@ -35,34 +35,36 @@ bool readDigits(std::string_view text, std::int64_t& value) {
   return code == std::errc() && end == text.data() + text.size() && !text.empty() && text.front() != '-';
 }
 
-/// "250" as 0.250. @pre digits
-double readFraction(std::string_view digits) {
-  constexpr std::size_t exact = 15;  // digits and powers of ten that doubles hold: the quotient is the nearest one
-  std::int64_t value = 0;
-  if (digits.empty()) return 0.0;
-  if (digits.size() <= exact && readDigits(digits, value)) {
-    double power = 1.0;
-    for (std::size_t i = 0; i < digits.size(); ++i) power *= 10.0;
-    return static_cast<double>(value) / power;
+/// "250" as 0.250. @return false: other characters than digits
+bool readFraction(std::string_view digits, double& value) {
+  // Digits and powers of ten that doubles hold: the quotient is the nearest one.
+  constexpr std::array<double, 16> powers{1e0, 1e1, 1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
+                                          1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15};
+  std::int64_t whole = 0;
+  value = 0.0;
+  if (digits.empty()) return true;
+  if (digits.size() < powers.size()) {
+    if (!readDigits(digits, whole)) return false;
+    value = static_cast<double>(whole) / powers[digits.size()];
+    return true;
   }
+  if (digits.find_first_not_of("0123456789") != std::string_view::npos) return false;
   std::string fault;
-  return readFiniteNumber("0." + std::string(digits), fault);
+  value = readFiniteNumber("0." + std::string(digits), fault);
+  return true;
 }
 
 }  // namespace
 
 MotionClock::Time MotionClock::number(std::string_view text, std::string& fault) {
-  const std::size_t point = std::min(text.find_first_of(".,"), text.size());
   Time time;
-  if (point < text.size() && text[point] == ',' && text.find('.') != std::string_view::npos) {
-    fault = fmt::format("\"{}\" is not a number", shown(text));
-    return {};
-  }
-  const std::string_view fraction = text.substr(std::min(point + 1, text.size()));
-  if (fraction.find_first_not_of("0123456789") == std::string::npos && readDigits(text.substr(0, point), time.whole)) {
-    time.part = readFraction(fraction);
+  const char* const end = text.data() + text.size();
+  const auto [point, code] = std::from_chars(text.data(), end, time.whole);
+  const bool plain = code == std::errc() && text.front() != '-';
+  if (plain && point == end) return time;
+  if (plain && (*point == '.' || *point == ',') &&
+      readFraction({point + 1, static_cast<std::size_t>(end - point - 1)}, time.part))
     return time;
-  }
   const double value = readFiniteNumber(text, fault);  // signs, exponents
   if (text.find(':') != std::string_view::npos)
     fault += text.find('-') != std::string_view::npos ? "; \"unit\": \"iso\" in the map reads dates"
@@ -91,14 +93,13 @@ MotionClock::Time MotionClock::timeOfDay(std::string_view text, std::string& fau
     }
     rest.remove_prefix(end + 1);
   }
+  double part = 0.0;
   if (count < 3 || !rest.empty() || parts[0] > 23 || parts[1] > 59 || parts[2] > 60 || parts[3] > 999 ||
-      fraction.find_first_not_of("0123456789") != std::string_view::npos) {
+      !readFraction(fraction, part)) {
     fault = fmt::format("\"{}\" is no time of day; 13:05:09.250 or 13:05:09:250 is expected", shown(text));
     return {};
   }
-  Time time{3600 * parts[0] + 60 * parts[1] + parts[2], static_cast<double>(parts[3]) / 1000.0};
-  if (!fraction.empty()) time.part = readFraction(fraction);
-  return time;
+  return {3600 * parts[0] + 60 * parts[1] + parts[2], static_cast<double>(parts[3]) / 1000.0 + part};
 }
 
 MotionClock::Time MotionClock::date(std::string_view text, std::string& fault) const {

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "recorder/base/errors.h"
@@ -35,6 +36,7 @@ struct Hold {
 class HandSamples {
  public:
   HandSamples(const std::vector<double>& time, TrackedHand& hand) : time_(time), hand_(hand) {
+    holds_.reserve(hand.position.size());
     for (std::size_t i = 0; i < hand.position.size(); ++i) {
       if (hand.isMissing(i)) continue;
       const bool same = !holds_.empty() && holds_.back().last + 1 == i && repeats(i);
@@ -44,13 +46,17 @@ class HandSamples {
         holds_.push_back({i, i});
     }
     std::vector<double> intervals, differences;
+    intervals.reserve(holds_.size());
+    differences.reserve(holds_.size());
     for (std::size_t k = 1; k < holds_.size(); ++k) intervals.push_back(at(k) - at(k - 1));
-    interval_ = medianOf(intervals);
+    interval_ = medianOf(std::move(intervals));
     for (std::size_t k = 2; k < holds_.size(); ++k) {
       if (at(k) - at(k - 2) < 4.0 * interval_)
         differences.push_back((position(k) - 2.0 * position(k - 1) + position(k - 2)).norm());
     }
-    difference_ = manyDifferences * medianOf(differences);
+    difference_ = manyDifferences * medianOf(std::move(differences));
+    steps_.resize(holds_.size());
+    for (std::size_t k = 1; k < holds_.size(); ++k) steps_[k] = (position(k) - position(k - 1)).norm();
   }
 
   /// Marks what was held while the tracker saw nothing. @return rows
@@ -62,7 +68,7 @@ class HandSamples {
       const double resumed = time_[holds_[k + 1].first] - time_[hold.last];
       if (!(held > heldPose && held > heldIntervals * interval_) || resumed > heldPose) continue;
       const double least = std::max({leastStart, strongestStart * interval_ * interval_, difference_});
-      if (!((position(k + 1) - position(k)).norm() > least)) continue;
+      if (!(steps_[k + 1] > least)) continue;
       if (rows == 0) begin = time_[hold.first];
       rows += mark({hold.first + 1, hold.last});
       hand_.jumps.erase(std::remove(hand_.jumps.begin(), hand_.jumps.end(), holds_[k + 1].first), hand_.jumps.end());
@@ -116,8 +122,6 @@ class HandSamples {
   [[nodiscard]] double at(std::size_t k) const { return time_[holds_[k].first]; }
   [[nodiscard]] const Vec3& position(std::size_t k) const { return hand_.position[holds_[k].first]; }
 
-  /// Length of the step to pose k (m).
-  [[nodiscard]] double step(std::size_t k) const { return (position(k) - position(k - 1)).norm(); }
   /// Time in which it was made, at least the tracker's interval (s).
   [[nodiscard]] double seconds(std::size_t k) const {
     return std::max(time_[holds_[k].first] - time_[holds_[k - 1].last], interval_);
@@ -127,9 +131,9 @@ class HandSamples {
   }
   [[nodiscard]] bool isJump(std::size_t k) const {
     double beside = 1e300;  // m, of the steps before and after, in the same time
-    if (k > 1) beside = std::min(beside, step(k - 1) * seconds(k) / seconds(k - 1));
-    if (k + 1 < holds_.size()) beside = std::min(beside, step(k + 1) * seconds(k) / seconds(k + 1));
-    return step(k) > fastestHand * seconds(k) || step(k) - beside > leastJumpIn(seconds(k));
+    if (k > 1) beside = std::min(beside, steps_[k - 1] * seconds(k) / seconds(k - 1));
+    if (k + 1 < holds_.size()) beside = std::min(beside, steps_[k + 1] * seconds(k) / seconds(k + 1));
+    return steps_[k] > fastestHand * seconds(k) || steps_[k] - beside > leastJumpIn(seconds(k));
   }
   [[nodiscard]] double lengthOf(Hold piece) const {
     return time_[holds_[piece.last].last] - time_[holds_[piece.first].first];
@@ -152,8 +156,9 @@ class HandSamples {
   const std::vector<double>& time_;
   TrackedHand& hand_;
   std::vector<Hold> holds_;
-  double interval_ = 0.0;    ///< between poses, the median (s)
-  double difference_ = 0.0;  ///< ten medians of second differences (m)
+  std::vector<double> steps_;  ///< length of the step to each pose (m)
+  double interval_ = 0.0;      ///< between poses, the median (s)
+  double difference_ = 0.0;    ///< ten medians of second differences (m)
 };
 
 std::string rowsText(std::size_t rows) { return fmt::format("{} row{}", rows, rows == 1 ? "" : "s"); }
@@ -209,8 +214,9 @@ void checkUnits(const TrackedMotion& motion) {
   };
   if (motion.time.size() < fewestSamples) return;
   std::vector<double> intervals;
+  intervals.reserve(motion.time.size());
   for (std::size_t i = 1; i < motion.time.size(); ++i) intervals.push_back(motion.time[i] - motion.time[i - 1]);
-  const double interval = medianOf(intervals);
+  const double interval = medianOf(std::move(intervals));
   if (interval > 1.0 || interval < 5e-5)
     fail(fmt::format("rows are {:.3g} s apart: the map's unit of time, or its rate, may be wrong", interval));
   constexpr double shortest = 5.0, slowest = 5e-3, fastest = 2.0;

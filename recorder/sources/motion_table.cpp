@@ -17,8 +17,6 @@ namespace {
 constexpr std::size_t maxTableRows = 1000000;
 constexpr std::size_t maxColumns = 10000;
 constexpr std::size_t maxNamesShown = 12;
-/// Trackers' own marks of a bad number lie beyond it (NDI: -3.7e28).
-constexpr double noNumber = 1e20;
 
 std::string_view trimmed(std::string_view cell) {
   while (!cell.empty() && (cell.front() == ' ' || cell.front() == '\r')) cell.remove_prefix(1);
@@ -92,7 +90,7 @@ std::vector<std::size_t> TableHeader::find(const std::string& name) const {
 
 MotionTable::MotionTable(std::span<const std::byte> bytes, const std::string& file, const TableStyle& style,
                          std::span<const std::string> wanted)
-    : rest_(motionText(bytes, file, converted_)), file_(file), style_(style) {
+    : rest_(motionText(bytes, file, style.demonstration, converted_)), file_(file), style_(style) {
   wanted_ = wanted;
   rewritten_ = isRewritten({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
   if (rest_.empty()) throw Error(ErrorKind::damaged, Where{file}, "the file is empty");
@@ -125,6 +123,7 @@ bool MotionTable::findNames(std::string_view text, char delimiter, std::span<con
     while (named_ > 1 && cells_[named_ - 1].empty()) --named_;
     for (std::size_t i = 0; i < style_.skip; ++i, ++line_) takeLine(text);
     rest_ = text;
+    plain_ = style_.missing.empty() && !readsCommas();
     return true;
   }
   return false;
@@ -165,6 +164,8 @@ void MotionTable::fail(const std::string& fault) const {
   throw Error(ErrorKind::damaged, Where{file_, place}, fault);
 }
 
+bool MotionTable::readsCommas() const { return style_.decimal == ',' || (style_.decimal == '\0' && delimiter_ != ','); }
+
 bool MotionTable::isUnits() const {
   bool any = false;
   for (const std::size_t place : place_) {
@@ -186,7 +187,11 @@ void MotionTable::splitRow() {
       const auto [stop, code] = std::from_chars(at, end, value_[wanted]);
       if (code == std::errc() && stop != end && (*stop == delimiter_ || *stop == '\n')) {
         isNumber_[wanted] = 1;
+        cells_.emplace_back(cell, static_cast<std::size_t>(stop - cell));
         at = stop;
+        cell = stop + 1;
+        if (*stop == delimiter_) continue;
+        return rest_.remove_prefix(static_cast<std::size_t>(cell - begin));
       }
     }
     const char c = at < end ? *at : '\n';
@@ -234,12 +239,9 @@ bool MotionTable::next() {
 }
 
 MotionTable::Cell MotionTable::number(std::size_t wanted, double& value, std::string& fault) {
-  const bool commas = style_.decimal == ',' || (style_.decimal == '\0' && delimiter_ != ',');
-  if (isNumber_[wanted] != 0 && style_.missing.empty() && !commas && std::abs(value_[wanted]) < noNumber) {
-    fault.clear();
-    value = value_[wanted];
-    return Cell::number;
-  }
+  fault.clear();
+  if (plainNumber(wanted, value)) return Cell::number;
+  const bool commas = readsCommas();
   std::string_view cell = text(wanted);
   if (cell.empty() || std::find(style_.missing.begin(), style_.missing.end(), cell) != style_.missing.end())
     return Cell::missing;
@@ -257,7 +259,6 @@ MotionTable::Cell MotionTable::number(std::size_t wanted, double& value, std::st
     fault = "decimal points and decimal commas in one file: say \"decimal\" in the map";
     return Cell::fault;
   }
-  fault.clear();
   value = readFiniteNumber(cell, fault);
   if (fault.empty()) return std::abs(value) < noNumber ? Cell::number : Cell::missing;
   if (isMissingWord(text(wanted))) return Cell::missing;

@@ -2,6 +2,7 @@
 // Long tables of motion as trackers and spreadsheets write them, read row by row without trust.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -40,6 +41,7 @@ struct TableStyle {
   char decimal = '\0';               ///< '\0': a point; or a comma, where cells are separated otherwise
   std::uint32_t skip = 0;            ///< lines below the names that are no rows
   std::vector<std::string> missing;  ///< further words or numbers that mark what was not measured
+  std::string demonstration;         ///< of a file that has several
 };
 
 /// Rows of a table, one after the other.
@@ -60,16 +62,25 @@ class MotionTable {
   /// Text of a wanted column in this row.
   [[nodiscard]] std::string_view text(std::size_t wanted) const { return cells_[place_[wanted]]; }
   [[nodiscard]] const std::string& name(std::size_t wanted) const { return wanted_[wanted]; }
+  /// Reads what most cells are: a number in the table's own form. @return false: number() says what it is
+  [[nodiscard]] bool plainNumber(std::size_t wanted, double& value) const {
+    value = value_[wanted];
+    return plain_ && isNumber_[wanted] != 0 && std::abs(value) < noNumber;
+  }
   /// @param[out] fault of a cell that is neither a number nor marked as missing
   Cell number(std::size_t wanted, double& value, std::string& fault);
   [[noreturn]] void fail(const std::string& fault) const;
 
  private:
+  /// Trackers' own marks of a bad number lie beyond it (NDI: -3.7e28).
+  static constexpr double noNumber = 1e20;
+
   bool findNames(std::string_view text, char delimiter, std::span<const std::string> wanted);
   [[noreturn]] void failNames(std::string_view text, std::span<const std::string> wanted);
   /// Takes the next line and its cells.
   void splitRow();
   [[nodiscard]] bool isUnits() const;
+  [[nodiscard]] bool readsCommas() const;
 
   std::string converted_;
   std::span<const std::string> wanted_;
@@ -84,6 +95,7 @@ class MotionTable {
   std::vector<std::size_t> slot_;  ///< wanted column that each is
   std::vector<double> value_;      ///< of wanted columns that are numbers followed by the separator
   std::vector<char> isNumber_;
+  bool plain_ = false;                  ///< no words and no commas stand for numbers
   bool rewritten_ = false;              ///< rows are no lines of the file
   bool point_ = false, comma_ = false;  ///< decimal ones that were found
 };

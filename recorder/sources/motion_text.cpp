@@ -11,6 +11,7 @@
 
 #include "recorder/base/errors.h"
 #include "recorder/base/text_words.h"
+#include "recorder/recording/demonstrations.h"
 #include "recorder/sources/motion_table.h"
 
 namespace calot::recorder {
@@ -18,9 +19,6 @@ namespace {
 
 /// Files that are no text: how each begins, and what to do.
 constexpr std::pair<std::string_view, const char*> foreignFiles[] = {
-    {"\x89HDF\r\n",
-     "an HDF5 file (robomimic, h5py); write obs/robot0_eef_pos and robot0_eef_quat (x, y, z, w) of a demonstration as "
-     "CSV, a row a sample"},
     {"PAR1", "a Parquet file (LeRobot); pandas.read_parquet(file).to_csv(name) writes it as CSV"},
     {"PK\x03\x04", "a spreadsheet or another packed file; save it as CSV"},
     {"#ROSBAG", "a ROS bag; rostopic echo -b FILE -p TOPIC > name.csv writes a topic as CSV"},
@@ -252,11 +250,15 @@ bool isSequence(std::string_view text) {
 
 }  // namespace
 
-bool isRewritten(std::string_view text) { return foreignKind(text) != nullptr || isSequence(text) || isStations(text); }
+bool isRewritten(std::string_view text) {
+  return foreignKind(text) != nullptr || isDemonstrations(text) || isSequence(text) || isStations(text);
+}
 
-std::string_view motionText(std::span<const std::byte> bytes, const std::string& file, std::string& converted) {
+std::string_view motionText(std::span<const std::byte> bytes, const std::string& file,
+                            const std::optional<std::string>& demonstration, std::string& converted) {
   const std::string_view raw(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   if (const char* what = foreignKind(raw)) throw Error(ErrorKind::damaged, Where{file}, fmt::format("is {}", what));
+  if (isDemonstrations(raw)) return converted = demonstrationTable(bytes, file, demonstration);
   if (isSequence(raw)) return converted = SequenceText(raw).table();
   const std::string_view text = decodedText(bytes, converted);
   if (!isStations(text)) return text;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -17,8 +18,10 @@ bool isRewritten(std::string_view text);
 /// - Polhemus: "station1_x" to "station1_roll" of each station; records of one sample in one row;
 /// - PLUS, Slicer: "Timestamp", and of each transform "NAME_x", "NAME_y", "NAME_z", "NAME_r11" to "NAME_r33" (row by
 ///   row) and "NAME_status" below the frame in which it is.
-/// @param converted holds the text where it was changed, and outlives it
-/// @throws Error (damaged) naming what the file is and what reads it: HDF5, Parquet, spreadsheets, bags, databases
-std::string_view motionText(std::span<const std::byte> bytes, const std::string& file, std::string& converted);
+/// - robomimic: demonstrations.h says.
+/// @param demonstration as `wanted` there @param converted holds the text where it was changed, and outlives it
+/// @throws Error (damaged) naming what the file is and what reads it: Parquet, spreadsheets, bags, databases
+std::string_view motionText(std::span<const std::byte> bytes, const std::string& file,
+                            const std::optional<std::string>& demonstration, std::string& converted);
 
 }  // namespace calot::recorder

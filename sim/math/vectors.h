@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 
 namespace calot {
 
@@ -34,17 +33,52 @@ using FourInts = std::int32_t __attribute__((vector_size(4 * sizeof(std::int32_t
 using EightInts = std::int32_t __attribute__((vector_size(laneCount * sizeof(std::int32_t))));
 /// The register width of most machines; wider vectors would be spilled.
 using FourDoubles = double __attribute__((vector_size(4 * sizeof(double))));
-using EightDoubles = double __attribute__((vector_size(laneCount * sizeof(double))));
+
+// Vectors at numbers of any alignment. By memcpy, gcc 12 takes the 32 bytes of an AVX2 clone through the stack in
+// halves, where the load of the whole waits for both stores. A typedef: an alias in a template loses its attributes.
 
 template <class Vector, class Number>
 CALOT_INLINE void readVector(const Number* at, Vector& out) {
-  std::memcpy(&out, at, sizeof out);
+  typedef Vector Loose __attribute__((aligned(alignof(Number)), may_alias));  // NOLINT(modernize-use-using)
+  out = *reinterpret_cast<const Loose*>(at);
 }
 
 template <class Vector, class Number>
 CALOT_INLINE void writeVector(const Vector& v, Number* at) {
-  std::memcpy(at, &v, sizeof v);
+  typedef Vector Loose __attribute__((aligned(alignof(Number)), may_alias));  // NOLINT(modernize-use-using)
+  *reinterpret_cast<Loose*>(at) = v;
 }
+
+/// Consecutive vectors.
+template <std::size_t count, class Vector, class Number>
+CALOT_INLINE void readVectors(const Number* at, Vector* out) {
+  for (std::size_t i = 0; i < count; ++i) readVector(at + i * (sizeof(Vector) / sizeof(Number)), out[i]);
+}
+template <std::size_t count, class Vector, class Number>
+CALOT_INLINE void writeVectors(const Vector* v, Number* at) {
+  for (std::size_t i = 0; i < count; ++i) writeVector(v[i], at + i * (sizeof(Vector) / sizeof(Number)));
+}
+
+/// Sums of eight lanes in double precision.
+struct LaneSums {
+  FourDoubles low{}, high{};
+
+  CALOT_INLINE void read(const double* at) {
+    readVector(at, low);
+    readVector(at + 4, high);
+  }
+  CALOT_INLINE void write(double* at) const {
+    writeVector(low, at);
+    writeVector(high, at + 4);
+  }
+  CALOT_INLINE void addProducts(const EightFloats& a, const EightFloats& b) {
+    const FourFloats lowA = __builtin_shufflevector(a, a, 0, 1, 2, 3), lowB = __builtin_shufflevector(b, b, 0, 1, 2, 3);
+    const FourFloats highA = __builtin_shufflevector(a, a, 4, 5, 6, 7);
+    const FourFloats highB = __builtin_shufflevector(b, b, 4, 5, 6, 7);
+    low += __builtin_convertvector(lowA, FourDoubles) * __builtin_convertvector(lowB, FourDoubles);
+    high += __builtin_convertvector(highA, FourDoubles) * __builtin_convertvector(highB, FourDoubles);
+  }
+};
 
 /// Transposes an 8x8 matrix: element l of vector k becomes element k of vector l.
 CALOT_INLINE void transpose(EightFloats (&v)[laneCount]) {

@@ -152,7 +152,7 @@ CALOT_INLINE void rotate(const float* quaternion, bool back, Eight* v) {
 CALOT_LANE_KERNEL void unrotateRows(const float* quaternion, const float* in, float* out, std::size_t slices) {
   for (std::size_t s = 0; s < slices; ++s) {
     Eight v[3];
-    std::memcpy(v, in + s * laneStride, sizeof v);
+    readVectors<3>(in + s * laneStride, v);
     rotate(quaternion + s * 4 * laneCount, true, v);
     rows::storeRows(v, out + s * sliceRows);
   }
@@ -163,20 +163,21 @@ CALOT_LANE_KERNEL void rotateRows(const float* quaternion, const float* in, floa
     Eight v[3];
     rows::lanesOf(in + s * sliceRows, v);
     rotate(quaternion + s * 4 * laneCount, false, v);
-    std::memcpy(out + s * laneStride, v, sizeof v);
+    writeVectors<3>(v, out + s * laneStride);
   }
 }
 
 CALOT_LANE_KERNEL double dot(const float* a, const float* b, std::size_t count) {
-  EightDoubles sum{};
+  LaneSums sum;
   for (std::size_t k = 0; k < count; k += laneCount) {
     Eight x;
     Eight y;
     readVector(a + k, x);
     readVector(b + k, y);
-    sum += __builtin_convertvector(x, EightDoubles) * __builtin_convertvector(y, EightDoubles);
+    sum.addProducts(x, y);
   }
-  return ((sum[0] + sum[1]) + (sum[2] + sum[3])) + ((sum[4] + sum[5]) + (sum[6] + sum[7]));
+  const FourDoubles &low = sum.low, &high = sum.high;
+  return ((low[0] + low[1]) + (low[2] + low[3])) + ((high[0] + high[1]) + (high[2] + high[3]));
 }
 
 CALOT_LANE_KERNEL void gather(const Part* part, std::size_t count, const float* rows, float* out) {

@@ -141,10 +141,10 @@ constexpr std::size_t elementStride = 4 * cornerStride;
 
 /// Transposes a lane group to consecutive tetrahedra.
 CALOT_LANE_KERNEL void byElements(const RotatedGradients& gradient, const double* volume, float* out) {
-  EightDoubles exact;
-  readVector(volume, exact);
+  FourDoubles exact[2];
+  readVectors<2>(volume, exact);
   EightFloats lanes[4];
-  lanes[3] = __builtin_convertvector(exact, EightFloats);
+  rows::join(__builtin_convertvector(exact[0], FourFloats), __builtin_convertvector(exact[1], FourFloats), lanes[3]);
   for (std::size_t a = 0; a < 4; ++a) {
     for (std::size_t i = 0; i < 3; ++i) readVector(gradient[a][i].data(), lanes[i]);
     EightFloats row[4];

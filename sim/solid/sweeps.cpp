@@ -2,8 +2,6 @@
 // Sweeps of two vectors at once.
 #include "sim/solid/sweeps.h"
 
-#include <cstring>
-
 #include "sim/solid/block_matrix.h"
 
 namespace calot::sweeps {
@@ -29,7 +27,7 @@ CALOT_INLINE std::size_t rowsAt(std::size_t at) {
 template <bool many>
 CALOT_INLINE void readRows(const float* rows, std::size_t at, Eight* out) {
   if constexpr (many) {
-    std::memcpy(out, rows + at, 3 * sizeof *out);
+    readVectors<3>(rows + at, out);
   } else {
     rows::lanesOf(rows + rowsAt<many>(at), out);
   }
@@ -45,9 +43,9 @@ CALOT_INLINE void propagate(const Blocks& lower, const Eight* t, float* u) {
     if constexpr (many) {
       Eight own[3];
       float* place = u + manyAt(column[0]);
-      std::memcpy(own, place, sizeof own);
+      readVectors<3>(place, own);
       for (std::size_t i = 0; i < 3; ++i) own[i] += part[i];
-      std::memcpy(place, own, sizeof own);
+      writeVectors<3>(own, place);
     } else {
       addRows(part, column, u);
     }
@@ -70,7 +68,7 @@ CALOT_INLINE void backwardLanes(const Blocks& lower, const float* inverse, const
   }
   Eight out[3];
   product<many>(inverse, y, out);
-  std::memcpy(t + at, out, sizeof out);
+  writeVectors<3>(out, t + at);
   propagate<many>(lower, out, u);
 }
 
@@ -83,7 +81,7 @@ CALOT_INLINE void lowerLanes(const Blocks& lower, const float* inverse, const fl
     const std::int32_t* column = lower.column + k * laneCount;
     Eight d[3];
     if constexpr (many) {
-      std::memcpy(d, s + manyAt(column[0]), sizeof d);
+      readVectors<3>(s + manyAt(column[0]), d);
     } else {
       toLanes(s, column, d);
     }
@@ -99,23 +97,23 @@ CALOT_INLINE void lowerLanes(const Blocks& lower, const float* inverse, const fl
 
 template <bool many>
 CALOT_INLINE void forwardLanes(const Blocks& lower, const float* inverse, const float* u, float* s, float* sRows,
-                               const float* p, const float* t, EightDoubles& sum, std::size_t at) {
+                               const float* p, const float* t, LaneSums& sum, std::size_t at) {
   Eight out[3];
   lowerLanes<many>(lower, inverse, u, many ? s : sRows, at, out);
-  std::memcpy(s + at, out, sizeof out);
+  writeVectors<3>(out, s + at);
   if constexpr (!many) storeRows(out, sRows + rowsAt<many>(at));
   for (std::size_t i = 0; i < 3; ++i) {
     Eight direction;
     Eight before;
     readVector(p + at + i * laneCount, direction);
     readVector(t + at + i * laneCount, before);
-    sum += __builtin_convertvector(direction, EightDoubles) * __builtin_convertvector(before + out[i], EightDoubles);
+    sum.addProducts(direction, before + out[i]);
   }
 }
 
 template <bool many>
 CALOT_INLINE void updateLanes(const float* diagonal, const Eight& by, const float* t, const float* s, float* x,
-                              float* r, float* z, EightDoubles& sum, std::size_t at) {
+                              float* r, float* z, LaneSums& sum, std::size_t at) {
   Eight next[3];
   for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t a = at + i * laneCount;
@@ -133,10 +131,10 @@ CALOT_INLINE void updateLanes(const float* diagonal, const Eight& by, const floa
   Eight scaled[3];
   product<many>(diagonal, next, scaled);
   for (std::size_t i = 0; i < 3; ++i) {
-    sum += __builtin_convertvector(next[i], EightDoubles) * __builtin_convertvector(scaled[i], EightDoubles);
+    sum.addProducts(next[i], scaled[i]);
   }
-  std::memcpy(r + at, next, sizeof next);
-  std::memcpy(z + at, scaled, sizeof scaled);
+  writeVectors<3>(next, r + at);
+  writeVectors<3>(scaled, z + at);
 }
 
 /// Inverses of the diagonal blocks of lanes `from` to `from` + 3, in double.
@@ -194,50 +192,50 @@ CALOT_LANE_KERNEL void backwardMany(const Slices& matrix, const float* z, const 
 
 CALOT_LANE_KERNEL void forward(const Slices& matrix, const float* u, float* s, float* sRows, const float* p,
                                const float* t, double* dot) {
-  EightDoubles sum;
-  readVector(dot, sum);
+  LaneSums sum;
+  sum.read(dot);
   for (std::size_t i = 0; i < matrix.count; ++i) {
     Blocks lower;
     blocksOf(matrix, i, 0, lower);
     forwardLanes<false>(lower, inverseOf(matrix, i), u, s, sRows, p, t, sum, i * laneStride);
   }
-  writeVector(sum, dot);
+  sum.write(dot);
 }
 
 CALOT_LANE_KERNEL void forwardMany(const Slices& matrix, const float* u, float* s, const float* p, const float* t,
                                    double* dot) {
-  EightDoubles sum;
-  readVector(dot, sum);
+  LaneSums sum;
+  sum.read(dot);
   for (std::size_t r = 0; r < matrix.count * laneCount; ++r) {
     const std::size_t lane = r % laneCount;
     Blocks lower;
     blocksOf(matrix, r / laneCount, lane, lower);
     forwardLanes<true>(lower, inverseOf(matrix, r / laneCount) + lane, u, s, nullptr, p, t, sum, r * laneStride);
   }
-  writeVector(sum, dot);
+  sum.write(dot);
 }
 
 CALOT_LANE_KERNEL void update(const Slices& matrix, float alpha, const float* t, const float* s, float* x, float* r,
                               float* z, double* dot) {
   const Eight by = {alpha, alpha, alpha, alpha, alpha, alpha, alpha, alpha};
-  EightDoubles sum;
-  readVector(dot, sum);
+  LaneSums sum;
+  sum.read(dot);
   for (std::size_t i = 0; i < matrix.count; ++i) {
     updateLanes<false>(diagonalOf(matrix, i), by, t, s, x, r, z, sum, i * laneStride);
   }
-  writeVector(sum, dot);
+  sum.write(dot);
 }
 
 CALOT_LANE_KERNEL void updateMany(const Slices& matrix, const float* alpha, const float* t, const float* s, float* x,
                                   float* r, float* z, double* dot) {
   Eight by;
   readVector(alpha, by);
-  EightDoubles sum;
-  readVector(dot, sum);
+  LaneSums sum;
+  sum.read(dot);
   for (std::size_t row = 0; row < matrix.count * laneCount; ++row) {
     updateLanes<true>(diagonalOf(matrix, row / laneCount) + row % laneCount, by, t, s, x, r, z, sum, row * laneStride);
   }
-  writeVector(sum, dot);
+  sum.write(dot);
 }
 
 CALOT_LANE_KERNEL void backwardPairs(const Slices& matrix, const float* z, const float* c, float beta, float* p,
@@ -285,8 +283,8 @@ CALOT_LANE_KERNEL void backwardPairs(const Slices& matrix, const float* z, const
 
 CALOT_LANE_KERNEL void forwardPairs(const Slices& matrix, const float* p, const float* uw, float* pq, float* q,
                                     float* s, double* dot) {
-  EightDoubles sum;
-  readVector(dot, sum);
+  LaneSums sum;
+  sum.read(dot);
   for (std::size_t slice = 0; slice < matrix.count; ++slice) {
     Blocks lower;
     blocksOf(matrix, slice, 0, lower);
@@ -313,21 +311,21 @@ CALOT_LANE_KERNEL void forwardPairs(const Slices& matrix, const float* p, const 
     for (std::size_t i = 0; i < 3; ++i) {
       times[i] += part[i];
       solved[i] = times[i] - solved[i];
-      sum += __builtin_convertvector(own[i], EightDoubles) * __builtin_convertvector(times[i], EightDoubles);
+      sum.addProducts(own[i], times[i]);
     }
     product<false>(inverseOf(matrix, slice), solved, part);
-    std::memcpy(q + slice * laneStride, times, sizeof times);
-    std::memcpy(s + slice * laneStride, part, sizeof part);
+    writeVectors<3>(times, q + slice * laneStride);
+    writeVectors<3>(part, s + slice * laneStride);
     rows::storeSecond(part, pq + pairs);
   }
-  writeVector(sum, dot);
+  sum.write(dot);
 }
 
 CALOT_LANE_KERNEL void updatePairs(const Slices& matrix, float alpha, const float* p, const float* q, const float* s,
                                    float* x, float* r, float* y, float* z, double* dot) {
   const Eight by = {alpha, alpha, alpha, alpha, alpha, alpha, alpha, alpha};
-  EightDoubles sum;
-  readVector(dot, sum);
+  LaneSums sum;
+  sum.read(dot);
   for (std::size_t slice = 0; slice < matrix.count; ++slice) {
     Eight next[3];
     for (std::size_t i = 0; i < 3; ++i) {
@@ -349,12 +347,12 @@ CALOT_LANE_KERNEL void updatePairs(const Slices& matrix, float alpha, const floa
     Eight scaled[3];
     product<false>(diagonalOf(matrix, slice), next, scaled);
     for (std::size_t i = 0; i < 3; ++i) {
-      sum += __builtin_convertvector(next[i], EightDoubles) * __builtin_convertvector(scaled[i], EightDoubles);
+      sum.addProducts(next[i], scaled[i]);
     }
-    std::memcpy(y + slice * laneStride, next, sizeof next);
-    std::memcpy(z + slice * laneStride, scaled, sizeof scaled);
+    writeVectors<3>(next, y + slice * laneStride);
+    writeVectors<3>(scaled, z + slice * laneStride);
   }
-  writeVector(sum, dot);
+  sum.write(dot);
 }
 
 }  // namespace calot::sweeps

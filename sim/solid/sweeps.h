@@ -100,7 +100,7 @@ CALOT_INLINE void rowTimes(const float* value, const Eight* d, Eight& out) {
     out = (value[0] * d[0] + value[laneCount] * d[1]) + value[2 * laneCount] * d[2];
   } else {
     Eight v[3];
-    readVector(value, v);
+    readVectors<3>(value, v);
     out = (v[0] * d[0] + v[1] * d[1]) + v[2] * d[2];
   }
 }

@@ -3,6 +3,7 @@
 
 #include "sim/vessel/beam_solver.h"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 
@@ -45,12 +46,20 @@ struct Row<4> {
 
 template <std::size_t width>
 CALOT_INLINE void read(const double* at, Row<width>& row) {
-  std::memcpy(&row, at, sizeof row);
+  if constexpr (width == 4) {
+    readVector(at, row.number);
+  } else {
+    std::copy_n(at, width, row.number);
+  }
 }
 
 template <std::size_t width>
 CALOT_INLINE void write(const Row<width>& row, double* at) {
-  std::memcpy(at, &row, sizeof row);
+  if constexpr (width == 4) {
+    writeVector(row.number, at);
+  } else {
+    std::copy_n(row.number, width, at);
+  }
 }
 
 /// row -= f other.

@@ -12,6 +12,7 @@ import unittest
 
 import h5py
 import program
+import recording_file
 from program import calot, short
 
 NO_LOCKS = os.environ.get("CALOT_NO_LOCKS", "")
@@ -157,10 +158,7 @@ class Stopped(program.ProgramTest):
         file = self.path("r.h5")
         process = subprocess.Popen([str(program.PROGRAM), "record", "--scene", program.SCENE, "--performer", "skilled", "--paced", "-o", str(file)],
                                    stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
-        end = time.monotonic() + program.PATIENCE
-        while time.monotonic() < end and not file.exists():
-            time.sleep(0.05)
-        time.sleep(0.8)
+        recording_file.await_steps(file, process)
         process.send_signal(signal.SIGHUP)
         self.assertEqual((process.wait(program.PATIENCE), process.stderr.read()), (0, b""))
         process.stderr.close()

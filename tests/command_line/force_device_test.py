@@ -7,6 +7,7 @@ import subprocess
 import time
 
 import program
+import recording_file
 import h5py  # after the program, which says where it is missing
 from devices_test import Server, script, moving
 from program import PROGRAM, SCENE, ProgramTest
@@ -44,10 +45,8 @@ class ForceDevice(ProgramTest):
                                         "-o", str(self.path("r.h5"))], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                                        stderr=subprocess.PIPE, text=True)
             self.addCleanup(process.kill)
-            end = time.monotonic() + 60
-            while not self.path("r.h5").exists() and time.monotonic() < end:
-                time.sleep(0.02)
-            time.sleep(1.0)
+            recording_file.await_steps(self.path("r.h5"), process)
+            time.sleep(0.5)
             right.process.kill()
             right.process.communicate()
             time.sleep(0.3)

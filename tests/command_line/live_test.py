@@ -86,11 +86,7 @@ class Live(program.ProgramTest):
                                    stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
         self.addCleanup(process.stderr.close)
         self.addCleanup(process.kill)
-        end = time.monotonic() + 60
-        while not r.exists():
-            self.assertIsNone(process.poll())
-            self.assertLess(time.monotonic(), end, "nothing is recorded")
-            time.sleep(0.001)
+        recording_file.await_steps(r, process)
         return process
 
     def test_killed(self):

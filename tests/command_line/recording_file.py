@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Changes recordings as a stranger would: with h5py and what schemas/recording.md says, or byte by byte."""
 
+import time
+
 import h5py
 import numpy as np
 
@@ -49,3 +51,17 @@ def last_status(path, swmr=False):
     more = {"libver": "latest", "swmr": True} if swmr else {}
     with h5py.File(path, "r", **more) as file:
         return file["/status"][-1]
+
+
+def await_steps(path, process):
+    """Returns once steps of the recording that a process writes have been flushed; how late that is, the machine decides."""
+    end = time.monotonic() + program.PATIENCE
+    while True:
+        try:
+            if last_status(path, swmr=True)["steps"] > 0:
+                return
+        except OSError:  # not there yet
+            pass
+        if process.poll() is not None or time.monotonic() > end:
+            raise AssertionError(f"{path}: nothing is recorded, exit {process.poll()}")
+        time.sleep(0.01)

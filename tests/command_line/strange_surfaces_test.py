@@ -245,6 +245,12 @@ class Surfaces(program.ProgramTest):
         chain = together(*(box(15.0 * i, 3.0 * (i % 2), 0) for i in range(5)), box(200))
         self.assertBody(self.mend("chain.obj", obj(chain)), (5 * 20 - 4 * 5 + 0) * 0.4 - 4 * (5 * 17 - 5 * 20) * 0.02 + 8, 2, words=("5 parts",))
 
+    @unittest.skipUnless(EXACT, "built without CGAL")
+    def test_parts_on_which_the_library_ends_its_program(self):
+        # Found by fuzzing; the byte in front says how the target reads it.
+        content = (program.SOURCE / "tests/fuzz/corpus/mesh/parts_that_cgal_fails_on").read_bytes()[1:]
+        self.assertIn("4 parts overlap and were not joined", self.mend("parts.stl", content, "--repair")["words"])
+
     def test_parts_in_parts(self):
         inner = box(5, 5, 5, 10)
         for name, surface, volume, count, words in (

@@ -7,6 +7,8 @@ import json
 import random
 import unittest
 
+import h5py
+import numpy
 import program
 from program import calot
 
@@ -313,6 +315,44 @@ class MotionFiles(program.ProgramTest):
         self.assertAlmostEqual(text["path-length", "left"]["value"], 0.379, delta=0.002)
         guess = json.loads(self.well("import", self.path("k.csv"), "--guess").out)
         self.assertEqual((guess["rate"], guess["left"]["jaw"], guess["left"]["matrix"][8]), (30, "PSML_gripper_angle", "PSML_rotation_8"))
+
+    def demonstrations(self, name, count=1, arms=("robot0_left", "robot0_right"), arguments='{"env_kwargs": {"control_freq": 100}}'):
+        """The structure of robomimic's page "robosuite Datasets"; the last demonstration is the motion."""
+        path = self.path(name)
+        with h5py.File(path, "w") as file:
+            file.create_group("data").attrs["env_args"] = arguments
+            for demo in range(count):
+                obs = file.create_group(f"data/demo_{demo}/obs")
+                for arm, places in zip(arms, (LEFT, RIGHT)):
+                    obs[f"{arm}_eef_pos"] = numpy.array(places if demo == count - 1 else places[:50]) / 1000
+                    obs[f"{arm}_eef_quat"] = numpy.tile([0.0, 0.0, 0.0, 1.0], (len(obs[f"{arm}_eef_pos"]), 1))
+        return path
+
+    def test_robomimic(self):
+        guess = self.assertRecognised("robomimic", self.demonstrations("one.hdf5").read_bytes(), "robomimic", jerk=0.2)
+        self.assertEqual((guess["rate"], guess["left"]["quaternion"][0]), (100, "robot0_left_eef_quat_w"))
+        several = self.demonstrations("several.hdf5", count=11)
+        self.refusedWith(2, several, names=("several.hdf5", "11"))
+        guess = json.loads(self.well("import", several, "--guess").out)
+        columns = lambda **more: self.write("filled.json", json.dumps({**guess, **more}))
+        self.assertMotion(self.figures(several, "--columns", columns(demonstration="demo_10")), jerk=0.2)
+        guess.pop("demonstration")
+        self.refusedWith(4, several, "--columns", columns(), names=("several.hdf5", "demo_0 to demo_10", '"demonstration"'))
+        self.refusedWith(4, several, "--columns", columns(demonstration="demo_11"), names=("several.hdf5", "demo_11"))
+        # One arm is nobody's hand yet; a rate that the file does not state.
+        self.refusedWith(2, self.demonstrations("arm.hdf5", arms=("robot0",)), names=("arm.hdf5", "hand"))
+        self.refusedWith(2, self.demonstrations("slow.hdf5", arguments="{}"), names=("slow.hdf5", "rate"))
+        with h5py.File(self.path("bare.hdf5"), "w") as file:
+            file.create_group("data/demo_0").create_dataset("states", data=[1.0])
+        self.refusedWith(4, self.path("bare.hdf5"), names=("bare.hdf5", "dataset_states_to_obs"))
+        whole = several.read_bytes()
+        generator = random.Random(program.seeded("robomimic").random())
+        for _ in range(12):
+            place = generator.randrange(min(len(whole), 8192))
+            self.write("bits.hdf5", whole[:place] + bytes([whole[place] ^ 1 << generator.randrange(8)]) + whole[place + 1:])
+            answer = calot("import", self.path("bits.hdf5"), "--cutoff", 6, "--columns", columns(demonstration="demo_10"))
+            self.assertIn(answer.code, (0, 4), answer)
+        self.refusedWith(4, self.write("cut.hdf5", whole[:len(whole) // 2]), names=("cut.hdf5",))
 
     def test_files_that_leave_something_open(self):
         # Which body is which hand is not in the names; the tool of one port, without a clock; no units.

@@ -107,9 +107,7 @@ class Watched(program.ProgramTest):
     def test_recording_whose_writer_was_killed_is_taken_as_incomplete(self):
         process = subprocess.Popen([PROGRAM, "record", "--scene", program.SCENE, "--performer", "skilled", "--seed", "9", "--seconds", "60", "--paced",
                                     "-o", self.inbox / "live.h5"], stdout=subprocess.DEVNULL)
-        while not (self.inbox / "live.h5").exists():
-            time.sleep(0.05)
-        time.sleep(1.5)
+        recording_file.await_steps(self.inbox / "live.h5", process)
         process.kill()
         process.wait()
         answer, rows = self.once()
@@ -149,6 +147,7 @@ class Watched(program.ProgramTest):
         time.sleep(1.6)
         answer, rows = self.once()
         self.assertEqual((answer.code, [r["result"] for r in rows]), (4, ["damaged"]))
+        self.assertFalse(self.cohort.exists())
         self.assertIn("/ticks/left/force", rows[0]["message"])
         self.put(2)
         watcher = self.start()
@@ -215,7 +214,7 @@ class Watched(program.ProgramTest):
     def test_stops_at_once_and_keeps_the_queue(self):
         shutil.copyfile(recording("watched-long", "--performer", "skilled", "--seed", 5, "--seconds", 20), self.inbox / "long.h5")
         watcher = self.start()
-        while not self.cohort.exists():
+        while not self.path("c.db.intake").exists():
             time.sleep(0.05)
         time.sleep(0.3)
         begin = time.monotonic()

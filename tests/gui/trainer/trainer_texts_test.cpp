@@ -208,6 +208,9 @@ TEST_F(Texts, TheEndNamesOutcomeAndFile) {
   const PanelText text = panelText(status, operation(), "", recorder::Mode::practice, std::nullopt);
   EXPECT_EQ(text.result,
             "Outcome: time limit, after 1:02.5.\nA branch, from 0:40.0 on.\nRecorded in /data/cholecystectomy.h5");
+  status.locked = false;
+  const PanelText unlocked = panelText(status, operation(), "", recorder::Mode::practice, std::nullopt);
+  EXPECT_TRUE(unlocked.result.endsWith(".h5, without a lock, which its file system does not grant"));
   EXPECT_EQ(text.hint, "");
 }
 
