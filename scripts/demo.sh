@@ -59,13 +59,11 @@ say "study: the two profiles side by side (synthetic performers: no statement ab
 sed -n '/^Figures of the paper/,/^$/p' "$demo/study.txt"
 
 say "draw"
-for time in 15 30 60 90; do
-  # An attempt that ended before has no such moment.
-  if "$calot" render "$demo/$scene-skilled-1.h5" --at "$time" --size 1280x720 --force -o "$demo/operation-$time-s.png" >>"$log" 2>&1; then
-    drawn=$time
-  fi
-done
-if [[ -z ${drawn:-} ]]; then
+rm -f "$demo"/operation-*-s.png
+# An attempt that ended before has no such moment.
+printf '%s\n' 15 30 60 90 | xargs -P "$jobs" -I '{}' "$calot" render "$demo/$scene-skilled-1.h5" --at '{}' --size 1280x720 \
+  -o "$demo/operation-{}-s.png" >>"$log" 2>&1 || true
+if ! compgen -G "$demo/operation-*-s.png" >/dev/null; then
   tail -n 1 "$log" >&2
   exit 1
 fi
