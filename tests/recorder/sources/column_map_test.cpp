@@ -65,6 +65,13 @@ TEST(CsvMotion, readsUnitsOrderAndAxis) {
   EXPECT_EQ(m.frame, "world");
 }
 
+TEST(CsvMotion, theLastRowNeedsNoLineEnd) {
+  const std::string text = names + rowA + rowB;
+  const TrackedMotion m = parseCsvMotion(bytesOf(text.substr(0, text.size() - 1)), "m.csv", mapOf(validMap()));
+  ASSERT_EQ(m.time.size(), 2U);
+  EXPECT_NEAR(m.hand[1].position[1].z(), -0.004, 1e-15);
+}
+
 TEST(CsvMotion, lengthDoesNotDependOnWhenItBegan) {
   json map = validMap();
   map["time"]["unit"] = "s";
