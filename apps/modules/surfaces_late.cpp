@@ -16,7 +16,7 @@ struct Sent {
 
 }  // namespace
 
-/// In a process of its own: on surfaces that are nearly flat in places the library ends its program.
+/// Joins in a child process: on some surfaces CGAL ends its program.
 TriangleMesh uniteSurfaces(const std::vector<TriangleMesh>& piece) {
   const auto unite = apps::module<apps::SurfaceModule>().unite;
   try {

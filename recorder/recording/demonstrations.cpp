@@ -39,7 +39,7 @@ std::vector<std::string> namesIn(const hdf5::Id& group) {
   return names;
 }
 
-/// Rows of a data set of `width` columns; empty: there is none.
+/// Reads a data set that has `width` columns; empty where there is none.
 std::vector<double> rowsOf(const hdf5::Id& group, const std::string& name, hsize_t width) {
   const hdf5::Id set = hdf5::dataset(H5Dopen2(group.get(), name.c_str(), H5P_DEFAULT));
   if (!set.valid()) return {};

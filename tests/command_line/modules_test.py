@@ -94,7 +94,7 @@ class Start(ProgramTest):
     def test_the_program_starts_without_libraries_of_modules(self):
         if os.environ.get("CALOT_BUILD_TYPE", "Release") != "Release" or not MODULES.exists():
             self.skipTest("this build has no modules")
-        # Of the program itself: what HDF5 brings along (a network's libraries, which bring gmp) is HDF5's matter.
+        # HDF5 brings libraries of its own (a network's, which bring gmp): the test reads what the program itself names.
         needed = subprocess.run(["readelf", "--dynamic", str(PROGRAM)], capture_output=True, text=True, check=True).stdout
         self.assertIn("Shared library: [libhdf5", needed)
         heavy = re.findall(r"Shared library: \[(lib(?:av|sw|SDL|gmp|mpfr|OpenIGTLink|apriltag|spnav|Qt|OSMesa|LLVM)\S*)\]", needed)
