@@ -184,6 +184,9 @@ std::string uuidOf(std::array<std::byte, 32> hash) {
 /// SHA-256 of the samples in nanoseconds, picometres and billionths of a unit quaternion; the least number: no sample.
 std::array<std::byte, 32> motionHash(const recorder::TrackedMotion& motion) {
   std::vector<std::int64_t> numbers;
+  std::size_t count = motion.time.size();
+  for (const recorder::TrackedHand& hand : motion.hand) count += 1 + 7 * hand.position.size();
+  numbers.reserve(count);
   const auto add = [&](double value, double scale) {
     numbers.push_back(std::isnan(value) ? std::numeric_limits<std::int64_t>::min() : std::llround(value * scale));
   };
@@ -193,7 +196,8 @@ std::array<std::byte, 32> motionHash(const recorder::TrackedMotion& motion) {
     for (const Vec3& p : hand.position) {
       for (int i = 0; i < 3; ++i) add(p[i], 1e12);
     }
-    for (const Quat& q : hand.orientation) {
+    for (std::size_t row = 0; row < hand.position.size(); ++row) {
+      const Quat q = hand.orientationAt(row);
       for (const double part : {q.w(), q.x(), q.y(), q.z()}) add(part, q.w() < 0.0 ? -1e9 : 1e9);
     }
   }

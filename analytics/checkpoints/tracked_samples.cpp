@@ -119,7 +119,7 @@ Motion motionOf(const recorder::TrackedMotion& tracked, std::size_t hand, double
   for (std::size_t m = 0; m < measured.size(); ++m) {
     const std::size_t i = measured[m];
     const bool repeats = m > 0 && rows.position[i] == rows.position[measured[m - 1]] &&
-                         rows.orientation[i].coeffs() == rows.orientation[measured[m - 1]].coeffs();
+                         rows.orientationAt(i).coeffs() == rows.orientationAt(measured[m - 1]).coeffs();
     if (begins(m) || !repeats)
       poses.push_back({m, timeOf(i) / units, !begins(m) && between(measured[poses.back().row], i) <= straightBridge});
   }
@@ -133,15 +133,15 @@ Motion motionOf(const recorder::TrackedMotion& tracked, std::size_t hand, double
     if (begins(m)) {
       if (m > 0 && between(measured[m - 1], i) <= SampleRate::longestInterval && poses[k - 1].row + 1 == m)
         samples.rate.add(between(measured[m - 1], i));
-      samples.grid.begin(time, rows.position[i], rows.orientation[i], m > 0 && !isDivided(rows, measured[m - 1], i));
+      samples.grid.begin(time, rows.position[i], rows.orientationAt(i), m > 0 && !isDivided(rows, measured[m - 1], i));
     } else {
       const bool kept = even[k].time == poses[k].time && even[k - 1].time == poses[k - 1].time;
       if (poses[k].follows)
         samples.rate.add(kept ? between(measured[poses[k - 1].row], i) : even[k].time - even[k - 1].time);
-      samples.grid.extend(time, rows.position[i], rows.orientation[i]);
+      samples.grid.extend(time, rows.position[i], rows.orientationAt(i));
     }
     if (between(i, measured[last]) > straightBridge)  // rest
-      samples.grid.extend(timeOf(measured[last]), rows.position[i], rows.orientation[i]);
+      samples.grid.extend(timeOf(measured[last]), rows.position[i], rows.orientationAt(i));
   }
   const double own = samples.rate.interval();
   samples.longestRate = repeated ? hiddenSample * own : GapRule{own}.longestEven();

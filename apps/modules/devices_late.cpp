@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "apps/modules/module.h"
+#include "apps/modules/tables.h"
 
 namespace calot::recorder {
 namespace {

@@ -5,15 +5,6 @@
 
 #include <string>
 
-#include "gui/film/film_writer.h"
-#include "gui/report/pdf_report.h"
-#include "recorder/sources/devices/camera/frame_source.h"
-#include "recorder/sources/devices/camera/marker_sheets.h"
-#include "recorder/sources/devices/force/haply_device.h"
-#include "recorder/sources/devices/openigtlink_device.h"
-#include "recorder/sources/devices/pointer_device.h"
-#include "recorder/surfaces/surface_union.h"
-
 namespace calot::apps {
 
 /// A table of functions. A module holds static copies of the libraries that its functions use: only values and abstract
@@ -31,37 +22,5 @@ const Table& module() {
   static const Table& table = static_cast<const Table&>(loadModule(Table::name));
   return table;
 }
-
-struct FilmModule : Module {
-  static constexpr const char* name = "films";
-  decltype(&gui::openFilm) open;
-  decltype(&gui::copyCleanFilm) copyClean;
-};
-
-struct PdfModule : Module {
-  static constexpr const char* name = "pdf";
-  decltype(&gui::pdfReport) report;
-  decltype(&gui::sheetsPdf) sheets;
-};
-
-struct SurfaceModule : Module {
-  static constexpr const char* name = "surfaces";
-  decltype(&recorder::uniteSurfaces) unite;
-};
-
-struct DeviceModule : Module {
-  static constexpr const char* name = "devices";
-  decltype(&recorder::openGamepad) openGamepad;
-  decltype(&recorder::listGamepads) listGamepads;
-  decltype(&recorder::openSpaceMouse) openSpaceMouse;
-  decltype(&recorder::openHaply) openHaply;
-  decltype(&recorder::openOpenIgtLink) openOpenIgtLink;
-  decltype(&recorder::serveOpenIgtLink) serveOpenIgtLink;
-  decltype(&recorder::openFilmSource) openFilmSource;
-  decltype(&recorder::openLiveCamera) openLiveCamera;
-  decltype(&recorder::listLiveCameras) listLiveCameras;
-  decltype(&recorder::makeTagDetector) makeTagDetector;
-  decltype(&recorder::tagCells) tagCells;
-};
 
 }  // namespace calot::apps

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // HDF5 files of robot demonstrations as robomimic and robosuite write them ("robosuite Datasets" of robomimic's
-// documentation): /data/demo_0/obs/robot0_eef_pos (T x 3, m) and robot0_eef_quat (T x 4: x, y, z, w), rows at the
-// env_kwargs.control_freq (Hz) of the JSON in /data's attribute env_args.
+// documentation): /data/demo_0/obs/robot0_eef_pos (T x 3, in a unit that is not stated) and robot0_eef_quat (T x 4: x,
+// y, z, w), rows at the env_kwargs.control_freq (Hz) of the JSON in /data's attribute env_args.
 #pragma once
 
 #include <cstddef>

@@ -155,7 +155,7 @@ TrackedMotion parseCsvMotion(std::span<const std::byte> bytes, const std::string
   motion.time.reserve(expected);
   for (TrackedHand& hand : motion.hand) {
     hand.position.reserve(hand.present ? expected : 0);
-    hand.orientation.reserve(hand.present ? expected : 0);
+    hand.orientation.reserve(hand.oriented ? expected : 0);
   }
   MotionClock clock(map.clock);
   std::size_t dropped = 0;
@@ -167,11 +167,14 @@ TrackedMotion parseCsvMotion(std::span<const std::byte> bytes, const std::string
       time = clock.seconds(table.text(0), nanoseconds ? table.text(1) : std::string_view(), fault);
       if (!fault.empty()) table.fail(fmt::format("column \"{}\": {}", shown(map.time), fault));
       if (!motion.time.empty() && !(time > motion.time.back())) {
-        if (!map.dropsDisorder)
+        if (!map.dropsDisorder) {
+          const double later = time - motion.time.back();
+          const bool putBack = std::abs(later + 3600.0) < 60.0;
           table.fail(
-              fmt::format("its time is not after the row before ({:g} s later); \"disorder\": \"drop\" in the map "
-                          "leaves such rows out",
-                          time - motion.time.back()));
+              fmt::format("its time is not after the row before ({:g} s later{}); \"disorder\": \"drop\" in "
+                          "the map leaves such rows out",
+                          later, putBack ? ", as clocks put back in autumn: export UTC instead" : ""));
+        }
         ++dropped;
         continue;
       }
@@ -190,7 +193,7 @@ TrackedMotion parseCsvMotion(std::span<const std::byte> bytes, const std::string
         ++unmeasured[h];
       }
       hand.position.push_back(position);
-      hand.orientation.push_back(orientation);
+      if (hand.oriented) hand.orientation.push_back(orientation);
       hand.missing.push_back(!measured);
       reader.readFurther(table, hand);
     }

@@ -117,7 +117,7 @@ class HandSamples {
  private:
   [[nodiscard]] bool repeats(std::size_t i) const {
     return hand_.position[i] == hand_.position[i - 1] &&
-           hand_.orientation[i].coeffs() == hand_.orientation[i - 1].coeffs();
+           hand_.orientationAt(i).coeffs() == hand_.orientationAt(i - 1).coeffs();
   }
   [[nodiscard]] double at(std::size_t k) const { return time_[holds_[k].first]; }
   [[nodiscard]] const Vec3& position(std::size_t k) const { return hand_.position[holds_[k].first]; }

@@ -59,7 +59,6 @@ inline constexpr Format formats[] = {
      .first = "robomimic",
      .device = "robot-simulation",
      .frame = "robot-world",
-     .length = "m",
      .rate = "@control_freq"},
     {.source = "CSV file of JIGSAWS",
      .names = "psml_rotation_0 &psmr_rotation_8 ",

@@ -51,7 +51,7 @@ struct TrackedHand {
   bool present = false;            ///< the file has this hand
   bool oriented = false;           ///< and its orientation
   std::vector<Vec3> position;      ///< p of the tip in the file's frame (m); NaN where the file has none
-  std::vector<Quat> orientation;   ///< unit; z along the shaft towards the tip. Identities where not oriented
+  std::vector<Quat> orientation;   ///< unit; z along the shaft towards the tip; may be empty where not oriented
   std::vector<double> jaw;         ///< opening angle (rad), NaN where it is missing; empty: the file has none
   std::vector<bool> pedal;         ///< pressed; empty: the file has none
   std::vector<bool> missing;       ///< rows that are no sample: not measured, or invalid (markInvalidSamples())
@@ -59,6 +59,9 @@ struct TrackedHand {
   std::size_t leftOut = 0;         ///< rows that are missing because their sample is invalid
 
   [[nodiscard]] bool isMissing(std::size_t row) const { return row < missing.size() && missing[row]; }
+  [[nodiscard]] Quat orientationAt(std::size_t row) const {
+    return row < orientation.size() ? orientation[row] : Quat::Identity();
+  }
 };
 
 /// Every row of a file; what is present has as many.

@@ -19,10 +19,15 @@ inline constexpr int laneCount = 8;
 /// Number of groups of lanes that hold `count` elements.
 constexpr std::size_t laneGroups(std::size_t count) { return (count + laneCount - 1) / laneCount; }
 
-#if defined(__x86_64__) && defined(__OPTIMIZE__) && !defined(CALOT_SANITIZED) && !defined(CALOT_NO_CLONES)
-#define CALOT_LANE_KERNEL __attribute__((target_clones("avx512f", "avx2", "default")))
-#else
+#ifndef CALOT_VECTOR_BITS
+#define CALOT_VECTOR_BITS 512  // of the widest clones (the build option of this name)
+#endif
+#if !defined(__x86_64__) || !defined(__OPTIMIZE__) || defined(CALOT_SANITIZED) || CALOT_VECTOR_BITS < 256
 #define CALOT_LANE_KERNEL
+#elif CALOT_VECTOR_BITS < 512
+#define CALOT_LANE_KERNEL __attribute__((target_clones("avx2", "default")))
+#else
+#define CALOT_LANE_KERNEL __attribute__((target_clones("avx512f", "avx2", "default")))
 #endif
 
 #define CALOT_INLINE inline __attribute__((always_inline))  // into the clones of the kernels

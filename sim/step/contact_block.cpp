@@ -9,6 +9,35 @@
 
 namespace calot {
 
+const PushedTool* ContactBlock::tool() const {
+  if (const auto* touch = as<ToolOnTissue>()) return &touch->tool;
+  const auto* grasp = as<Grasped>();
+  return grasp != nullptr ? &grasp->tool : nullptr;
+}
+
+const std::array<ToolRow, 3>* ContactBlock::toolOf(std::size_t hand) const {
+  const auto* both = as<ToolOnTool>();
+  const PushedTool* const one = both == nullptr ? tool() : hand == both->left.hand ? &both->left : &both->right;
+  return one != nullptr && one->hand == hand ? &one->row : nullptr;
+}
+
+const PushedBody* ContactBlock::along() const {
+  const auto* tissue = as<TissueOnTissue>();
+  return tissue != nullptr ? &tissue->along : nullptr;
+}
+
+const PushedBody* ContactBlock::against() const {
+  if (const auto* touch = as<ToolOnTissue>()) return &touch->tissue;
+  if (const auto* grasp = as<Grasped>()) return &grasp->tissue;
+  const auto* tissue = as<TissueOnTissue>();
+  return tissue != nullptr ? &tissue->against : nullptr;
+}
+
+const Press* ContactBlock::press() const {
+  const auto* touch = as<ToolOnTissue>();
+  return touch != nullptr && touch->press ? &*touch->press : nullptr;
+}
+
 void ContactSystem::numberRows() {
   rows = 0;
   kinds.clear();
@@ -24,14 +53,15 @@ void ContactSystem::numberRows() {
 void addNodalForces(std::span<const ContactBlock> blocks, std::size_t body, std::size_t nodes,
                     std::span<const double> forces, double scale, std::vector<Vec3>& nodal) {
   for (const ContactBlock& block : blocks) {
-    for (const bool other : {false, true}) {
-      if ((other ? block.other : block.body) != body) continue;
+    for (const bool along : {false, true}) {
+      const PushedBody* const pushed = along ? block.along() : block.against();
+      if (pushed == nullptr || pushed->body != body) continue;
       Vec3 force = Vec3::Zero();
       for (std::size_t k = 0; k < block.rows(); ++k) force += forces[block.row + k] * block.direction[k];
       if (force.isZero(0.0)) continue;
       if (nodal.empty()) nodal.assign(nodes, Vec3::Zero());
-      const SolidSolver::Impulse& place = other ? block.otherPlace : block.place;
-      const double sign = other ? scale : -scale;
+      const SolidSolver::Impulse& place = pushed->place;
+      const double sign = along ? scale : -scale;
       for (std::size_t k = 0; k < place.count; ++k) {
         nodal[static_cast<std::size_t>(place.node[k])] += sign * place.weight[k] * force;
       }
@@ -84,21 +114,23 @@ void evaluate(std::span<const double> lambda, bool derivative, ContactSystem& co
   for (Dimple& dimple : contact.dimples) dimple.force = 0.0;
   for (const std::size_t b : contact.pressed) {
     const ContactBlock& block = contact.blocks[b];
-    contact.dimples[block.dimple].force += block.share * lambda[block.row];
+    contact.dimples[block.press()->dimple].force += block.press()->share * lambda[block.row];
   }
   for (Dimple& dimple : contact.dimples) {
     dimple.end = roundEnd(notNegative(dimple.force), dimple.radius, dimple.modulus);
   }
   for (std::size_t i = 0; i < n; ++i) {
     const ContactBlock& a = contact.blocks[contact.pressed[i]];
-    const Dimple& dimple = contact.dimples[a.dimple];
-    double elastic = a.share * dimple.end.depth;
+    const Press& one = *a.press();
+    const Dimple& dimple = contact.dimples[one.dimple];
+    double elastic = one.share * dimple.end.depth;
     for (std::size_t j = 0; j < n; ++j) {
       const ContactBlock& b = contact.blocks[contact.pressed[j]];
       double slope = contact.sharedDimple[i * n + j];
       elastic += slope * lambda[b.row];
       if (!derivative) continue;
-      if (a.dimple == b.dimple) slope += a.share * b.share * dimple.end.slope;
+      const Press& two = *b.press();
+      if (one.dimple == two.dimple) slope += one.share * two.share * dimple.end.slope;
       contact.dimpleCompliance[i * n + j] *= dimple.newShare * slope;
     }
     const Indentation finite = bounded(elastic);
@@ -121,16 +153,16 @@ void findWays(ContactSystem& contact) {
     const ContactBlock* nearest = nullptr;
     for (const std::size_t b : contact.pressed) {
       const ContactBlock& block = contact.blocks[b];
-      if (block.dimple != d) continue;
-      sum += contact.carried[block.row] * block.smooth;
+      if (block.press()->dimple != d) continue;
+      sum += contact.carried[block.row] * block.press()->smooth;
       if (nearest == nullptr || block.gap[0] < nearest->gap[0]) nearest = &block;
     }
-    if (!(sum.norm() > smallForce)) sum = nearest->smooth;
+    if (!(sum.norm() > smallForce)) sum = nearest->press()->smooth;
     contact.dimples[d].way = sum.normalized();
   }
   for (const std::size_t b : contact.pressed) {
     ContactBlock& block = contact.blocks[b];
-    block.share = block.direction[0].dot(contact.dimples[block.dimple].way);
+    block.press()->share = block.direction[0].dot(contact.dimples[block.press()->dimple].way);
   }
 }
 
@@ -162,33 +194,35 @@ void findDimples(const Model& model, const State& state, double step, ContactSys
   contact.dimples.clear();
   contact.pressed.clear();
   for (std::size_t b = 0; b < contact.blocks.size(); ++b) {
-    ContactBlock& block = contact.blocks[b];
-    if (!(block.radius > 0.0)) continue;
-    const std::uint64_t key = dimpleKey(block.structure, block.piece);
-    block.dimple = 0;
-    while (block.dimple < contact.dimples.size() &&
-           (contact.dimples[block.dimple].hand != block.hand || contact.dimples[block.dimple].key != key)) {
-      ++block.dimple;
-    }
+    Press* const press = contact.blocks[b].press();
+    if (press == nullptr) continue;
+    const auto& touch = *contact.blocks[b].as<ToolOnTissue>();
+    const std::size_t hand = touch.tool.hand;
+    const std::uint64_t key = dimpleKey(touch.structure, press->piece);
+    const auto known = std::find_if(contact.dimples.begin(), contact.dimples.end(),
+                                    [&](const Dimple& d) { return d.hand == hand && d.key == key; });
+    press->dimple = static_cast<std::size_t>(known - contact.dimples.begin());
     contact.pressed.push_back(b);
-    if (block.dimple < contact.dimples.size()) continue;
+    if (known != contact.dimples.end()) continue;
     Dimple dimple;
-    dimple.hand = block.hand;
+    dimple.hand = hand;
     dimple.key = key;
-    dimple.radius = block.radius;
-    dimple.modulus = contactModulus(model.organs()[model.structures()[block.structure].index]);
-    dimple.newShare = newShare(model, block.structure, step);
-    dimple.before = dimpleOf(state.hand[block.hand], block.structure, block.piece);
+    dimple.radius = press->radius;
+    dimple.modulus = contactModulus(model.organs()[model.structures()[touch.structure].index]);
+    dimple.newShare = newShare(model, touch.structure, step);
+    dimple.before = dimpleOf(state.hand[hand], touch.structure, press->piece);
     contact.dimples.push_back(dimple);
   }
   findWays(contact);
   const std::size_t n = contact.pressed.size();
   contact.sharedDimple.assign(n * n, 0.0);
   for (std::size_t i = 0; i < n; ++i) {
-    const ContactBlock& a = contact.blocks[contact.pressed[i]];
+    const auto& one = *contact.blocks[contact.pressed[i]].as<ToolOnTissue>();
+    const Press& a = *one.press;
     for (std::size_t j = 0; j <= i; ++j) {
-      const ContactBlock& b = contact.blocks[contact.pressed[j]];
-      if (a.hand != b.hand || a.structure != b.structure) continue;
+      const auto& two = *contact.blocks[contact.pressed[j]].as<ToolOnTissue>();
+      const Press& b = *two.press;
+      if (one.tool.hand != two.tool.hand || one.structure != two.structure) continue;
       const double modulus = contact.dimples[a.dimple].modulus;
       const double squared = (a.foot - b.foot).squaredNorm();
       const double tool = 0.5 * (flatEndSpread(a.radius) + flatEndSpread(b.radius));
@@ -226,7 +260,7 @@ void storeDimples(const Model& model, double step, const ContactSystem& contact,
     double work = 0.0;
     for (const std::size_t b : contact.pressed) {
       const ContactBlock& block = contact.blocks[b];
-      if (block.dimple != d) continue;
+      if (block.press()->dimple != d) continue;
       work += contact.lambda[block.row] * (contact.dimpleGap[block.row] + block.direction[0].dot(dimple.before));
     }
     const Vec3 now = dimple.force > smallForce ? Vec3(work / dimple.force * dimple.way)

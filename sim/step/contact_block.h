@@ -5,7 +5,10 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
+#include <utility>
+#include <variant>
 #include <vector>
 
 #include "sim/contact/contact_solver.h"
@@ -19,48 +22,83 @@
 
 namespace calot {
 
-/// One block of the contact problem: an instrument on a structure, tissue on tissue, grasped tissue, or an instrument
-/// on the other.
-struct ContactBlock {
-  static constexpr std::size_t none = ~std::size_t{0};
+/// A body that a block pushes, at nodes of its own.
+struct PushedBody {
+  std::size_t body = 0;
+  SolidSolver::Impulse place;
+};
 
-  BlockKind kind = BlockKind::frictional;
-  double limit = 0.0;            ///< friction coefficient; largest force of a grasp (N)
-  double softness = 0.0;         ///< by which tissue sinks into tissue for the force at this point (m/N)
-  std::size_t hand = none;       ///< whose instrument is pushed along +direction,
-  std::size_t other = none;      ///< or which body is,
-  std::size_t body = none;       ///< and which body along -direction,
-  std::size_t otherHand = none;  ///< or whose instrument
-  std::size_t structure = 0;     ///< whose skin that is
-  std::size_t anchor = none;     ///< of a grasp: index of the grasped point
-  std::array<Vec3, 3> direction{Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
-  SolidSolver::Impulse place, otherPlace;  ///< nodes and weights at which the bodies are pushed
-  std::array<ToolRow, 3> tool{ToolRow::Zero(), ToolRow::Zero(), ToolRow::Zero()};
-  std::array<ToolRow, 3> otherTool{ToolRow::Zero(), ToolRow::Zero(), ToolRow::Zero()};  ///< of otherHand, signed
-  std::array<double, 3> gap{};  ///< now; slip counts from the step's beginning (m)
-  Vec3 where = Vec3::Zero();    ///< of instruments on each other: the place (m, W)
-  std::uint64_t key = 0;        ///< names the contact point: equal in two steps means the same one
-  /// For an instrument on an organ (findDimples()): the capsule's radius, its number, the place on the skin, the
-  /// size of the patch over which the mesh spreads a force there (m), and the dimple that it presses.
-  double radius = 0.0;
-  std::size_t piece = 0;
-  Vec3 foot = Vec3::Zero();
+/// An instrument that a block pushes, by what a force in each of the block's rows does to it.
+struct PushedTool {
+  std::size_t hand = 0;
+  std::array<ToolRow, 3> row{ToolRow::Zero(), ToolRow::Zero(), ToolRow::Zero()};
+};
+
+/// How a capsule of an instrument presses on an organ (findDimples()).
+struct Press {
+  double radius = 0.0;         ///< of the capsule (m)
+  std::size_t piece = 0;       ///< its number
+  Vec3 foot = Vec3::Zero();    ///< the place on the skin (m)
   Vec3 smooth = Vec3::Zero();  ///< the skin's normal there, without its edges
-  double spread = 0.0;
-  std::size_t dimple = none;
-  double share = 0.0;   ///< of a force along the normal, in the direction in which that gives way
-  std::size_t row = 0;  ///< its first row
+  double spread = 0.0;         ///< size of the patch over which the mesh spreads a force there (m)
+  std::size_t dimple = 0;      ///< that it presses
+  double share = 0.0;          ///< of a force along the normal, in the direction in which that gives way
+};
+
+// A block's direction points from what is pushed against it to what is pushed along it.
+
+/// An instrument, pushed along, on a structure's skin.
+struct ToolOnTissue {
+  PushedTool tool;
+  PushedBody tissue;
+  std::size_t structure = 0;
+  std::optional<Press> press;  ///< of an organ, where the scene has dimples
+};
+
+/// An instrument, pushed along, that holds tissue.
+struct Grasped {
+  PushedTool tool;
+  PushedBody tissue;
+  std::size_t anchor = 0;  ///< index of the grasped point
+};
+
+/// The left instrument, pushed along, on the right one.
+struct ToolOnTool {
+  PushedTool left, right;
+  Vec3 where = Vec3::Zero();  ///< p_W (m)
+};
+
+struct TissueOnTissue {
+  PushedBody along, against;
+  double softness = 0.0;  ///< by which tissue sinks into tissue for the force at this point (m/N)
+};
+
+/// One block of the contact problem.
+struct ContactBlock {
+  std::variant<ToolOnTissue, Grasped, ToolOnTool, TissueOnTissue> of;
+  BlockKind kind = BlockKind::frictional;
+  double limit = 0.0;  ///< friction coefficient; largest force of a grasp (N)
+  std::array<Vec3, 3> direction{Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
+  std::array<double, 3> gap{};  ///< now; slip counts from the step's beginning (m)
+  std::uint64_t key = 0;        ///< names the contact point: equal in two steps means the same one
+  std::size_t row = 0;          ///< its first row
 
   [[nodiscard]] std::size_t rows() const { return blockRows(kind); }
-  [[nodiscard]] bool isTissueOnTissue() const { return hand == none; }
-  [[nodiscard]] bool isGrasp() const { return anchor != none; }
-  /// An instrument on the other.
-  [[nodiscard]] bool isClash() const { return otherHand != none; }
-  /// Rows of a hand's instrument; null where it takes no part.
-  [[nodiscard]] const std::array<ToolRow, 3>* toolOf(std::size_t which) const {
-    if (which == none) return nullptr;
-    return which == hand ? &tool : which == otherHand ? &otherTool : nullptr;
+  /// The block as one of its kinds, or null.
+  template <class Kind>
+  [[nodiscard]] const Kind* as() const {
+    return std::get_if<Kind>(&of);
   }
+  /// The instrument of one that touches or holds tissue, or null.
+  [[nodiscard]] const PushedTool* tool() const;
+  /// Rows of a hand's instrument, or null.
+  [[nodiscard]] const std::array<ToolRow, 3>* toolOf(std::size_t hand) const;
+  /// The bodies, or null.
+  [[nodiscard]] const PushedBody* along() const;
+  [[nodiscard]] const PushedBody* against() const;
+  /// How it presses, or null.
+  [[nodiscard]] const Press* press() const;
+  [[nodiscard]] Press* press() { return const_cast<Press*>(std::as_const(*this).press()); }
 };
 
 /// Contact-free motion of an instrument, and the displacement that the virtual coupling still demands.

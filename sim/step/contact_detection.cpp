@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "sim/math/linear.h"
 #include "sim/step/contact_block.h"
@@ -27,10 +28,10 @@ void ContactDetection::addInstrumentBlock(const Surfaces& surfaces, const State&
   ContactBlock block;
   block.kind = touched.friction > 0.0 ? BlockKind::frictional : BlockKind::unilateral;
   block.limit = touched.friction;
-  block.hand = hand;
-  block.body = touched.body;
-  block.structure = structure;
-  block.place = surfaces.skin(structure).influence(contact.node, contact.weight);
+  ToolOnTissue touch;
+  touch.tool.hand = hand;
+  touch.tissue = {touched.body, surfaces.skin(structure).influence(contact.node, contact.weight)};
+  touch.structure = structure;
   block.key = contact.key | static_cast<std::uint64_t>(structure) << structureShift;
   // Slip along and across the shaft, as far as the surface allows.
   const Mat3 frame = alongAxis(contact.normal, tool.orientation.toRotationMatrix().col(2)).toRotationMatrix();
@@ -38,23 +39,25 @@ void ContactDetection::addInstrumentBlock(const Surfaces& surfaces, const State&
   block.gap = {contact.gap, 0.0, 0.0};
   const Vec3 onAxis = contact.onAxis - dimpleOf(state.hand[hand], structure, contact.key >> 56U);
   for (std::size_t k = 0; k < block.rows(); ++k) {
-    block.tool[k] = toolRow(model_.scene().hands[hand].port, tool, onAxis, block.direction[k]);
+    touch.tool.row[k] = toolRow(model_.scene().hands[hand].port, tool, onAxis, block.direction[k]);
   }
   if (touched.kind == tissueId<OrganTissue> && model_.scene().solver.dimples) {
     const OrganModel& organ = model_.organs()[touched.index];
     const std::vector<Vec3>& points = surfaces.points(structure);
-    block.piece = contact.key >> 56U;
-    block.radius = instrument_[hand].capsule[block.piece].radius;
+    Press& press = touch.press.emplace();
+    press.piece = contact.key >> 56U;
+    press.radius = instrument_[hand].capsule[press.piece].radius;
     for (std::size_t k = 0; k < 3; ++k) {
-      block.foot += contact.weight[static_cast<int>(k)] * points[static_cast<std::size_t>(contact.node[k])];
+      press.foot += contact.weight[static_cast<int>(k)] * points[static_cast<std::size_t>(contact.node[k])];
     }
-    block.smooth = smoothNormal(organ.surface, points, contact.node, contact.weight);
-    if (block.smooth.isZero()) block.smooth = contact.normal;
-    const SolidSolver::Impulse centre = block.place;
-    block.place = pressedPatch(organ, surfaces.skin(structure), contact.node, contact.weight, block.radius);
-    block.spread = meshSpread(organ, centre, block.place);
+    press.smooth = smoothNormal(organ.surface, points, contact.node, contact.weight);
+    if (press.smooth.isZero()) press.smooth = contact.normal;
+    const SolidSolver::Impulse centre = touch.tissue.place;
+    touch.tissue.place = pressedPatch(organ, surfaces.skin(structure), contact.node, contact.weight, press.radius);
+    press.spread = meshSpread(organ, centre, touch.tissue.place);
   }
-  blocks.push_back(block);
+  block.of = std::move(touch);
+  blocks.push_back(std::move(block));
 }
 
 void ContactDetection::findInstrumentContacts(Surfaces& surfaces, const Bodies& bodies,
@@ -81,18 +84,17 @@ void ContactDetection::findClashes(const InstrumentTravels& travels, std::vector
     ContactBlock block;
     block.kind = BlockKind::frictional;
     block.limit = instrumentFriction;
-    block.hand = 0;
-    block.otherHand = 1;
-    block.where = 0.5 * (point.onA + point.onB);
+    ToolOnTool clash{{.hand = 0}, {.hand = 1}, 0.5 * (point.onA + point.onB)};
     block.key = point.key;
     const Mat3 frame =
         alongAxis(point.normal, instrument_[0].pose.orientation.toRotationMatrix().col(2)).toRotationMatrix();
     block.direction = {point.normal, frame.col(0), frame.col(1)};
     block.gap = {point.gap, 0.0, 0.0};
     for (std::size_t k = 0; k < block.rows(); ++k) {
-      block.tool[k] = toolRow(instrument_[0].port, instrument_[0].pose, point.onA, block.direction[k]);
-      block.otherTool[k] = -toolRow(instrument_[1].port, instrument_[1].pose, point.onB, block.direction[k]);
+      clash.left.row[k] = toolRow(instrument_[0].port, instrument_[0].pose, point.onA, block.direction[k]);
+      clash.right.row[k] = -toolRow(instrument_[1].port, instrument_[1].pose, point.onB, block.direction[k]);
     }
+    block.of = clash;
     blocks.push_back(block);
   }
 }
@@ -112,8 +114,8 @@ void ContactDetection::run(Surfaces& surfaces, Bodies& bodies, const InstrumentT
       std::max(result.tissueDepth, fat_.run(surfaces, bodies, travel_, state, activity.awake, contact.blocks));
   // A contact that sleeps on both sides needs no force.
   std::erase_if(contact.blocks, [&](const ContactBlock& block) {
-    if (block.isClash()) return false;
-    return !activity.awake[block.body] && (block.other == ContactBlock::none || !activity.awake[block.other]);
+    const auto asleep = [&](const PushedBody* pushed) { return pushed == nullptr || !activity.awake[pushed->body]; };
+    return block.as<ToolOnTool>() == nullptr && asleep(block.against()) && asleep(block.along());
   });
 }
 

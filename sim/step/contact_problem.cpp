@@ -36,17 +36,21 @@ void measureGaps(const Model& model, const Bodies& bodies, const Activity& activ
   contact.trueGap.resize(contact.rows);
   for (const ContactBlock& block : contact.blocks) {
     Vec3 apart = Vec3::Zero();
-    if (block.body != ContactBlock::none && activity.awake[block.body])
-      apart -= h * block.place.of(bodies[block.body].freeVelocity());
-    if (block.other != ContactBlock::none && activity.awake[block.other]) {
-      apart += h * block.otherPlace.of(bodies[block.other].freeVelocity());
-    }
-    const ToolRow q = block.isTissueOnTissue() ? ToolRow(ToolRow::Zero()) : stretch[block.hand];
+    const auto way = [&](const PushedBody& pushed) {
+      return Vec3(h * pushed.place.of(bodies[pushed.body].freeVelocity()));
+    };
+    const PushedBody *const against = block.against(), *const along = block.along();
+    if (against != nullptr && activity.awake[against->body]) apart -= way(*against);
+    if (along != nullptr && activity.awake[along->body]) apart += way(*along);
     for (std::size_t k = 0; k < block.rows(); ++k) {
-      contact.trueGap[block.row + k] = block.gap[k] + block.direction[k].dot(apart) + block.tool[k].dot(q);
-      if (block.isClash()) contact.trueGap[block.row + k] += block.otherTool[k].dot(stretch[block.otherHand]);
+      double& gap = contact.trueGap[block.row + k];
+      gap = block.gap[k] + block.direction[k].dot(apart);
+      for (std::size_t hand = 0; hand < handCount; ++hand) {
+        if (const std::array<ToolRow, 3>* const tool = block.toolOf(hand)) gap += (*tool)[k].dot(stretch[hand]);
+      }
     }
-    if (block.isTissueOnTissue()) contact.trueGap[block.row] += block.softness * contact.lambda[block.row];
+    if (const auto* tissue = block.as<TissueOnTissue>())
+      contact.trueGap[block.row] += tissue->softness * contact.lambda[block.row];
   }
   if (contact.pressed.empty()) return;
   evaluateDimpleGaps(contact.lambda, contact);
@@ -111,9 +115,11 @@ std::vector<ContactProblemStage::Part> ContactProblemStage::partsOf(Bodies& bodi
   std::vector<bool> stiffened(couplings.size(), false);
   rotations_.clear();
   for (std::size_t b = 0; b < contact.blocks.size(); ++b) {
-    const auto add = [&](std::size_t which, const SolidSolver::Impulse& place, double sign) {
-      if (which == ContactBlock::none || !activity.awake[which]) return;
-      parts.push_back({b, which, sign, &place, rotations_.size(), ContactBlock::none, {}, {}});
+    const auto add = [&](const PushedBody* pushed, double sign) {
+      if (pushed == nullptr || !activity.awake[pushed->body]) return;
+      const std::size_t which = pushed->body;
+      const SolidSolver::Impulse& place = pushed->place;
+      parts.push_back({b, which, sign, &place, rotations_.size(), {}, {}, {}});
       bodies[which].precomputeCompliance({place.node.data(), place.count});
       for (std::size_t k = 0; k < place.count; ++k) {
         rotation[k] = place.weight[k] * bodies[which].rotation(state, place.node[k]);
@@ -129,8 +135,8 @@ std::vector<ContactProblemStage::Part> ContactProblemStage::partsOf(Bodies& bodi
         break;
       }
     };
-    add(contact.blocks[b].body, contact.blocks[b].place, -1.0);
-    add(contact.blocks[b].other, contact.blocks[b].otherPlace, 1.0);
+    add(contact.blocks[b].against(), -1.0);
+    add(contact.blocks[b].along(), 1.0);
   }
   return parts;
 }
@@ -145,7 +151,7 @@ void ContactProblemStage::assembleTissue(Bodies& bodies, const std::vector<Part>
     for (std::size_t q = p; q < parts.size(); ++q) {
       const Part& a = parts[p];
       const Part& b = parts[q];
-      const bool coupled = a.coupling != ContactBlock::none && a.coupling == b.coupling;
+      const bool coupled = a.coupling && a.coupling == b.coupling;
       if (a.body != b.body && !coupled) continue;
       Mat3 c = Mat3::Zero();
       if (a.body == b.body) {
@@ -154,7 +160,7 @@ void ContactProblemStage::assembleTissue(Bodies& bodies, const std::vector<Part>
         c = sumOfRotated({rotations_.data() + a.rotations, a.place->count}, nodeBlocks_,
                          {rotations_.data() + b.rotations, b.place->count});
       }
-      if (coupled) c -= bodies.couplings()[a.coupling].schurComplement(a.responses, b.impulses);
+      if (coupled) c -= bodies.couplings()[*a.coupling].schurComplement(a.responses, b.impulses);
       c *= h2 * a.sign * b.sign;
       const ContactBlock& one = contact.blocks[a.block];
       const ContactBlock& two = contact.blocks[b.block];
@@ -182,7 +188,7 @@ void ContactProblemStage::assembleCouplings(ContactSystem& contact) const {
   std::vector<double>& w = contact.couplingCompliance;
   w.assign(rows * rows, 0.0);
   for (const ContactBlock& a : contact.blocks) {
-    if (a.isTissueOnTissue()) w[a.row * rows + a.row] = a.softness;
+    if (const auto* tissue = a.as<TissueOnTissue>()) w[a.row * rows + a.row] = tissue->softness;
     for (const ContactBlock& b : contact.blocks) {
       for (std::size_t h = 0; h < handCount; ++h) {
         const std::array<ToolRow, 3>* const one = a.toolOf(h);
@@ -214,19 +220,25 @@ double ContactProblemStage::run(Bodies& bodies, const Activity& activity, const 
 
 namespace {
 
+/// The hand that keeps the force of an instrument's touch.
+std::size_t keeperOf(const ContactBlock& block) {
+  const auto* both = block.as<ToolOnTool>();
+  return both != nullptr ? both->left.hand : block.tool()->hand;
+}
+
 /// The last step's force at a block's contact point (N); zero where there was none.
 Vec3 lastForce(const State& state, const ContactBlock& block) {
   Vec3 force = Vec3::Zero();
-  if (block.isTissueOnTissue()) {
+  if (block.as<TissueOnTissue>() != nullptr) {
     const std::vector<std::uint64_t>& keys = state.tissue.key;
     const auto found = std::lower_bound(keys.begin(), keys.end(), block.key);
     if (found != keys.end() && *found == block.key) {
       force = state.tissue.force[static_cast<std::size_t>(found - keys.begin())] * block.direction[0];
     }
-  } else if (block.isGrasp()) {
-    force = state.hand[block.hand].graspForce[block.anchor];
+  } else if (const auto* grasp = block.as<Grasped>()) {
+    force = state.hand[grasp->tool.hand].graspForce[grasp->anchor];
   } else {
-    const HandState& hand = state.hand[block.hand];
+    const HandState& hand = state.hand[keeperOf(block)];
     for (std::size_t k = 0; k < hand.contactKey.size(); ++k) {
       if (hand.contactKey[k] == block.key) force = hand.contactForce[k];
     }
@@ -257,14 +269,15 @@ void storeWarmStart(const ContactSystem& contact, State& state) {
   for (const ContactBlock& block : contact.blocks) {
     Vec3 force = Vec3::Zero();
     for (std::size_t k = 0; k < block.rows(); ++k) force += contact.lambda[block.row + k] * block.direction[k];
-    if (block.isTissueOnTissue()) {
+    if (block.as<TissueOnTissue>() != nullptr) {
       state.tissue.key.push_back(block.key);
       state.tissue.force.push_back(contact.lambda[block.row]);
-    } else if (block.isGrasp()) {
-      state.hand[block.hand].graspForce[block.anchor] = force;
+    } else if (const auto* grasp = block.as<Grasped>()) {
+      state.hand[grasp->tool.hand].graspForce[grasp->anchor] = force;
     } else {
-      state.hand[block.hand].contactKey.push_back(block.key);
-      state.hand[block.hand].contactForce.push_back(force);
+      HandState& hand = state.hand[keeperOf(block)];
+      hand.contactKey.push_back(block.key);
+      hand.contactForce.push_back(force);
     }
   }
 }

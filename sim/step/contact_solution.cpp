@@ -212,7 +212,8 @@ void reduceToHand(const Bodies& bodies, const State& state, const InstrumentTrav
     set.kind.push_back(block.kind);
     set.limit.push_back(block.limit);
     Vec3 velocity = Vec3::Zero();
-    if (block.body != ContactBlock::none) velocity = block.place.of(bodies[block.body].velocity(state));
+    if (const PushedBody* const pushed = block.against())
+      velocity = pushed->place.of(bodies[pushed->body].velocity(state));
     for (std::size_t k = 0; k < block.rows(); ++k) {
       const std::size_t i = block.row + k;
       double free = contact.freeGap[i] - (*tool)[k].dot(travels[hand].stretch);
@@ -228,7 +229,7 @@ void reduceToHand(const Bodies& bodies, const State& state, const InstrumentTrav
       set.direction.push_back((*tool)[k]);
       set.free.push_back(free);
       double rate = -block.direction[k].dot(velocity);
-      if (block.isClash()) {
+      if (block.as<ToolOnTool>() != nullptr) {
         const Vec3 gone = state.hand[1 - hand].simulatedPosition - travels[1 - hand].before.position;
         rate += (*block.toolOf(1 - hand))[k].head<3>().dot(gone) / bodies.step();
       }

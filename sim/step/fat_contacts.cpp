@@ -9,6 +9,8 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <optional>
+#include <utility>
 
 #include "sim/contact/capsule_contact.h"
 #include "sim/contact/surface_patches.h"
@@ -32,16 +34,17 @@ constexpr std::size_t maxFatContacts = 128;
 constexpr double minFill = 0.25;
 constexpr unsigned pairShift = 40;  ///< of a contact's key: below, the cube; from here up, the pair
 
-Box boundsOf(const Surfaces& surfaces, const TissueTravel& travel, std::size_t structure, std::size_t vessel) {
+Box boundsOf(const Surfaces& surfaces, const TissueTravel& travel, std::size_t structure,
+             std::optional<std::size_t> vessel) {
   Box all;
-  if (vessel == ContactBlock::none) {
+  if (!vessel) {
     for (const Box& patch : surfaces.bounds(structure)) {
       all.include(patch.lower);
       all.include(patch.upper);
     }
     return all;
   }
-  for (const VesselCapsule& c : travel.vessels()[vessel].now) {
+  for (const VesselCapsule& c : travel.vessels()[*vessel].now) {
     all.include(c.p0);
     all.include(c.p1);
   }
@@ -90,7 +93,7 @@ bool isExposed(const FatBody& body, std::size_t cube) {
 
 FatContacts::FatContacts(const Model& model, const TissueTravel& travel) : model_(model) {
   if (model.fat().empty()) return;
-  for (std::size_t o = 0; o < model.organs().size(); ++o) target_.push_back({o, o, ContactBlock::none, 0.0});
+  for (std::size_t o = 0; o < model.organs().size(); ++o) target_.push_back({o, o, {}, 0.0});
   for (std::size_t v = 0; v < travel.vessels().size(); ++v) {
     const TissueTravel::Vessel& vessel = travel.vessels()[v];
     target_.push_back({vessel.structure, vessel.body, v, vessel.radius});
@@ -115,7 +118,7 @@ void FatContacts::tie(Fat& fat) {
     Pair& pair = fat.pair.emplace_back();
     pair.ties.resize(cubes);
     pair.restDistance.assign(cubes, std::numeric_limits<double>::quiet_NaN());
-    const std::vector<int>* const nodes = target.vessel == ContactBlock::none
+    const std::vector<int>* const nodes = !target.vessel
                                               ? nullptr
                                               : &model_.vesselTrees()[model_.structures()[target.structure].index]
                                                      .beams.branches()[model_.structures()[target.structure].branch]
@@ -172,7 +175,7 @@ FatContacts::Nearest FatContacts::nearestOn(Surfaces& surfaces, const TissueTrav
                                             const Target& target, const Vec3& from, double limit) {
   Nearest out;
   out.distance = limit;
-  if (target.vessel == ContactBlock::none) {
+  if (!target.vessel) {
     const std::span<const std::uint32_t> patches = surfaces.patchesNear(target.structure, from, from, limit);
     if (patches.empty()) return out;
     ++searches_;
@@ -188,7 +191,7 @@ FatContacts::Nearest FatContacts::nearestOn(Surfaces& surfaces, const TissueTrav
     return out;
   }
   ++searches_;
-  for (const VesselCapsule& capsule : travel.vessels()[target.vessel].now) {
+  for (const VesselCapsule& capsule : travel.vessels()[*target.vessel].now) {
     const double s = closestOnSegment(from, capsule.p0, capsule.p1);
     const Vec3 point = capsule.p0 + s * (capsule.p1 - capsule.p0);
     const double distance = (from - point).norm();
@@ -209,8 +212,8 @@ double FatContacts::restDistance(const TissueTravel& travel, const Target& targe
   const SolidModel& solid = model_.fat()[fat.index]->solid();
   const Vec3 middle = meanOf(solid.cubes()[cube], solid.rest());
   distance = 1.0;  // anything that is far
-  if (target.vessel != ContactBlock::none) {
-    for (const VesselCapsule& c : travel.vessels()[target.vessel].rest) {
+  if (target.vessel) {
+    for (const VesselCapsule& c : travel.vessels()[*target.vessel].rest) {
       const double s = closestOnSegment(middle, c.p0, c.p1);
       distance = std::min(distance, (middle - (c.p0 + s * (c.p1 - c.p0))).norm());
     }
@@ -230,8 +233,7 @@ double FatContacts::touch(Surfaces& surfaces, const TissueTravel& travel, const 
   Pair& pair = fat.pair[which];
   const FatModel& fixed = body.model();
   const std::vector<Index8>& cubes = fixed.solid().cubes();
-  const bool isVessel = target.vessel != ContactBlock::none;
-  const double speed = isVessel ? travel.vessels()[target.vessel].speed : travel.organSpeed(target.body);
+  const double speed = target.vessel ? travel.vessels()[*target.vessel].speed : travel.organSpeed(target.body);
   const double restEdge = fixed.lattice().cell() * fixed.cellsPerCube();
   const std::uint64_t number = structurePairNumber(model_, target.structure, fat.structure) << pairShift;
   const Box bounds = boundsOf(surfaces, travel, target.structure, target.vessel);
@@ -272,21 +274,18 @@ double FatContacts::touch(Surfaces& surfaces, const TissueTravel& travel, const 
     depth = std::max(depth, -gap);
     ContactBlock block;
     block.kind = BlockKind::unilateral;
-    block.softness = tissueSoftness;
-    block.body = target.body;
-    block.structure = target.structure;
-    block.other = fat.body;
+    TissueOnTissue touching{{fat.body, {}}, {target.body, nearest.place}, tissueSoftness};
     block.direction[0] = normal;
-    block.place = nearest.place;
     const Vec3 local = notNegative(Vec3(Vec3::Constant(0.5) - fat.size[c] / stretched * along)).cwiseMin(1.0);
     const Index3& h = fixed.hexahedronOfCube(static_cast<int>(c));
     const std::array<double, 8> share =
         fixed.shares(static_cast<int>(c), static_cast<double>(fixed.cellsPerCube()) * (h.cast<double>() + local));
-    for (std::size_t k = 0; k < 8; ++k) addShare(block.otherPlace, cubes[c][k], share[k]);
+    for (std::size_t k = 0; k < 8; ++k) addShare(touching.along.place, cubes[c][k], share[k]);
     block.gap[0] = std::max(gap + allowedOverlap, -maxRecovery);
     block.key = number | c;
     gap_.push_back(gap);
-    blocks.push_back(block);
+    block.of = std::move(touching);
+    blocks.push_back(std::move(block));
   }
   return depth;
 }
@@ -311,9 +310,7 @@ double FatContacts::run(Surfaces& surfaces, const Bodies& bodies, const TissueTr
     gap_.clear();
     for (std::size_t t = 0; t < target_.size(); ++t) {
       const Target& target = target_[t];
-      wear(fat,
-           target.vessel == ContactBlock::none ? travel.organMotion(target.body)
-                                               : travel.vessels()[target.vessel].motion,
+      wear(fat, !target.vessel ? travel.organMotion(target.body) : travel.vessels()[*target.vessel].motion,
            fat.pair[t].clearance);
       if (!awake[fat.body] && !awake[target.body]) continue;
       depth = std::max(depth, touch(surfaces, travel, state, body, bodies.step(), fat, t, blocks));

@@ -2,6 +2,8 @@
 #include "sim/step/placed_instrument.h"
 
 #include <algorithm>
+#include <optional>
+#include <utility>
 
 #include "sim/geometry/closest_point.h"
 #include "sim/instruments/instrument_shape.h"
@@ -118,17 +120,17 @@ void Grasping::closeOne(Surfaces& surfaces, std::size_t hand, State& state, Step
   const double shaftRadius = model_.scene().hands[hand].shaftRadius;
   const auto [from, to] = graspLine(instrument, shaftRadius);
   const JawSpace space = jawSpace(instrument, shaftRadius, to[2] - from[2], foldRise);
-  std::size_t structure = ContactBlock::none;
+  std::optional<std::size_t> structure;
   std::vector<Vec3> held;
   for (const double station : stations) {
     const Vec3 target = tool.position + tool.orientation * Vec3(from + station * (to - from));
     const Vec3 inJaws = from + station * (to - from);
     double nearest = searchRadius * searchRadius;
-    std::size_t nearestStructure = ContactBlock::none;
+    std::optional<std::size_t> nearestStructure;
     Index3 triangle = Index3::Zero();
     PointTriangle best;
     for (std::size_t s = 0; s < surfaces.size(); ++s) {
-      if (structure != ContactBlock::none && s != structure) continue;
+      if (structure && s != *structure) continue;
       for (const std::uint32_t p : surfaces.patchesNear(s, target, target, searchRadius)) {
         const ContactSurface& surface = surfaces.mesh(s);
         for (std::size_t t = surface.patches()[p].first; t < surface.patches()[p].last; ++t) {
@@ -145,7 +147,7 @@ void Grasping::closeOne(Surfaces& surfaces, std::size_t hand, State& state, Step
         }
       }
     }
-    if (nearestStructure == ContactBlock::none) continue;
+    if (!nearestStructure) continue;
     const bool near =
         std::any_of(held.begin(), held.end(), [&](const Vec3& p) { return (p - best.point).norm() < minSpacing; });
     if (near) continue;
@@ -158,10 +160,10 @@ void Grasping::closeOne(Surfaces& surfaces, std::size_t hand, State& state, Step
     h.graspForce.push_back(Vec3::Zero());
   }
   if (held.empty()) return;
-  h.grasped = static_cast<std::uint32_t>(structure);
+  h.grasped = static_cast<std::uint32_t>(*structure);
   h.graspSince = state.clock.step;
   h.slipping = false;
-  log.emit(EventKind::graspBegin, hand, structure, h.simulatedPosition, h.realJaw);
+  log.emit(EventKind::graspBegin, hand, *structure, h.simulatedPosition, h.realJaw);
 }
 
 void Grasping::addBlocks(const Surfaces& surfaces, const State& state, std::vector<ContactBlock>& blocks) const {
@@ -177,20 +179,21 @@ void Grasping::addBlocks(const Surfaces& surfaces, const State& state, std::vect
       ContactBlock block;
       block.kind = BlockKind::bilateral;
       block.limit = each;
-      block.hand = hand;
-      block.body = model_.structures()[h.grasped].body;
-      block.structure = h.grasped;
-      block.anchor = a;
-      block.place =
+      Grasped grasp;
+      grasp.tool.hand = hand;
+      grasp.anchor = a;
+      grasp.tissue.body = model_.structures()[h.grasped].body;
+      grasp.tissue.place =
           surfaces.skin(h.grasped).influence({static_cast<int>(h.graspNode[a][0]), static_cast<int>(h.graspNode[a][1]),
                                               static_cast<int>(h.graspNode[a][2])},
                                              h.graspWeight[a]);
       for (std::size_t k = 0; k < 3; ++k) {
         block.direction[k] = Vec3::Unit(static_cast<int>(k));
         block.gap[k] = inJaws[static_cast<int>(k)] - onSkin[static_cast<int>(k)];
-        block.tool[k] = toolRow(description.port, tool, inJaws, block.direction[k]);
+        grasp.tool.row[k] = toolRow(description.port, tool, inJaws, block.direction[k]);
       }
-      blocks.push_back(block);
+      block.of = std::move(grasp);
+      blocks.push_back(std::move(block));
     }
   }
 }

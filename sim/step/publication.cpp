@@ -192,8 +192,8 @@ void Publication::publishHand(const ContactSystem& contact, std::size_t h, State
   out.insertion = (hand.simulatedPosition - model_.scene().hands[h].port).norm();
   std::fill(out.structureForce.begin(), out.structureForce.end(), 0.0);
   for (const ContactBlock& block : contact.blocks) {
-    if (block.hand == h && !block.isGrasp() && !block.isClash())
-      out.structureForce[block.structure] += contact.lambda[block.row];
+    const auto* touch = block.as<ToolOnTissue>();
+    if (touch != nullptr && touch->tool.hand == h) out.structureForce[touch->structure] += contact.lambda[block.row];
   }
   out.touching = 0;
   for (std::size_t s = 0; s < model_.structures().size(); ++s) {
@@ -217,7 +217,7 @@ void Publication::publishClash(const ContactSystem& contact, State& state, StepR
   InstrumentTouchState& touch = state.instruments;
   const ContactBlock* strongest = nullptr;
   for (const ContactBlock& block : contact.blocks) {
-    if (!block.isClash() || !(contact.lambda[block.row] > minForce)) continue;
+    if (block.as<ToolOnTool>() == nullptr || !(contact.lambda[block.row] > minForce)) continue;
     if (strongest == nullptr || contact.lambda[block.row] > contact.lambda[strongest->row]) strongest = &block;
   }
   result.contact.instrumentsTouch = strongest != nullptr;
@@ -230,7 +230,8 @@ void Publication::publishClash(const ContactSystem& contact, State& state, StepR
   if (touch.touching) return;
   touch.touching = true;
   touch.begun = state.clock.step;
-  log.emit(EventKind::instrumentsTouched, StepLog::noHand, 0, strongest->where, contact.lambda[strongest->row]);
+  log.emit(EventKind::instrumentsTouched, StepLog::noHand, 0, strongest->as<ToolOnTool>()->where,
+           contact.lambda[strongest->row]);
 }
 
 void Publication::reportRunaway(const Bodies& bodies, const Activity& activity, const std::vector<bool>& diverged,
@@ -307,10 +308,11 @@ void wakePressed(const Model& model, const Bodies& bodies, std::uint64_t pair, S
 void wakeBodies(const Model& model, Bodies& bodies, const InstrumentTravels& travels,
                 std::span<const ContactBlock> blocks, State& state, Activity& activity) {
   for (const ContactBlock& block : blocks) {
-    if (block.isClash()) continue;
-    const double approach = block.tool[0].dot(travels[block.hand].stretch);
+    const PushedTool* const tool = block.tool();
+    if (tool == nullptr) continue;
+    const double approach = tool->row[0].dot(travels[tool->hand].stretch);
     if (block.kind == BlockKind::bilateral || block.gap[0] + std::min(approach, 0.0) < openGap) {
-      bodies[block.body].quietSteps(state) = 0;
+      bodies[block.against()->body].quietSteps(state) = 0;
     }
   }
   for (std::size_t i = 0; i < state.tissue.key.size(); ++i) {
@@ -338,7 +340,7 @@ void countQuietSteps(const Model& model, Bodies& bodies, std::span<const Contact
                      double speed, State& state) {
   bool touched = false;
   for (const ContactBlock& block : blocks) {
-    touched = touched || (!block.isTissueOnTissue() && block.body == which);
+    touched = touched || (block.tool() != nullptr && block.against()->body == which);
   }
   std::uint32_t& quiet = bodies[which].quietSteps(state);
   quiet = !touched && speed < quietSpeed ? quiet + 1 : 0;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -211,10 +212,10 @@ class ContactProblemStage {
     std::size_t block, body;
     double sign;
     const SolidSolver::Impulse* place;
-    std::size_t rotations;                      // of its nodes: weight times rotation
-    std::size_t coupling = ContactBlock::none;  // that the body takes part in
-    std::vector<Mat3> responses;                // relative velocities of the coupling's ties
-    std::vector<Mat3> impulses;                 // with which the ties respond
+    std::size_t rotations;                // of its nodes: weight times rotation
+    std::optional<std::size_t> coupling;  // that the body takes part in
+    std::vector<Mat3> responses;          // relative velocities of the coupling's ties
+    std::vector<Mat3> impulses;           // with which the ties respond
     [[nodiscard]] std::span<const int> nodes() const { return {place->node.data(), place->count}; }
   };
 

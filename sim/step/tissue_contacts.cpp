@@ -92,12 +92,11 @@ double TissueContacts::addPair(Surfaces& surfaces, const State& state, std::size
     depth = std::max(depth, -contact.gap);
     ContactBlock block;
     block.kind = BlockKind::unilateral;
-    block.body = block.structure = pair.b;
-    block.other = pair.a;
-    block.softness = tissueSoftness;
+    block.of = TissueOnTissue{
+        {pair.a, surfaces.skin(pair.a).influence({contact.vertex, contact.vertex, contact.vertex}, Vec3::UnitX())},
+        {pair.b, surfaces.skin(pair.b).influence(contact.node, contact.weight)},
+        tissueSoftness};
     block.direction[0] = contact.normal;
-    block.place = surfaces.skin(pair.b).influence(contact.node, contact.weight);
-    block.otherPlace = surfaces.skin(pair.a).influence({contact.vertex, contact.vertex, contact.vertex}, Vec3::UnitX());
     // Deep overlaps part over several steps, or organs would be thrown apart.
     block.gap[0] = std::max(contact.gap + allowedOverlap, -maxRecovery);
     block.key = contact.key | static_cast<std::uint64_t>(number) << 40U;

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -261,8 +262,8 @@ class FatContacts {
   /// A body that fat can touch: an organ, or a vessel.
   struct Target {
     std::size_t structure = 0, body = 0;
-    std::size_t vessel = ContactBlock::none;  ///< in TissueTravel's order
-    double radius = 0.0;                      ///< of a vessel (m)
+    std::optional<std::size_t> vessel;  ///< in TissueTravel's order
+    double radius = 0.0;                ///< of a vessel (m)
   };
   /// One body of fat and one target.
   struct Pair {

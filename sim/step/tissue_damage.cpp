@@ -94,8 +94,9 @@ constexpr double gripRoom = 0.0005;  ///< between blades and vessel where they c
 
 /// The vessel whose centre line runs between the jaws, nearest to the line in their middle.
 /// @param length of that line, from the tips backwards (m)
-VesselTools::Crossing VesselTools::vesselBetween(const State& state, std::size_t hand, double length) const {
-  Crossing best;
+std::optional<VesselTools::Crossing> VesselTools::vesselBetween(const State& state, std::size_t hand,
+                                                                double length) const {
+  std::optional<Crossing> best;
   const Pose tool = simulatedPose(state.hand[hand]);
   const Vec3 along = tool.orientation * Vec3::UnitZ();
   const Quat toJaws = tool.orientation.conjugate();
@@ -135,20 +136,21 @@ VesselTools::Crossing VesselTools::vesselBetween(const State& state, std::size_t
       const SegmentSegment inside = closestSegments(crotch, tips, a + first * (b - a), a + last * (b - a));
       if (!(inside.squaredDistance < least)) continue;
       least = inside.squaredDistance;
-      best.structure = s;
-      best.place.branch = structure.branch;
-      best.place.element = e;
-      best.place.share = first + inside.t * (last - first);
+      best.emplace();
+      best->structure = s;
+      best->place.branch = structure.branch;
+      best->place.element = e;
+      best->place.share = first + inside.t * (last - first);
       const std::size_t i = e - branch.firstElement;
-      best.place.arcLength = branch.arcLength[i] + best.place.share * (branch.arcLength[i + 1] - branch.arcLength[i]);
-      best.depth = inside.s * (length + 2.0 * beyond) - beyond;
+      best->place.arcLength = branch.arcLength[i] + best->place.share * (branch.arcLength[i + 1] - branch.arcLength[i]);
+      best->depth = inside.s * (length + 2.0 * beyond) - beyond;
     }
   }
-  if (best.structure == ContactBlock::none) return best;
-  const std::size_t tree = model_.structures()[best.structure].index;
-  best.frame = centreLine(model_.vesselTrees()[tree].beams, state.vessel[tree], best.place);
-  const double cosine = along.dot(best.frame.orientation * Vec3::UnitZ());
-  best.sine = std::sqrt(notNegative(1.0 - cosine * cosine));
+  if (!best) return best;
+  const std::size_t tree = model_.structures()[best->structure].index;
+  best->frame = centreLine(model_.vesselTrees()[tree].beams, state.vessel[tree], best->place);
+  const double cosine = along.dot(best->frame.orientation * Vec3::UnitZ());
+  best->sine = std::sqrt(notNegative(1.0 - cosine * cosine));
   return best;
 }
 
@@ -172,7 +174,7 @@ bool VesselTools::isGripped(const State& state, std::size_t hand, const Crossing
   return upper && lower;
 }
 
-void VesselTools::setClipOn(std::size_t hand, const Crossing& crossing, Bodies& bodies, State& state,
+void VesselTools::setClipOn(std::size_t hand, const std::optional<Crossing>& crossing, Bodies& bodies, State& state,
                             Activity& activity, StepLog& log) const {
   HandState& h = state.hand[hand];
   if (h.clips == 0) return;
@@ -180,21 +182,21 @@ void VesselTools::setClipOn(std::size_t hand, const Crossing& crossing, Bodies& 
   const auto drop = [&] {
     log.emit(EventKind::clipDropped, hand, 0, h.simulatedPosition, static_cast<double>(h.clips));
   };
-  if (crossing.structure == ContactBlock::none) {
+  if (!crossing) {
     drop();
     return;
   }
-  const StructureModel& structure = model_.structures()[crossing.structure];
+  const StructureModel& structure = model_.structures()[crossing->structure];
   const BeamModel& beams = model_.vesselTrees()[structure.index].beams;
   BeamState& vessels = state.vessel[structure.index];
   const ClipDescription& clip = model_.scene().clip;
   ClipAttempt attempt;
-  attempt.point = crossing.place;
+  attempt.point = crossing->place;
   attempt.width = clip.width;
   // An oblique vessel fills more of the legs.
-  attempt.legs = clip.legs * crossing.sine;
-  attempt.depth = crossing.depth * crossing.sine;
-  const Vec3 closing = crossing.frame.orientation.conjugate() * (h.simulatedOrientation * Vec3::UnitY());
+  attempt.legs = clip.legs * crossing->sine;
+  attempt.depth = crossing->depth * crossing->sine;
+  const Vec3 closing = crossing->frame.orientation.conjugate() * (h.simulatedOrientation * Vec3::UnitY());
   attempt.roll = arctangent2(closing[1], closing[0]);
   const ClipSeat seat = clipSeat(beams, vessels, attempt);
   if (seat.missed) {
@@ -204,7 +206,7 @@ void VesselTools::setClipOn(std::size_t hand, const Crossing& crossing, Bodies& 
   setClip(beams, vessels, attempt, seat.enclosed);
   activity.disturb(bodies, state, structure.body);
   const auto report = [&](EventKind kind, double value) {
-    log.emit(kind, hand, crossing.structure, crossing.frame.position, value);
+    log.emit(kind, hand, crossing->structure, crossing->frame.position, value);
   };
   report(EventKind::clipSet, seat.enclosed);
   report(EventKind::clipPlace, attempt.point.arcLength);
@@ -221,13 +223,14 @@ void VesselTools::closeOne(std::size_t hand, Bodies& bodies, Surfaces& surfaces,
   if (!h.jawsOpened || (!clips && instrument.action != InstrumentAction::cut)) return;
   const bool closed = h.realJaw <= instrument.jaw.closed || (clips && (h.buttons & button::fire) != 0);
   if (!closed && (clips || h.realJaw > instrument.jaw.opened)) return;
-  const Crossing crossing = vesselBetween(state, hand, clips ? model_.scene().clip.legs : instrument.bladeLength);
+  const std::optional<Crossing> crossing =
+      vesselBetween(state, hand, clips ? model_.scene().clip.legs : instrument.bladeLength);
   if (clips) {
     setClipOn(hand, crossing, bodies, state, activity, log);
-  } else if (crossing.structure != ContactBlock::none && isGripped(state, hand, crossing)) {
+  } else if (crossing && isGripped(state, hand, *crossing)) {
     // Blades part what they enclose: the centre line must be between them.
-    if (crossing.depth >= 0.0 && crossing.depth <= instrument.bladeLength) {
-      partVessel(model_, crossing.structure, crossing.place, EventKind::vesselCut, hand, bodies, surfaces, state,
+    if (crossing->depth >= 0.0 && crossing->depth <= instrument.bladeLength) {
+      partVessel(model_, crossing->structure, crossing->place, EventKind::vesselCut, hand, bodies, surfaces, state,
                  activity, log);
     }
   } else if (!closed) {

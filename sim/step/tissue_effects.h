@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "sim/connective/connective_tissue.h"
@@ -115,18 +116,18 @@ class VesselTools {
  private:
   /// Part of a vessel that runs between jaws.
   struct Crossing {
-    std::size_t structure = ContactBlock::none;
+    std::size_t structure = 0;
     BeamPoint place;
     double depth = 0.0;  ///< of its centre line from the jaws' crotch (m)
     double sine = 1.0;   ///< of the angle between vessel and jaws
     Pose frame;          ///< centre line there
   };
 
-  [[nodiscard]] Crossing vesselBetween(const State& state, std::size_t hand, double length) const;
+  [[nodiscard]] std::optional<Crossing> vesselBetween(const State& state, std::size_t hand, double length) const;
   bool isGripped(const State& state, std::size_t hand, const Crossing& crossing);
   void closeOne(std::size_t hand, Bodies& bodies, Surfaces& surfaces, State& state, Activity& activity, StepLog& log);
-  void setClipOn(std::size_t hand, const Crossing& crossing, Bodies& bodies, State& state, Activity& activity,
-                 StepLog& log) const;
+  void setClipOn(std::size_t hand, const std::optional<Crossing>& crossing, Bodies& bodies, State& state,
+                 Activity& activity, StepLog& log) const;
 
   const Model& model_;
   PlacedInstrument instrument_;

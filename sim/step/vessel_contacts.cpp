@@ -137,12 +137,9 @@ double VesselContacts::touchOrgan(Surfaces& surfaces, const TissueTravel& travel
     depth = std::max(depth, -gap);
     ContactBlock block;
     block.kind = BlockKind::unilateral;
-    block.softness = vesselSoftness;
-    block.body = block.structure = o;
-    block.other = v.body;
+    block.of = TissueOnTissue{
+        {v.body, c.place(share)}, {o, surfaces.skin(o).influence(point.node, point.weight)}, vesselSoftness};
     block.direction[0] = point.normal;
-    block.place = surfaces.skin(o).influence(point.node, point.weight);
-    block.otherPlace = c.place(share);
     block.gap[0] = std::max(gap + allowedOverlap, -maxRecovery);
     block.key = pair | keyOf(c, place);
     blocks.push_back(block);
@@ -248,13 +245,9 @@ double VesselContacts::touchVessel(const TissueTravel& travel, double step, std:
     depth = std::max(depth, -gap);
     ContactBlock block;
     block.kind = BlockKind::unilateral;
-    block.softness = vesselSoftness;
-    block.body = b.body;
-    block.structure = b.structure;
-    block.other = a.body;
+    block.of = TissueOnTissue{
+        {a.body, a.now[i].place(share)}, {b.body, b.now[nearest.with].place(nearest.points.t)}, vesselSoftness};
     block.direction[0] = (nearest.points.first - nearest.points.second) / nearest.distance;
-    block.place = b.now[nearest.with].place(nearest.points.t);
-    block.otherPlace = a.now[i].place(share);
     block.gap[0] = std::max(gap + allowedOverlap, -maxRecovery);
     block.key = pair | keyOf(a.now[i], place);
     blocks.push_back(block);

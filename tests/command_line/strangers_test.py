@@ -135,6 +135,8 @@ class MotionFiles(program.ProgramTest):
         self.assertMotion(timed(lambda i: str(7 + i), time=clock("frame"), rate=100))
         path = self.write("m.csv", "t,lx,ly,lz,rx,ry,rz\n" + "".join(f"2026-10-25T02:59:{i // 100:02d}.{i % 100:02d},1,2,3,4,5,6\n" for i in range(99)))
         self.refusedWith(4, path, "--columns", self.columns(time=clock("iso")), names=("line 2", '"zone"'))
+        path = self.write("m.csv", "t,lx,ly,lz,rx,ry,rz\n" + "".join(f"2026-10-25T02:{59 if i < 60 else 0:02d}:{i % 60:02d},1,2,3,4,5,6\n" for i in range(58, 62)))
+        self.refusedWith(4, path, "--columns", self.columns(time=clock("iso", zone="+02:00")), names=("line 4", "autumn", "UTC"))
 
     def test_rows_out_of_order(self):
         twice = [row for i, row in enumerate(ROWS) for row in [row] * (2 if i % 97 == 50 else 1)]
@@ -329,12 +331,16 @@ class MotionFiles(program.ProgramTest):
         return path
 
     def test_robomimic(self):
-        guess = self.assertRecognised("robomimic", self.demonstrations("one.hdf5").read_bytes(), "robomimic", jerk=0.2)
-        self.assertEqual((guess["rate"], guess["left"]["quaternion"][0]), (100, "robot0_left_eef_quat_w"))
+        one = self.demonstrations("one.hdf5")
+        self.refusedWith(2, one, names=("one.hdf5", "robomimic", "length"))
+        guess = json.loads(self.well("import", one, "--guess").out)
+        self.assertEqual((guess["rate"], guess["left"]["quaternion"][0], guess["length"]), (100, "robot0_left_eef_quat_w", "?"))
+        figures = self.figures(one, "--columns", self.write("filled.json", json.dumps({**guess, "length": "m"})))
+        self.assertMotion(figures, jerk=0.2)
         several = self.demonstrations("several.hdf5", count=11)
         self.refusedWith(2, several, names=("several.hdf5", "11"))
         guess = json.loads(self.well("import", several, "--guess").out)
-        columns = lambda **more: self.write("filled.json", json.dumps({**guess, **more}))
+        columns = lambda **more: self.write("filled.json", json.dumps({**guess, "length": "m", **more}))
         self.assertMotion(self.figures(several, "--columns", columns(demonstration="demo_10")), jerk=0.2)
         guess.pop("demonstration")
         self.refusedWith(4, several, "--columns", columns(), names=("several.hdf5", "demo_0 to demo_10", '"demonstration"'))
