@@ -68,6 +68,7 @@ struct ToolOnTool {
   Vec3 where = Vec3::Zero();  ///< p_W (m)
 };
 
+/// Wet tissue on wet tissue, which slides without friction.
 struct TissueOnTissue {
   PushedBody along, against;
   double softness = 0.0;  ///< by which tissue sinks into tissue for the force at this point (m/N)
