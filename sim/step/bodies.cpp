@@ -326,12 +326,15 @@ std::size_t Bodies::firstStructure(std::size_t which) const {
 
 Activity::Activity(const Model& model)
     : awake(model.bodies(), false),
+      quiet(model.bodies(), 0),
       written(model.bodies(), false),
+      reshaped(model.bodies(), false),
       frayed(model.connective().size(), false),
       charred(model.organs().size(), false),
       carved(model.fat().size(), false) {}
 
 void Activity::beginStep() {
+  std::fill(reshaped.begin(), reshaped.end(), false);
   std::fill(charred.begin(), charred.end(), false);
   std::fill(carved.begin(), carved.end(), false);
 }

@@ -330,22 +330,30 @@ class Bodies {
   std::vector<TieCoupling> coupling_;
 };
 
-/// Bodies that a step solves, and parts of State that it writes (the incremental digest hashes only those).
+/// Bodies that a step solves and disturbs, and parts of State that it writes (the incremental digest hashes only
+/// those).
 struct Activity {
-  std::vector<bool> awake;    ///< per body: solved in this step
-  std::vector<bool> written;  ///< per body: its State is not that of the step before
-  std::vector<bool> frayed;   ///< per connective tissue: strands burned, touched, damaged or torn
-  std::vector<bool> charred;  ///< per organ
-  std::vector<bool> carved;   ///< per body of fat
+  std::vector<bool> awake;           ///< per body: solved in this step
+  std::vector<std::uint32_t> quiet;  ///< per body: steps that it has been quiet, 0 where something wakes it
+  std::vector<bool> written;         ///< per body: its State is not that of the step before
+  std::vector<bool> reshaped;        ///< per body: stages after the motion changed its skin
+  std::vector<bool> frayed;          ///< per connective tissue: strands burned, touched, damaged or torn
+  std::vector<bool> charred;         ///< per organ
+  std::vector<bool> carved;          ///< per body of fat
 
   explicit Activity(const Model& model);
   void beginStep();
   /// Appends for each of State's components of tissue, in their order, whether the step wrote it.
   void appendWritten(const Bodies& bodies, std::vector<bool>& out) const;
   /// Wakes a body for the next step.
-  void disturb(Bodies& bodies, State& state, std::size_t which) {
-    bodies[which].quietSteps(state) = 0;
-    written[which] = true;
+  void disturb(std::size_t body) {
+    quiet[body] = 0;
+    written[body] = true;
+  }
+  /// Its skin changed, besides.
+  void reshape(std::size_t body) {
+    disturb(body);
+    reshaped[body] = true;
   }
 };
 

@@ -43,6 +43,7 @@ class Body {
   [[nodiscard]] virtual std::span<const Vec3> position(const State& state) const = 0;
   [[nodiscard]] virtual std::span<const Vec3> velocity(const State& state) const = 0;
   [[nodiscard]] virtual std::uint32_t& quietSteps(State& state) const = 0;
+  [[nodiscard]] std::uint32_t quietSteps(const State& state) const { return quietSteps(const_cast<State&>(state)); }
 
   /// Velocities that the step ends with, as far as they are known. @pre its free motion was solved
   [[nodiscard]] virtual std::span<const Vec3> freeVelocity() const = 0;

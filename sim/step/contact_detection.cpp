@@ -99,24 +99,23 @@ void ContactDetection::findClashes(const InstrumentTravels& travels, std::vector
   }
 }
 
-void ContactDetection::run(Surfaces& surfaces, Bodies& bodies, const InstrumentTravels& travels, State& state,
-                           Activity& activity, ContactSystem& contact, ContactResult& result) {
+double ContactDetection::run(Surfaces& surfaces, const Bodies& bodies, const InstrumentTravels& travels,
+                             const State& state, Activity& activity, ContactSystem& contact) {
   contact.blocks.clear();
   findInstrumentContacts(surfaces, bodies, travels, state, contact.blocks);
   grasping_.addBlocks(surfaces, state, contact.blocks);
   findClashes(travels, contact.blocks);
   wakeBodies(model_, bodies, travels, contact.blocks, state, activity);
-  result.tissueDepth = tissue_.run(surfaces, state, activity.awake, contact.blocks);
+  double depth = tissue_.run(surfaces, state, activity.awake, contact.blocks);
   travel_.follow(surfaces, bodies, state, activity.awake);
-  result.tissueDepth = std::max(result.tissueDepth,
-                                vessels_.run(surfaces, travel_, state, bodies.step(), activity.awake, contact.blocks));
-  result.tissueDepth =
-      std::max(result.tissueDepth, fat_.run(surfaces, bodies, travel_, state, activity.awake, contact.blocks));
+  depth = std::max(depth, vessels_.run(surfaces, travel_, state, bodies.step(), activity.awake, contact.blocks));
+  depth = std::max(depth, fat_.run(surfaces, bodies, travel_, state, activity.awake, contact.blocks));
   // A contact that sleeps on both sides needs no force.
   std::erase_if(contact.blocks, [&](const ContactBlock& block) {
     const auto asleep = [&](const PushedBody* pushed) { return pushed == nullptr || !activity.awake[pushed->body]; };
     return block.as<ToolOnTool>() == nullptr && asleep(block.against()) && asleep(block.along());
   });
+  return depth;
 }
 
 namespace {

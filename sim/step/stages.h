@@ -77,8 +77,7 @@ class InstrumentMotion {
 // Stage 3 of a step: contact points of instruments and among organs, and the bodies that are awake.
 
 /// Reads: simulated instruments, surfaces, velocities of the tissue. Writes: `contact.blocks` (in the order of hand,
-/// structure and contact point; grasps; instruments on each other; tissue on tissue), which bodies are awake, and the
-/// overlap of organs as found.
+/// structure and contact point; grasps; instruments on each other; tissue on tissue), and which bodies are awake.
 class ContactDetection {
  public:
   /// @param grasping outlives this
@@ -97,9 +96,9 @@ class ContactDetection {
     fat_.invalidate();
   }
   void precompute() { tissue_.precompute(); }
-  /// @pre surfaces are current
-  void run(Surfaces& surfaces, Bodies& bodies, const InstrumentTravels& travels, State& state, Activity& activity,
-           ContactSystem& contact, ContactResult& result);
+  /// @return the overlap of tissue as found (m) @pre surfaces are current
+  double run(Surfaces& surfaces, const Bodies& bodies, const InstrumentTravels& travels, const State& state,
+             Activity& activity, ContactSystem& contact);
 
  private:
   void findInstrumentContacts(Surfaces& surfaces, const Bodies& bodies, const InstrumentTravels& travels,
@@ -303,40 +302,57 @@ class ContactResponse {
 void reduceToHand(const Bodies& bodies, const State& state, const InstrumentTravels& travels,
                   const ContactSystem& contact, std::size_t hand, std::uint64_t step, ContactSet& set);
 
-// Stage 9 of a step: StepResult, and the counters of State that follow from the whole step.
+// Stage 9 of a step: what follows from the whole of it.
 
-/// Reads: everything that the stages before left. Writes: StepResult of tissue and hands; sleep counters;
-/// when each touch began; grasps that slip or tear.
-class Publication {
+/// Bodies come to rest, vessels tear, grasps slip or tear, touches begin and end. At last the guard of last resort:
+/// reports that the simulation ran away, and where.
+///
+/// Reads: contact forces, and what the stages before left. Writes: extents, sleep counters, partings, grasps and
+/// touches of State; what they disturb; forces by structure, grasps and largest speeds of the result.
+class Settling {
  public:
-  /// @param grasping outlives this. @param bodies whose fat is uncarved yet
-  Publication(const Model& model, Grasping& grasping, const Bodies& bodies);
-  /// @pre surfaces are current but for what stage 8 changed
-  void run(const ContactSystem& contact, Surfaces& surfaces, Bodies& bodies, State& state, Activity& activity,
-           StepResult& result, StepLog& log);
+  /// @param grasping outlives this
+  Settling(const Model& model, Grasping& grasping) : model_(model), grasping_(grasping) {}
+  /// @param diverged per body, see ContactResponse @pre surfaces are current but for what stage 8 changed
+  void run(const ContactSystem& contact, const std::vector<bool>& diverged, Surfaces& surfaces, Bodies& bodies,
+           State& state, Activity& activity, StepResult& result, StepLog& log);
 
-  /// The guard of last resort, after everything else: reports that the simulation ran away, and where.
-  /// @param diverged per body, see ContactResponse
+ private:
+  void settleOrgans(const ContactSystem& contact, Activity& activity, State& state, StepResult& result) const;
+  void settleVessels(const ContactSystem& contact, const Bodies& bodies, Activity& activity, State& state,
+                     StepLog& log) const;
+  void settleFat(const ContactSystem& contact, const Bodies& bodies, Activity& activity, State& state,
+                 StepResult& result) const;
+  void rest(Surfaces& surfaces, Bodies& bodies, const Activity& activity, State& state) const;
+  void settleTouches(const ContactSystem& contact, std::size_t hand, State& state, HandResult& out, StepLog& log) const;
+  void settleClash(const ContactSystem& contact, State& state, ContactResult& result, StepLog& log) const;
   void reportRunaway(const Bodies& bodies, const Activity& activity, const std::vector<bool>& diverged,
                      const State& state, StepLog& log) const;
 
+  const Model& model_;
+  Grasping& grasping_;
+};
+
+// Stage 10 of a step: StepResult.
+
+/// Copies what is left to be said of State and bodies. Decides nothing.
+class Publication {
+ public:
+  /// @param bodies whose fat is uncarved yet
+  Publication(const Model& model, const Bodies& bodies);
+  void run(const Bodies& bodies, const Activity& activity, const State& state, StepResult& result) const;
+
  private:
-  void publishOrgans(const ContactSystem& contact, Bodies& bodies, const Activity& activity, State& state,
-                     StepResult& result) const;
-  void publishVessels(const ContactSystem& contact, Surfaces& surfaces, Bodies& bodies, Activity& activity,
-                      State& state, StepResult& result, StepLog& log) const;
+  void publishOrgans(const State& state, StepResult& result) const;
+  void publishConnective(const State& state, StepResult& result) const;
+  void publishVessels(const Bodies& bodies, const Activity& activity, const State& state, StepResult& result) const;
   void publishVessel(const Bodies& bodies, bool awake, const State& state, std::size_t tree, std::size_t branch,
                      VesselResult& out) const;
-  void publishFat(const ContactSystem& contact, Bodies& bodies, const Activity& activity, State& state,
-                  StepResult& result) const;
-  void publishHand(const ContactSystem& contact, std::size_t hand, State& state, HandResult& out, StepLog& log) const;
-
-  void publishClash(const ContactSystem& contact, State& state, StepResult& result, StepLog& log) const;
-  void publishConnective(const State& state, StepResult& result) const;
+  void publishFat(const Bodies& bodies, const Activity& activity, const State& state, StepResult& result) const;
+  static void publishHand(const HandState& hand, const Vec3& port, HandResult& out);
   [[nodiscard]] double shareLeft(const Bodies& bodies, std::size_t fat, std::size_t region) const;
 
   const Model& model_;
-  Grasping& grasping_;
   /// Per body of fat: volumes of its regions before anything is carved (m^3).
   std::vector<std::vector<double>> wholeRegion_;
 };
@@ -345,12 +361,9 @@ class Publication {
 
 /// Wakes the bodies that an instrument is about to touch or grasps, those that another organ pressed in the last step,
 /// those that an assistant pulls, and everything tied to them.
-/// Reads: instrument blocks, travels, last forces. Writes: sleep counters of State, `activity.awake` and `written`.
-void wakeBodies(const Model& model, Bodies& bodies, const InstrumentTravels& travels,
-                std::span<const ContactBlock> blocks, State& state, Activity& activity);
-
-/// Counts the steps that a body has been quiet, and stops it where that is long enough. @param speed largest (m/s)
-void countQuietSteps(const Model& model, Bodies& bodies, std::span<const ContactBlock> blocks, std::size_t which,
-                     double speed, State& state);
+/// Reads: instrument blocks, travels, last forces, sleep counters. Writes: `awake`, `quiet` and `written` of
+/// `activity`.
+void wakeBodies(const Model& model, const Bodies& bodies, const InstrumentTravels& travels,
+                std::span<const ContactBlock> blocks, const State& state, Activity& activity);
 
 }  // namespace calot

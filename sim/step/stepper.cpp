@@ -36,7 +36,8 @@ struct Stepper::Pipeline {
         contactSolution(m),
         contactResponse(m),
         tissueEffects(m),
-        publication(m, grasping, bodies),
+        settling(m, grasping),
+        publication(m, bodies),
         result(emptyResult(m)) {}
 
   const Model& model;
@@ -53,6 +54,7 @@ struct Stepper::Pipeline {
   ContactSolution contactSolution;
   ContactResponse contactResponse;
   TissueEffects tissueEffects;
+  Settling settling;
   Publication publication;
 
   ContactSystem contact;
@@ -78,15 +80,15 @@ const StepResult& Stepper::step(State& state, std::span<const TickSamples> sampl
   p.sampleStage.run(samples, state, log);
   p.surfaces.refresh(state);
   const InstrumentTravels travels = p.instrumentMotion.run(p.surfaces, state, log, p.result.contact);
-  p.contactDetection.run(p.surfaces, p.bodies, travels, state, p.activity, p.contact, p.result.contact);
+  p.result.contact.tissueDepth = p.contactDetection.run(p.surfaces, p.bodies, travels, state, p.activity, p.contact);
   loadWarmStart(state, p.contact);
   p.unconstrainedMotion.run(p.bodies, p.contact, p.activity, state, p.result, log);
   p.result.contact.violation = p.contactProblem.run(p.bodies, p.activity, travels, state, p.contact);
   p.contactSolution.run(p.bodies, p.activity, travels, p.contact, p.result.contact, log);
   p.contactResponse.run(p.surfaces, p.bodies, p.activity, travels, p.contact, state, p.contactSets, p.result, log);
   p.tissueEffects.run(travels, p.surfaces, p.bodies, state, p.activity, p.result, log);
-  p.publication.run(p.contact, p.surfaces, p.bodies, state, p.activity, p.result, log);
-  p.publication.reportRunaway(p.bodies, p.activity, p.contactResponse.diverged(), state, log);
+  p.settling.run(p.contact, p.contactResponse.diverged(), p.surfaces, p.bodies, state, p.activity, p.result, log);
+  p.publication.run(p.bodies, p.activity, state, p.result);
 
   ++state.clock.step;
   return p.result;

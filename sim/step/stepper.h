@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// step(Model, State, samples) -> StepResult: nine stages (stages.h).
+// step(Model, State, samples) -> StepResult: ten stages (stages.h).
 #pragma once
 
 #include <memory>

@@ -44,15 +44,14 @@ void perforateOrgan(const Model& model, std::size_t organ, const Vec3& where, do
 }
 
 void partVessel(const Model& model, std::size_t structure, const BeamPoint& where, EventKind kind, std::size_t hand,
-                Bodies& bodies, Surfaces& surfaces, State& state, Activity& activity, StepLog& log) {
+                State& state, Activity& activity, StepLog& log) {
   const StructureModel& s = model.structures()[structure];
   const VesselTree& tree = model.vesselTrees()[s.index];
   BeamState& vessels = state.vessel[s.index];
   const CutSides cut = cutSides(tree.beams, vessels, where);
   const Vec3 place = centreLine(tree.beams, vessels, where).position;
   if (!part(vessels, where, kind == EventKind::vesselCut ? Parting::cut : Parting::burned)) return;
-  activity.disturb(bodies, state, s.body);
-  surfaces.markBodyStale(s.body);
+  activity.reshape(s.body);
   log.emit(kind, hand, structure, place, where.arcLength);
   if (kind == EventKind::vesselBurned && isSealed(model, structure, vessels, where)) {
     log.emit(EventKind::vesselSealed, hand, structure, place, where.arcLength);
@@ -174,8 +173,8 @@ bool VesselTools::isGripped(const State& state, std::size_t hand, const Crossing
   return upper && lower;
 }
 
-void VesselTools::setClipOn(std::size_t hand, const std::optional<Crossing>& crossing, Bodies& bodies, State& state,
-                            Activity& activity, StepLog& log) const {
+void VesselTools::setClipOn(std::size_t hand, const std::optional<Crossing>& crossing, State& state, Activity& activity,
+                            StepLog& log) const {
   HandState& h = state.hand[hand];
   if (h.clips == 0) return;
   --h.clips;
@@ -204,7 +203,7 @@ void VesselTools::setClipOn(std::size_t hand, const std::optional<Crossing>& cro
     return;
   }
   setClip(beams, vessels, attempt, seat.enclosed);
-  activity.disturb(bodies, state, structure.body);
+  activity.disturb(structure.body);
   const auto report = [&](EventKind kind, double value) {
     log.emit(kind, hand, crossing->structure, crossing->frame.position, value);
   };
@@ -215,8 +214,7 @@ void VesselTools::setClipOn(std::size_t hand, const std::optional<Crossing>& cro
   report(EventKind::clipEndGap, seat.endGap);
 }
 
-void VesselTools::closeOne(std::size_t hand, Bodies& bodies, Surfaces& surfaces, State& state, Activity& activity,
-                           StepLog& log) {
+void VesselTools::closeOne(std::size_t hand, State& state, Activity& activity, StepLog& log) {
   HandState& h = state.hand[hand];
   const InstrumentDefinition& instrument = instrumentOf(h.instrument);
   const bool clips = instrument.action == InstrumentAction::clip;
@@ -226,12 +224,11 @@ void VesselTools::closeOne(std::size_t hand, Bodies& bodies, Surfaces& surfaces,
   const std::optional<Crossing> crossing =
       vesselBetween(state, hand, clips ? model_.scene().clip.legs : instrument.bladeLength);
   if (clips) {
-    setClipOn(hand, crossing, bodies, state, activity, log);
+    setClipOn(hand, crossing, state, activity, log);
   } else if (crossing && isGripped(state, hand, *crossing)) {
     // Blades part what they enclose: the centre line must be between them.
     if (crossing->depth >= 0.0 && crossing->depth <= instrument.bladeLength) {
-      partVessel(model_, crossing->structure, crossing->place, EventKind::vesselCut, hand, bodies, surfaces, state,
-                 activity, log);
+      partVessel(model_, crossing->structure, crossing->place, EventKind::vesselCut, hand, state, activity, log);
     }
   } else if (!closed) {
     return;
@@ -239,8 +236,8 @@ void VesselTools::closeOne(std::size_t hand, Bodies& bodies, Surfaces& surfaces,
   h.jawsOpened = false;
 }
 
-void VesselTools::run(Bodies& bodies, Surfaces& surfaces, State& state, Activity& activity, StepLog& log) {
-  for (std::size_t hand = 0; hand < handCount; ++hand) closeOne(hand, bodies, surfaces, state, activity, log);
+void VesselTools::run(State& state, Activity& activity, StepLog& log) {
+  for (std::size_t hand = 0; hand < handCount; ++hand) closeOne(hand, state, activity, log);
 }
 
 }  // namespace calot

@@ -35,40 +35,41 @@ bool isInjured(const BeamModel::Branch& branch, const BeamState& vessels, double
   return std::any_of(first, first + branch.stations, [exposure](double e) { return e >= exposure; });
 }
 
-}  // namespace
-
 /// Smoke is reported in portions of a touch, and when it ends. @param source structure, or noStructure: no touch
-void CauteryEffects::emitSmoke(std::size_t hand, std::uint32_t source, double energy, Tissue& tissue) const {
-  HandState& h = tissue.state.hand[hand];
+void emitSmoke(std::size_t number, std::uint32_t source, double energy, HandState& hand, StepLog& log) {
   const auto emit = [&] {
-    if (h.burnedEnergy > 0.0) tissue.log.emit(EventKind::smoke, hand, h.burning, h.simulatedPosition, h.burnedEnergy);
-    h.burnedEnergy = 0.0;
+    if (hand.burnedEnergy > 0.0)
+      log.emit(EventKind::smoke, number, hand.burning, hand.simulatedPosition, hand.burnedEnergy);
+    hand.burnedEnergy = 0.0;
   };
-  if (source != h.burning) emit();
-  h.burning = source;
-  h.burnedEnergy += energy;
-  if (h.burnedEnergy >= smokePortion) emit();
+  if (source != hand.burning) emit();
+  hand.burning = source;
+  hand.burnedEnergy += energy;
+  if (hand.burnedEnergy >= smokePortion) emit();
 }
 
+}  // namespace
+
 /// The source that smoke is reported of, among all touched: connective tissue, fat, then structures in their order.
-std::uint32_t CauteryEffects::firstTouched(const HookTouches& touches, const Tissue& tissue) const {
+std::uint32_t CauteryEffects::firstTouched(const HookTouches& touches, const Bodies& bodies) {
   for (std::size_t c = 0; c < touches.strand.size(); ++c) {
     if (!touches.strand[c].empty()) return static_cast<std::uint32_t>(smokeOfConnective + c);
   }
   for (std::size_t f = 0; f < touches.fat.size(); ++f) {
-    if (touches.fat[f] > 0.0) return static_cast<std::uint32_t>(tissue.bodies.structureOfFat(f));
+    if (touches.fat[f] > 0.0) return static_cast<std::uint32_t>(bodies.structureOfFat(f));
   }
   if (!touches.cell.empty()) return touches.cell.front().structure;
   return touches.station.empty() ? noStructure : touches.station.front().structure;
 }
 
-void CauteryEffects::charOrgans(const HookTouches& touches, const Dose& dose, Tissue& tissue) const {
+void CauteryEffects::charOrgans(const HookTouches& touches, const Dose& dose, const Surfaces& surfaces, State& state,
+                                Activity& activity, StepLog& log) const {
   const double charTime = model_.scene().cautery.charTime;
   for (const HookTouches::Cell& touch : touches.cell) {
     const std::size_t o = model_.structures()[touch.structure].index;
     const OrganModel& organ = model_.organs()[o];
-    CharState& burns = tissue.state.charred[o];
-    tissue.activity.charred[o] = true;
+    CharState& burns = state.charred[o];
+    activity.charred[o] = true;
     const std::size_t cells = std::size_t{organ.division[touch.triangle]} * organ.division[touch.triangle];
     const auto known = std::find(burns.triangle.begin(), burns.triangle.end(), touch.triangle);
     const auto k = static_cast<std::size_t>(known - burns.triangle.begin());
@@ -90,18 +91,19 @@ void CauteryEffects::charOrgans(const HookTouches& touches, const Dose& dose, Ti
     const double through = model_.scene().organs[o].burnThrough;
     if (through > 0.0 && exposure >= through) {
       const int corner = organ.surface.triangles()[touch.triangle][0];
-      perforateOrgan(model_, o, tissue.surfaces.points(touch.structure)[static_cast<std::size_t>(corner)], exposure,
-                     tissue.state, tissue.activity, tissue.log);
+      perforateOrgan(model_, o, surfaces.points(touch.structure)[static_cast<std::size_t>(corner)], exposure, state,
+                     activity, log);
     }
   }
 }
 
-void CauteryEffects::burnVessels(const HookTouches& touches, const Dose& dose, std::size_t hand, Tissue& tissue) const {
+void CauteryEffects::burnVessels(const HookTouches& touches, const Dose& dose, std::size_t hand, State& state,
+                                 Activity& activity, StepLog& log) const {
   for (const HookTouches::Station& touch : touches.station) {
     const StructureModel& s = model_.structures()[touch.structure];
     const VesselTree& tree = model_.vesselTrees()[s.index];
     const BeamModel::Branch& branch = tree.beams.branches()[s.branch];
-    BeamState& vessels = tissue.state.vessel[s.index];
+    BeamState& vessels = state.vessel[s.index];
     const BeamPoint where = pointAt(tree.beams, s.branch, branch.arcLengthOf(touch.station));
     if (vessels.parting[where.element] != Parting::none) continue;
     double& exposure = vessels.exposure[branch.firstStation + touch.station];
@@ -112,14 +114,13 @@ void CauteryEffects::burnVessels(const HookTouches& touches, const Dose& dose, s
         exposure < injured && exposure + touch.share * dose.wall >= injured && !isInjured(branch, vessels, injured);
     exposure += touch.share * dose.wall;
     charring += touch.share * dose.charring;
-    tissue.activity.disturb(tissue.bodies, tissue.state, s.body);
+    activity.disturb(s.body);
     if (isNew) {
-      tissue.log.emit(EventKind::wallInjured, hand, touch.structure, centreLine(tree.beams, vessels, where).position,
-                      where.arcLength);
+      log.emit(EventKind::wallInjured, hand, touch.structure, centreLine(tree.beams, vessels, where).position,
+               where.arcLength);
     }
     if (exposure >= through && !isStumpsEnd(branch, vessels, where.arcLength)) {
-      partVessel(model_, touch.structure, where, EventKind::vesselBurned, hand, tissue.bodies, tissue.surfaces,
-                 tissue.state, tissue.activity, tissue.log);
+      partVessel(model_, touch.structure, where, EventKind::vesselBurned, hand, state, activity, log);
     }
   }
 }
@@ -135,50 +136,49 @@ void CauteryEffects::findTied(std::size_t fat, const Bodies& bodies) {
 }
 
 /// Takes off the fat that the hook sweeps over.
-void CauteryEffects::carve(const HookSweep& sweep, const Dose& dose, std::size_t hand, std::size_t fat,
-                           Tissue& tissue) {
+FatStroke CauteryEffects::carve(const HookSweep& sweep, const Dose& dose, std::size_t fat, Bodies& bodies, State& state,
+                                Activity& activity) {
   blades_.clear();
   const CauteryDescription& cautery = model_.scene().cautery;
   for (const MovingCapsule& part : sweep.electrode) {
     blades_.push_back({part.before[0], part.before[1], part.now[0], part.now[1], part.radius + cautery.reach});
   }
-  findTied(fat, tissue.bodies);
-  const FatStroke done = tissue.bodies.fat(fat).stroke(tissue.state, blades_, cautery.recession * dose.wall);
-  if (!done.changed) return;
-  const std::size_t structure = tissue.bodies.structureOfFat(fat);
-  tissue.activity.carved[fat] = true;
-  tissue.surfaces.markStale(structure);
-  tissue.activity.disturb(tissue.bodies, tissue.state, tissue.bodies.firstFat() + fat);
-  for (const std::size_t body : tied_) tissue.activity.disturb(tissue.bodies, tissue.state, body);  // it bears less now
-  tissue.result.fat[fat].carved += done.removed;
-  tissue.result.fat[fat].islands += done.islands;
-  if (done.islands > 0.0) tissue.log.emit(EventKind::fatCameLoose, hand, structure, done.where, done.islands);
-}
-
-void CauteryEffects::burnHand(const HookSweep& sweep, const HookTouches& touches, std::size_t hand, Tissue& tissue) {
-  HandResult& out = tissue.result.hand[hand];
-  out.cautery = Cautery::off;
-  if (!sweep.energised()) {
-    emitSmoke(hand, noStructure, 0.0, tissue);
-    return;
-  }
-  const std::uint32_t source = firstTouched(touches, tissue);
-  const double full = tissue.bodies.step() * touches.intensity(model_.scene().cautery.spot);
-  const Dose dose{full * sweep.pace, full * sweep.charring};
-  charOrgans(touches, dose, tissue);
-  burnVessels(touches, dose, hand, tissue);
-  for (std::size_t f = 0; f < touches.fat.size(); ++f) {
-    if (touches.fat[f] > 0.0) carve(sweep, dose, hand, f, tissue);
-  }
-  out.cautery = source == noStructure ? Cautery::withoutContact : Cautery::onTissue;
-  emitSmoke(hand, source, source == noStructure ? 0.0 : model_.scene().cautery.power * tissue.bodies.step(), tissue);
+  findTied(fat, bodies);
+  const FatStroke done = bodies.fat(fat).stroke(state, blades_, cautery.recession * dose.wall);
+  if (!done.changed) return done;
+  activity.carved[fat] = true;
+  activity.reshape(bodies.firstFat() + fat);
+  for (const std::size_t body : tied_) activity.disturb(body);  // it bears less now
+  return done;
 }
 
 void CauteryEffects::run(const HookSweeps& sweeps, const std::array<HookTouches, handCount>& touches, Bodies& bodies,
-                         Surfaces& surfaces, State& state, Activity& activity, StepResult& result, StepLog& log) {
+                         const Surfaces& surfaces, State& state, Activity& activity, StepResult& result, StepLog& log) {
+  const CauteryDescription& cautery = model_.scene().cautery;
   for (FatResult& fat : result.fat) fat.carved = fat.islands = 0.0;
-  Tissue tissue{bodies, surfaces, state, activity, result, log};
-  for (std::size_t h = 0; h < handCount; ++h) burnHand(sweeps[h], touches[h], h, tissue);
+  for (std::size_t h = 0; h < handCount; ++h) {
+    if (!sweeps[h].energised()) {
+      result.hand[h].cautery = Cautery::off;
+      emitSmoke(h, noStructure, 0.0, state.hand[h], log);
+      continue;
+    }
+    const std::uint32_t source = firstTouched(touches[h], bodies);
+    const bool onTissue = source != noStructure;
+    const double full = bodies.step() * touches[h].intensity(cautery.spot);
+    const Dose dose{full * sweeps[h].pace, full * sweeps[h].charring};
+    charOrgans(touches[h], dose, surfaces, state, activity, log);
+    burnVessels(touches[h], dose, h, state, activity, log);
+    for (std::size_t f = 0; f < touches[h].fat.size(); ++f) {
+      if (!(touches[h].fat[f] > 0.0)) continue;
+      const FatStroke done = carve(sweeps[h], dose, f, bodies, state, activity);
+      if (!done.changed) continue;
+      result.fat[f].carved += done.removed;
+      result.fat[f].islands += done.islands;
+      if (done.islands > 0.0) log.emit(EventKind::fatCameLoose, h, bodies.structureOfFat(f), done.where, done.islands);
+    }
+    result.hand[h].cautery = onTissue ? Cautery::onTissue : Cautery::withoutContact;
+    emitSmoke(h, source, onTissue ? cautery.power * bodies.step() : 0.0, state.hand[h], log);
+  }
 }
 
 namespace {
@@ -228,8 +228,8 @@ void ConnectiveEffects::run(const HookSweeps& sweeps, const std::array<HookTouch
     }
     if (!activity.frayed[c]) continue;
     // Released tissue moves.
-    activity.disturb(bodies, state, tie.a);
-    activity.disturb(bodies, state, tie.b);
+    activity.disturb(tie.a);
+    activity.disturb(tie.b);
   }
 }
 

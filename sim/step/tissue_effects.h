@@ -99,7 +99,7 @@ void perforateOrgan(const Model& model, std::size_t organ, const Vec3& where, do
 /// Parts a vessel; reports it, what that leaves open, and the clips on either side of a cut.
 /// @param kind vesselCut or vesselBurned
 void partVessel(const Model& model, std::size_t structure, const BeamPoint& where, EventKind kind, std::size_t hand,
-                Bodies& bodies, Surfaces& surfaces, State& state, Activity& activity, StepLog& log);
+                State& state, Activity& activity, StepLog& log);
 
 /// Reports what a vessel that tore in this step leaves open. @param element that tore
 void reportTear(const Model& model, std::size_t tree, std::size_t element, State& state, StepLog& log);
@@ -111,7 +111,7 @@ void reportTear(const Model& model, std::size_t tree, std::size_t element, State
 class VesselTools {
  public:
   explicit VesselTools(const Model& model) : model_(model) {}
-  void run(Bodies& bodies, Surfaces& surfaces, State& state, Activity& activity, StepLog& log);
+  void run(State& state, Activity& activity, StepLog& log);
 
  private:
   /// Part of a vessel that runs between jaws.
@@ -125,9 +125,9 @@ class VesselTools {
 
   [[nodiscard]] std::optional<Crossing> vesselBetween(const State& state, std::size_t hand, double length) const;
   bool isGripped(const State& state, std::size_t hand, const Crossing& crossing);
-  void closeOne(std::size_t hand, Bodies& bodies, Surfaces& surfaces, State& state, Activity& activity, StepLog& log);
-  void setClipOn(std::size_t hand, const std::optional<Crossing>& crossing, Bodies& bodies, State& state,
-                 Activity& activity, StepLog& log) const;
+  void closeOne(std::size_t hand, State& state, Activity& activity, StepLog& log);
+  void setClipOn(std::size_t hand, const std::optional<Crossing>& crossing, State& state, Activity& activity,
+                 StepLog& log) const;
 
   const Model& model_;
   PlacedInstrument instrument_;
@@ -146,30 +146,22 @@ class CauteryEffects {
 
   /// Fills `cautery` of the hands and `carved`, `islands` of the fat. @pre surfaces are those after the step
   void run(const HookSweeps& sweeps, const std::array<HookTouches, handCount>& touches, Bodies& bodies,
-           Surfaces& surfaces, State& state, Activity& activity, StepResult& result, StepLog& log);
+           const Surfaces& surfaces, State& state, Activity& activity, StepResult& result, StepLog& log);
 
  private:
-  /// Data shared by all parts of a run.
-  struct Tissue {
-    Bodies& bodies;
-    Surfaces& surfaces;
-    State& state;
-    Activity& activity;
-    StepResult& result;
-    StepLog& log;
-  };
   /// Full power of a whole step of touch (s).
   struct Dose {
     double wall = 0.0;
     double charring = 0.0;
   };
-  void burnHand(const HookSweep& sweep, const HookTouches& touches, std::size_t hand, Tissue& tissue);
-  void charOrgans(const HookTouches& touches, const Dose& dose, Tissue& tissue) const;
-  void burnVessels(const HookTouches& touches, const Dose& dose, std::size_t hand, Tissue& tissue) const;
-  void carve(const HookSweep& sweep, const Dose& dose, std::size_t hand, std::size_t fat, Tissue& tissue);
+  void charOrgans(const HookTouches& touches, const Dose& dose, const Surfaces& surfaces, State& state,
+                  Activity& activity, StepLog& log) const;
+  void burnVessels(const HookTouches& touches, const Dose& dose, std::size_t hand, State& state, Activity& activity,
+                   StepLog& log) const;
+  FatStroke carve(const HookSweep& sweep, const Dose& dose, std::size_t fat, Bodies& bodies, State& state,
+                  Activity& activity);
   void findTied(std::size_t fat, const Bodies& bodies);
-  [[nodiscard]] std::uint32_t firstTouched(const HookTouches& touches, const Tissue& tissue) const;
-  void emitSmoke(std::size_t hand, std::uint32_t source, double energy, Tissue& tissue) const;
+  [[nodiscard]] static std::uint32_t firstTouched(const HookTouches& touches, const Bodies& bodies);
 
   const Model& model_;
   std::vector<SweptCapsule> blades_;  ///< of the hook, as fat feels them
@@ -208,7 +200,7 @@ class TissueEffects {
     sweepHooks(model_, travels, state, sweeps_);
     for (std::size_t h = 0; h < handCount; ++h) search_.run(sweeps_[h], bodies, surfaces, state, touches_[h]);
     connective_.run(sweeps_, touches_, bodies, state, activity, result, log);
-    tools_.run(bodies, surfaces, state, activity, log);
+    tools_.run(state, activity, log);
     cautery_.run(sweeps_, touches_, bodies, surfaces, state, activity, result, log);
   }
 
