@@ -345,7 +345,7 @@ struct Activity {
   void beginStep();
   /// Appends for each of State's components of tissue, in their order, whether the step wrote it.
   void appendWritten(const Bodies& bodies, std::vector<bool>& out) const;
-  /// Wakes a body for the next step.
+  /// Wakes a body for the next step. @pre wakeBodies() of this step, and nothing has settled yet
   void disturb(std::size_t body) {
     quiet[body] = 0;
     written[body] = true;

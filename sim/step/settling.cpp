@@ -127,7 +127,12 @@ void Settling::settleOrgans(const ContactSystem& contact, Activity& activity, St
   }
 }
 
-void Settling::settleVessels(const ContactSystem& contact, const Bodies& bodies, Activity& activity, State& state,
+/// Stops what has been quiet for long enough.
+void Settling::stopQuiet(std::size_t body, Bodies& bodies, const Activity& activity, State& state) const {
+  if (model_.scene().solver.sleeping && activity.quiet[body] >= quietSteps) bodies[body].stop(state);
+}
+
+void Settling::settleVessels(const ContactSystem& contact, Bodies& bodies, Activity& activity, State& state,
                              StepLog& log) const {
   for (std::size_t t = 0; t < model_.vesselTrees().size(); ++t) {
     const std::size_t b = model_.organs().size() + t;
@@ -138,6 +143,7 @@ void Settling::settleVessels(const ContactSystem& contact, const Bodies& bodies,
     beams.maxDisplacement = extremesOf(beams.position, beams.velocity, model.rest()).displacement;
     activity.quiet[b] = countQuiet(activity.quiet[b], contact.blocks, b, report.maxSpeed);
     if (report.torn < 0) continue;
+    stopQuiet(b, bodies, activity, state);  // before the tear wakes it
     const auto torn = static_cast<std::size_t>(report.torn);
     const BeamElement& element = model.elements()[torn];
     log.emit(EventKind::vesselTorn, StepLog::noHand,
@@ -162,11 +168,10 @@ void Settling::settleFat(const ContactSystem& contact, const Bodies& bodies, Act
   }
 }
 
-/// Stops what has been quiet for long enough.
 void Settling::rest(Surfaces& surfaces, Bodies& bodies, const Activity& activity, State& state) const {
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     bodies[b].quietSteps(state) = activity.quiet[b];
-    if (activity.awake[b] && model_.scene().solver.sleeping && activity.quiet[b] >= quietSteps) bodies[b].stop(state);
+    if (activity.awake[b]) stopQuiet(b, bodies, activity, state);
     if (activity.reshaped[b]) surfaces.markBodyStale(b);
   }
 }

@@ -319,7 +319,8 @@ class Settling {
 
  private:
   void settleOrgans(const ContactSystem& contact, Activity& activity, State& state, StepResult& result) const;
-  void settleVessels(const ContactSystem& contact, const Bodies& bodies, Activity& activity, State& state,
+  void stopQuiet(std::size_t body, Bodies& bodies, const Activity& activity, State& state) const;
+  void settleVessels(const ContactSystem& contact, Bodies& bodies, Activity& activity, State& state,
                      StepLog& log) const;
   void settleFat(const ContactSystem& contact, const Bodies& bodies, Activity& activity, State& state,
                  StepResult& result) const;
