@@ -32,9 +32,6 @@ bool mayBeFilled(const std::string& table) {
   return names.contains(table);
 }
 
-/// Timestamps do not count as content, unless a row has no other key.
-bool isTime(const std::string& column) { return column.ends_with("_utc"); }
-
 class Merge {
  public:
   Merge(SQLite::Database& into, std::string intoPath, SQLite::Database& from, std::string fromPath)
@@ -178,7 +175,7 @@ class Merge {
     if (!table.number.empty()) numbers_[table.name][there] = numberOf(here->at(table.number));
     for (const ColumnFacts& c : table.columns) {
       const Cell &mine = here->at(c.name), &theirs = row.at(c.name);
-      if (c.name == table.number || isTime(c.name) || mine == theirs) continue;
+      if (c.name == table.number || c.isTime() || mine == theirs) continue;
       if (mayBeFilled(table.name) && isEmpty(theirs)) continue;
       if (mayBeFilled(table.name) && isEmpty(mine)) {
         fill(table, row, c.name);

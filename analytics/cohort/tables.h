@@ -150,6 +150,8 @@ const DeclaredColumn* findColumn(std::string_view table, std::string_view column
 
 struct ColumnFacts {
   std::string name, type;
+  /// Does it hold times that Calot wrote? They are no content, and name nobody: a pseudonym may be a number, too.
+  [[nodiscard]] bool isTime() const { return name.ends_with("_utc"); }
 };
 
 struct ForeignKey {

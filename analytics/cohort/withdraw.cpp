@@ -26,7 +26,7 @@ template <class Work>
 void eachTextColumn(SQLite::Database& db, Work work) {
   for (const TableFacts& table : readTables(db)) {
     for (const ColumnFacts& column : table.columns) {
-      if (column.type == "TEXT") work(table.name, column.name);
+      if (column.type == "TEXT") work(table.name, column);
     }
   }
 }
@@ -48,9 +48,9 @@ void deleteOrphans(SQLite::Database& db) {
 
 /// Rows of tables that name an attempt by its uuid without a foreign key.
 void deleteByUuid(SQLite::Database& db, const std::string& uuid) {
-  eachTextColumn(db, [&](const std::string& table, const std::string& column) {
+  eachTextColumn(db, [&](const std::string& table, const ColumnFacts& column) {
     if (table == "audit" || table == "export") return;
-    execute(db, fmt::format("DELETE FROM {} WHERE {} = ?", quotedName(table), quotedName(column)), {uuid});
+    execute(db, fmt::format("DELETE FROM {} WHERE {} = ?", quotedName(table), quotedName(column.name)), {uuid});
   });
 }
 
@@ -151,11 +151,12 @@ void removeRows(SQLite::Database& db, const Withdrawal& w, const std::string& id
 
 std::vector<std::string> columnsNaming(SQLite::Database& db, const std::vector<std::string>& words) {
   std::vector<std::string> places;
-  eachTextColumn(db, [&](const std::string& table, const std::string& column) {
+  eachTextColumn(db, [&](const std::string& table, const ColumnFacts& column) {
+    if (column.isTime()) return;
     const std::vector<std::string> texts =
-        firstTexts(db, fmt::format("SELECT DISTINCT {} FROM {}", quotedName(column), quotedName(table)));
+        firstTexts(db, fmt::format("SELECT DISTINCT {} FROM {}", quotedName(column.name), quotedName(table)));
     if (std::any_of(texts.begin(), texts.end(), [&](const std::string& held) { return namesAny(held, words); }))
-      places.push_back(table + "." + column);
+      places.push_back(table + "." + column.name);
   });
   return places;
 }
