@@ -83,8 +83,11 @@ for stage in "${stages[@]}"; do
       ;;
     guard)
       configure release "${whole[@]}" -DBUILD_TESTING=ON
-      build release calot calot-bench
-      "$python" -B "$root/scripts/guard.py" "$root/build/release/bin/calot" "$root/build/release/bin/calot-bench" --root "$root" --jobs "$jobs"
+      build release calot calot-bench calot-matrix
+      configure narrow
+      build narrow calot-matrix
+      "$python" -B "$root/scripts/guard.py" "$root"/build/release/bin/calot{,-bench,-matrix} "$root/build/narrow/bin/calot-matrix" \
+        --root "$root" --jobs "$jobs"
       ;;
     clang)
       # Recordings of either compiler's program replay in the other's.
@@ -114,9 +117,11 @@ for stage in "${stages[@]}"; do
       configure release "${whole[@]}" -DBUILD_TESTING=ON
       build release calot calot-matrix
       trees=(--tree "$root/build/release")
-      configure asan-ubsan
-      build asan-ubsan calot-matrix
-      trees+=(--tree "$root/build/asan-ubsan")
+      for tree in asan-ubsan tsan narrow; do
+        configure "$tree"
+        build "$tree" calot-matrix
+        trees+=(--tree "$root/build/$tree")
+      done
       "$root/scripts/matrix.sh" --short "${trees[@]}"
       ;;
     *)

@@ -26,7 +26,7 @@ WorkerPool::WorkerPool(unsigned threads) {
   const unsigned processors = std::max(1U, std::thread::hardware_concurrency());
   if (threads == 0) threads = processors;
   // With more threads than processors, a spinning thread keeps another from working.
-  spins_ = threads <= processors ? 1000 : 0;
+  spins_ = threads <= processors ? 5000 : 0;
   workers_.reserve(threads - 1);
   for (unsigned i = 1; i < threads; ++i) workers_.emplace_back([this] { work(); });
 }

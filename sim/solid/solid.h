@@ -93,6 +93,13 @@ class SolidSolver {
   void assembleUnconstrained(const SolidModel& model, SolidState& state, const Vec3& gravity,
                              std::span<const Vec3> external, const Settings& settings, Executor& executor,
                              const Surroundings& surroundings = {});
+  /// The first half of that: the solid by itself, with its rotations (which State gets in the second), forces of its
+  /// elements and its stiffness. @param fill as of the surroundings
+  void linearise(const SolidModel& model, const SolidState& state, const Settings& settings,
+                 std::span<const double> fill, Executor& executor);
+  /// The second half: all that acts on it. @pre linearise() at this State
+  void load(const SolidModel& model, SolidState& state, const Vec3& gravity, std::span<const Vec3> external,
+            const Settings& settings, Executor& executor, const Surroundings& surroundings);
   /// The first half of applyImpulses(): takes the impulses, without a solve. @param impulse per node, or empty: none
   void takeImpulses(std::span<const Vec3> impulse);
 
@@ -105,7 +112,7 @@ class SolidSolver {
   /// and adds the solution to each freeVelocity(). Without couplings and of one solid, this is the second half of
   /// solveUnconstrained() and of applyImpulses().
   static SolveReport solveJoined(std::span<SolidSolver* const> solids, std::span<const Coupled> couplings,
-                                 const Settings& settings);
+                                 const Settings& settings, Executor& executor);
 
   /// The system of this step: of the whole solid, or of the remaining cubes. @pre assembleUnconstrained()
   [[nodiscard]] const SolidSystem& system() const { return *system_; }
@@ -144,8 +151,6 @@ class SolidSolver {
 
  private:
   void chooseSystem(const SolidModel& model, std::span<const double> fill);
-  void assemble(const SolidModel& model, const SolidState& state, const Settings& settings,
-                const Surroundings& surroundings, Executor& executor);
   void addAttachments(const Settings& settings, std::span<const Attachment> attachments);
   void addJoint(const Settings& settings, const JointAttachment& joint);
   void addSolution();
@@ -156,7 +161,8 @@ class SolidSolver {
   const SolidSystem* system_ = nullptr;  ///< of this step: the model's, or part_
   SolidSystem part_;                     ///< of the remaining cubes
   std::uint64_t systemVersion_ = 0;
-  std::vector<std::uint8_t> present_;  ///< per cube: is it in part_?
+  std::vector<std::uint8_t> present_;    ///< per cube: is it in part_?
+  std::vector<RotationGroup> rotation_;  ///< as linearise() left them
   std::vector<ElementResult> element_;
   std::vector<HexahedronResult> hexahedron_;
   std::vector<double> mass_;  ///< of the nodes, if cubes are not full

@@ -79,21 +79,31 @@ void SolidSolver::chooseSystem(const SolidModel& model, std::span<const double> 
   ++systemVersion_;
 }
 
-void SolidSolver::assemble(const SolidModel& model, const SolidState& state, const Settings& settings,
-                           const Surroundings& surroundings, Executor& executor) {
-  const StiffnessAssembly::Scale scale = scaleOf(model, settings.step);
+void SolidSolver::linearise(const SolidModel& model, const SolidState& state, const Settings& settings,
+                            std::span<const double> fill, Executor& executor) {
+  const SolidModel::Material& m = model.material();
+  const double ahead = settings.step + m.stiffnessDamping;
+  chooseSystem(model, fill);
+  rotation_ = state.rotation;
+  if (model.madeOfCubes()) {
+    hexahedron_.resize(model.groups());
+    model.hexahedra().evaluate(state.position, state.velocity, ahead, settings.rotationSweeps, fill, rotation_,
+                               hexahedron_, executor);
+    if (!fill.empty()) model.massOf(fill, mass_);
+  } else {
+    element_.resize(model.groups());
+    model.elements().evaluate(state.position, state.velocity, ahead, m.lame, settings.rotationSweeps, rotation_,
+                              element_, executor);
+  }
   precompute(model, settings, executor);
   if (settings.lattice && CoarseLattice::isWorthwhile(model)) {
-    lattice_->rotate(state.rotation);
+    lattice_->rotate(rotation_);
   } else {
     lattice_.reset();  // from an earlier step
     latticeModel_ = nullptr;
   }
-  const std::vector<double>& masses = surroundings.fill.empty() ? model.mass() : mass_;
-  stiffness_.assemble(model, *system_, state.rotation, surroundings.fill, masses, scale, executor, values_);
-  addAttachments(settings, surroundings.attachments);
-  extra_.clear();
-  for (const JointAttachment& joint : surroundings.joints) addJoint(settings, joint);
+  stiffness_.assemble(model, *system_, rotation_, fill, fill.empty() ? model.mass() : mass_,
+                      scaleOf(model, settings.step), executor, values_);
 }
 
 void SolidSolver::precompute(const SolidModel& model, const Settings& settings, Executor& executor) {
@@ -108,7 +118,7 @@ void SolidSolver::precompute(const SolidModel& model, const Settings& settings, 
 }
 
 SolveReport SolidSolver::solveJoined(std::span<SolidSolver* const> solids, std::span<const Coupled> couplings,
-                                     const Settings& settings) {
+                                     const Settings& settings, Executor& executor) {
   std::vector<ConjugateGradient::Part> parts;
   std::vector<ConjugateGradient::Coupled> coupled;
   double mass = 0.0;
@@ -125,7 +135,7 @@ SolveReport SolidSolver::solveJoined(std::span<SolidSolver* const> solids, std::
     goal.tolerance *= smoothErrorFactor;
     goal.absolute *= smoothErrorFactor;
   }
-  const SolveReport report = ConjugateGradient::solveJoined(parts, coupled, goal);
+  const SolveReport report = ConjugateGradient::solveJoined(parts, coupled, goal, executor);
   for (SolidSolver* solid : solids) solid->addSolution();
   return report;
 }
@@ -211,26 +221,23 @@ SolveReport SolidSolver::solveUnconstrained(const SolidModel& model, SolidState&
                                             Executor& executor, const Surroundings& surroundings) {
   assembleUnconstrained(model, state, gravity, external, settings, executor, surroundings);
   SolidSolver* self = this;
-  return solveJoined({&self, 1}, {}, settings);
+  return solveJoined({&self, 1}, {}, settings, executor);
 }
 
 void SolidSolver::assembleUnconstrained(const SolidModel& model, SolidState& state, const Vec3& gravity,
                                         std::span<const Vec3> external, const Settings& settings, Executor& executor,
                                         const Surroundings& surroundings) {
+  linearise(model, state, settings, surroundings.fill, executor);
+  load(model, state, gravity, external, settings, executor, surroundings);
+}
+
+void SolidSolver::load(const SolidModel& model, SolidState& state, const Vec3& gravity, std::span<const Vec3> external,
+                       const Settings& settings, Executor& executor, const Surroundings& surroundings) {
   const double h = settings.step;
-  const SolidModel::Material& m = model.material();
-  chooseSystem(model, surroundings.fill);
-  if (model.madeOfCubes()) {
-    hexahedron_.resize(model.groups());
-    model.hexahedra().evaluate(state.position, state.velocity, h + m.stiffnessDamping, settings.rotationSweeps,
-                               surroundings.fill, state.rotation, hexahedron_, executor);
-    if (!surroundings.fill.empty()) model.massOf(surroundings.fill, mass_);
-  } else {
-    element_.resize(model.groups());
-    model.elements().evaluate(state.position, state.velocity, h + m.stiffnessDamping, m.lame, settings.rotationSweeps,
-                              state.rotation, element_, executor);
-  }
-  assemble(model, state, settings, surroundings, executor);
+  state.rotation.swap(rotation_);
+  addAttachments(settings, surroundings.attachments);
+  extra_.clear();
+  for (const JointAttachment& joint : surroundings.joints) addJoint(settings, joint);
 
   // Accumulate loads in double.
   load_.assign(external.begin(), external.end());
@@ -263,7 +270,7 @@ void SolidSolver::assembleUnconstrained(const SolidModel& model, SolidState& sta
       const auto node = static_cast<std::size_t>(system_->nodes()[f]);
       Vec3 force = Vec3::Zero();
       for (const SolidSystem::Contribution& corner : system_->incident(node)) force += cornerForce(model, corner);
-      force += masses[node] * (gravity - m.massDamping * state.velocity[node]);
+      force += masses[node] * (gravity - model.material().massDamping * state.velocity[node]);
       if (!load_.empty()) force += load_[node];
       for (int i = 0; i < 3; ++i) {
         b_[system_->offsetOf(node) + static_cast<std::size_t>(i) * laneCount] = static_cast<float>(h * force[i]);
@@ -309,7 +316,8 @@ SolveReport SolidSolver::responses(const SolidModel& model, std::span<const Impu
 SolveReport SolidSolver::applyImpulses(std::span<const Vec3> impulse, const Settings& settings) {
   takeImpulses(impulse);
   SolidSolver* self = this;
-  return solveJoined({&self, 1}, {}, settings);
+  SerialExecutor alone;
+  return solveJoined({&self, 1}, {}, settings, alone);
 }
 
 void SolidSolver::takeImpulses(std::span<const Vec3> impulse) {

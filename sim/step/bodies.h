@@ -188,7 +188,7 @@ class JoinedSolids {
   /// impulses
   JoinedSolids(const Model& model, std::vector<OrganBody*> organs, std::vector<VesselBody*> vessels,
                std::vector<FatMotion*> fat, const SolidSolver::Settings& settings,
-               const SolidSolver::Settings& responses);
+               const SolidSolver::Settings& responses, Executor& executor);
 
   /// Groups organs and fat by what holds them together, and linearises strands and ties over the step. Those of
   /// sleeping bodies are left out. @param awake per body @pre solveUnconstrained() of the vessels that are awake
@@ -199,13 +199,18 @@ class JoinedSolids {
   /// A body without ties is a group of its own. @pre linearise()
   [[nodiscard]] const std::vector<std::vector<std::size_t>>& groups() const { return group_; }
   [[nodiscard]] SolidBody& solid(std::size_t body) { return *solid_[numberOf(body)]; }
+  /// Organs and bodies of fat.
+  [[nodiscard]] std::size_t size() const { return solid_.size(); }
+  [[nodiscard]] std::size_t bodyOf(std::size_t number) const {
+    return number < organ_.size() ? number : number + vessel_.size();
+  }
 
   /// Appends the attachments by which an organ feels its strands. @pre linearise()
   void addAttachments(std::size_t organ, std::vector<Attachment>& out) const;
 
   /// Solves the motion of a group, which pulls the vessels that are tied to it. @param grown vessels on organs
   /// @param loose applyImpulses() will follow, and solve what this leaves open
-  /// @pre SolidBody::assembleUnconstrained() of each of its solids
+  /// @pre SolidBody::load() of each of its solids
   SolveReport solveUnconstrained(std::size_t group, std::span<TieCoupling> grown, bool loose);
   /// Impulses on fat by which it feels what the vessels in it were pushed since. @pre TieCoupling::passOn() of the
   /// group
@@ -240,9 +245,6 @@ class JoinedSolids {
   [[nodiscard]] std::size_t numberOf(std::size_t body) const {
     return body < organ_.size() ? body : body - vessel_.size();
   }
-  [[nodiscard]] std::size_t bodyOf(std::size_t number) const {
-    return number < organ_.size() ? number : number + vessel_.size();
-  }
   void lineariseTissues(const State& state, const std::vector<bool>& awake);
   void lineariseFatTies(const State& state, const std::vector<bool>& awake, std::span<TieCoupling> grown);
   /// Tie of a tree of vessels to an organ, or null.
@@ -260,6 +262,7 @@ class JoinedSolids {
   std::vector<FatMotion*> fat_;
   std::vector<SolidBody*> solid_;  ///< organs, then fat
   SolidSolver::Settings settings_, responses_;
+  Executor& executor_;
   std::vector<Tissue> tissue_;
   std::vector<FatTies> fatTies_;
   std::vector<std::unique_ptr<VesselReaction>> reaction_;  ///< per fat and tree

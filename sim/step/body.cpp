@@ -23,12 +23,16 @@ void addAttachments(std::span<const TieLoad> ties, double step, std::span<const 
 
 }  // namespace
 
-void SolidBody::assembleUnconstrained(State& state, const Vec3& gravity, std::span<const Vec3> force,
-                                      std::span<const TieLoad> ties, const Surroundings& loads) {
+void SolidBody::linearise(const State& state) {
+  SerialExecutor alone;  // it is one task among others
+  solver_.linearise(model_, solidOf(state), settings_, fill(), alone);
+}
+
+void SolidBody::load(State& state, const Vec3& gravity, std::span<const Vec3> force, std::span<const TieLoad> ties,
+                     const Surroundings& loads) {
   load_.assign(loads.attachments.begin(), loads.attachments.end());
   addAttachments(ties, settings_.step, position(state), load_);
-  solver_.assembleUnconstrained(model_, solidOf(state), gravity, force, settings_, executor_,
-                                {load_, fill(), loads.joints});
+  solver_.load(model_, solidOf(state), gravity, force, settings_, executor_, {load_, fill(), loads.joints});
 }
 
 void SolidBody::stop(State& state) const {

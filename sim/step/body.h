@@ -111,10 +111,12 @@ class SolidBody : public Body {
   [[nodiscard]] std::span<const Vec3> position(const State& state) const override { return solidOf(state).position; }
   [[nodiscard]] std::span<const Vec3> velocity(const State& state) const override { return solidOf(state).velocity; }
   [[nodiscard]] std::uint32_t& quietSteps(State& state) const override { return solidOf(state).quietSteps; }
+  /// Linearises the body by itself. May run while others read State.
+  void linearise(const State& state);
   /// Assembles the free motion of a step under gravity, forces on the nodes (N; may be empty), springs to other bodies
-  /// and loads that were linearised elsewhere, for solver().
-  void assembleUnconstrained(State& state, const Vec3& gravity, std::span<const Vec3> force,
-                             std::span<const TieLoad> ties, const Surroundings& loads);
+  /// and loads that were linearised elsewhere, for solver(). @pre linearise() at this State
+  void load(State& state, const Vec3& gravity, std::span<const Vec3> force, std::span<const TieLoad> ties,
+            const Surroundings& loads);
   [[nodiscard]] SolidSolver& solver() { return solver_; }
   [[nodiscard]] std::span<const Vec3> freeVelocity() const override { return solver_.freeVelocity(); }
   void precomputeCompliance(std::span<const int> nodes) override { rest_.precomputeCompliance(nodes); }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "sim/math/floating_point.h"
 #include "sim/math/linear.h"
 #include "sim/step/contact_block.h"
 
@@ -60,20 +61,28 @@ void ContactDetection::addInstrumentBlock(const Surfaces& surfaces, const State&
   blocks.push_back(std::move(block));
 }
 
-void ContactDetection::findInstrumentContacts(Surfaces& surfaces, const Bodies& bodies,
+void ContactDetection::findInstrumentContacts(const Surfaces& surfaces, const Bodies& bodies,
                                               const InstrumentTravels& travels, const State& state,
                                               std::vector<ContactBlock>& blocks) {
+  const std::size_t structures = surfaces.size();
   for (std::size_t h = 0; h < handCount; ++h) {
     const HandState& hand = state.hand[h];
     instrument_[h].place(model_.scene().hands[h], hand.instrument, simulatedPose(hand), hand.jaw);
-    for (std::size_t s = 0; s < surfaces.size(); ++s) {
-      double speed = 0.0;
-      for (const Vec3& v : bodies[model_.structures()[s].body].velocity(state))
-        speed = std::max(speed, v.squaredNorm());
-      const double far = travels[h].reach + std::min(std::sqrt(speed) * bodies.step(), maxSlide);
-      instrumentContacts(model_, surfaces, state, h, instrument_[h], s, far, found_);
-      for (const SurfaceContact& contact : found_) addInstrumentBlock(surfaces, state, h, s, contact, blocks);
-    }
+  }
+  touching_.resize(handCount * structures);
+  executor_.run(touching_.size(), [&](std::size_t task) {
+    const FloatingPointScope scope;
+    const std::size_t pair = touching_.size() - 1 - task;  // fat, which has most triangles, first
+    const std::size_t h = pair / structures, s = pair % structures;
+    double speed = 0.0;
+    for (const Vec3& v : bodies[model_.structures()[s].body].velocity(state)) speed = std::max(speed, v.squaredNorm());
+    const double far = travels[h].reach + std::min(std::sqrt(speed) * bodies.step(), maxSlide);
+    instrumentContacts(model_, surfaces, state, h, instrument_[h], s, far, touching_[pair].search,
+                       touching_[pair].found);
+  });
+  for (std::size_t pair = 0; pair < touching_.size(); ++pair) {
+    for (const SurfaceContact& contact : touching_[pair].found)
+      addInstrumentBlock(surfaces, state, pair / structures, pair % structures, contact, blocks);
   }
 }
 
@@ -99,17 +108,32 @@ void ContactDetection::findClashes(const InstrumentTravels& travels, std::vector
   }
 }
 
-double ContactDetection::run(Surfaces& surfaces, const Bodies& bodies, const InstrumentTravels& travels,
+double ContactDetection::findTissueContacts(const Surfaces& surfaces, const Bodies& bodies, const State& state,
+                                            const Activity& activity, std::vector<ContactBlock>& blocks) {
+  double depth = tissue_.run(surfaces, state, activity.awake, blocks);
+  travel_.follow(surfaces, bodies, state, activity.awake);
+  depth = std::max(depth, vessels_.run(surfaces, travel_, state, bodies.step(), activity.awake, blocks));
+  return std::max(depth, fat_.run(surfaces, bodies, travel_, state, activity.awake, blocks));
+}
+
+double ContactDetection::run(const Surfaces& surfaces, Bodies& bodies, const InstrumentTravels& travels,
                              const State& state, Activity& activity, ContactSystem& contact) {
   contact.blocks.clear();
   findInstrumentContacts(surfaces, bodies, travels, state, contact.blocks);
   grasping_.addBlocks(surfaces, state, contact.blocks);
   findClashes(travels, contact.blocks);
   wakeBodies(model_, bodies, travels, contact.blocks, state, activity);
-  double depth = tissue_.run(surfaces, state, activity.awake, contact.blocks);
-  travel_.follow(surfaces, bodies, state, activity.awake);
-  depth = std::max(depth, vessels_.run(surfaces, travel_, state, bodies.step(), activity.awake, contact.blocks));
-  depth = std::max(depth, fat_.run(surfaces, bodies, travel_, state, activity.awake, contact.blocks));
+  double depth = 0.0;
+  const std::size_t solids = bodies.joined().size();
+  executor_.run(1 + solids, [&](std::size_t task) {
+    const FloatingPointScope scope;
+    if (task == 0) {
+      depth = findTissueContacts(surfaces, bodies, state, activity, contact.blocks);
+      return;
+    }
+    const std::size_t body = bodies.joined().bodyOf(solids - task);  // fat, the largest, first
+    if (activity.awake[body]) bodies.joined().solid(body).linearise(state);
+  });
   // A contact that sleeps on both sides needs no force.
   std::erase_if(contact.blocks, [&](const ContactBlock& block) {
     const auto asleep = [&](const PushedBody* pushed) { return pushed == nullptr || !activity.awake[pushed->body]; };

@@ -32,7 +32,6 @@ constexpr double fatRounding = 1e-9;  ///< of a motion (m)
 constexpr std::size_t maxFatContacts = 128;
 /// A cube with less of its fat than this touches nothing: it weighs next to nothing and trembles. Assumed.
 constexpr double minFill = 0.25;
-constexpr unsigned pairShift = 40;  ///< of a contact's key: below, the cube; from here up, the pair
 
 Box boundsOf(const Surfaces& surfaces, const TissueTravel& travel, std::size_t structure,
              std::optional<std::size_t> vessel) {
@@ -171,12 +170,12 @@ void FatContacts::follow(const FatBody& body, const State& state, bool awake, Fa
   }
 }
 
-FatContacts::Nearest FatContacts::nearestOn(Surfaces& surfaces, const TissueTravel& travel, const State& state,
+FatContacts::Nearest FatContacts::nearestOn(const Surfaces& surfaces, const TissueTravel& travel, const State& state,
                                             const Target& target, const Vec3& from, double limit) {
   Nearest out;
   out.distance = limit;
   if (!target.vessel) {
-    const std::span<const std::uint32_t> patches = surfaces.patchesNear(target.structure, from, from, limit);
+    const std::span<const std::uint32_t> patches = surfaces.patchesNear(target.structure, from, from, limit, search_);
     if (patches.empty()) return out;
     ++searches_;
     const ContactSurface& mesh = surfaces.mesh(target.structure);
@@ -227,7 +226,7 @@ double FatContacts::restDistance(const TissueTravel& travel, const Target& targe
   return distance;
 }
 
-double FatContacts::touch(Surfaces& surfaces, const TissueTravel& travel, const State& state, const FatBody& body,
+double FatContacts::touch(const Surfaces& surfaces, const TissueTravel& travel, const State& state, const FatBody& body,
                           double step, Fat& fat, std::size_t which, std::vector<ContactBlock>& blocks) {
   const Target& target = target_[which];
   Pair& pair = fat.pair[which];
@@ -299,7 +298,7 @@ void FatContacts::wear(const Fat& fat, double motion, std::vector<double>& clear
   }
 }
 
-double FatContacts::run(Surfaces& surfaces, const Bodies& bodies, const TissueTravel& travel, const State& state,
+double FatContacts::run(const Surfaces& surfaces, const Bodies& bodies, const TissueTravel& travel, const State& state,
                         const std::vector<bool>& awake, std::vector<ContactBlock>& blocks) {
   searches_ = 0;
   double depth = 0.0;

@@ -67,7 +67,7 @@ void moveGrasp(HandState& hand, std::size_t from, std::size_t to) {
 
 }  // namespace
 
-void Grasping::end(Surfaces& surfaces, std::size_t hand, EventKind why, double value, State& state, StepLog& log,
+void Grasping::end(const Surfaces& surfaces, std::size_t hand, EventKind why, double value, State& state, StepLog& log,
                    ContactResult& contact) {
   HandState& h = state.hand[hand];
   log.emit(why, hand, h.grasped, h.simulatedPosition, value);
@@ -78,7 +78,7 @@ void Grasping::end(Surfaces& surfaces, std::size_t hand, EventKind why, double v
   resolver_.run(surfaces, hand, state, contact);
 }
 
-void Grasping::removeStaleGrasps(Surfaces& surfaces, std::size_t hand, State& state, StepLog& log,
+void Grasping::removeStaleGrasps(const Surfaces& surfaces, std::size_t hand, State& state, StepLog& log,
                                  ContactResult& contact) {
   HandState& h = state.hand[hand];
   if (h.grasped == noStructure) return;
@@ -93,7 +93,7 @@ void Grasping::removeStaleGrasps(Surfaces& surfaces, std::size_t hand, State& st
   end(surfaces, hand, EventKind::graspEnd, heldFor(h, state), state, log, contact);
 }
 
-void Grasping::release(Surfaces& surfaces, State& state, StepLog& log, ContactResult& contact) {
+void Grasping::release(const Surfaces& surfaces, State& state, StepLog& log, ContactResult& contact) {
   for (std::size_t hand = 0; hand < handCount; ++hand) removeStaleGrasps(surfaces, hand, state, log, contact);
   for (std::size_t hand = 0; hand < handCount; ++hand) {
     const HandState& h = state.hand[hand];
@@ -104,11 +104,11 @@ void Grasping::release(Surfaces& surfaces, State& state, StepLog& log, ContactRe
   }
 }
 
-void Grasping::close(Surfaces& surfaces, State& state, StepLog& log) const {
+void Grasping::close(const Surfaces& surfaces, State& state, StepLog& log) const {
   for (std::size_t hand = 0; hand < handCount; ++hand) closeOne(surfaces, hand, state, log);
 }
 
-void Grasping::closeOne(Surfaces& surfaces, std::size_t hand, State& state, StepLog& log) const {
+void Grasping::closeOne(const Surfaces& surfaces, std::size_t hand, State& state, StepLog& log) const {
   HandState& h = state.hand[hand];
   const InstrumentDefinition& instrument = instrumentOf(h.instrument);
   if (h.realJaw > instrument.jaw.opened) h.jawsOpened = true;
@@ -121,6 +121,7 @@ void Grasping::closeOne(Surfaces& surfaces, std::size_t hand, State& state, Step
   const auto [from, to] = graspLine(instrument, shaftRadius);
   const JawSpace space = jawSpace(instrument, shaftRadius, to[2] - from[2], foldRise);
   std::optional<std::size_t> structure;
+  Surfaces::Search search;
   std::vector<Vec3> held;
   for (const double station : stations) {
     const Vec3 target = tool.position + tool.orientation * Vec3(from + station * (to - from));
@@ -131,7 +132,7 @@ void Grasping::closeOne(Surfaces& surfaces, std::size_t hand, State& state, Step
     PointTriangle best;
     for (std::size_t s = 0; s < surfaces.size(); ++s) {
       if (structure && s != *structure) continue;
-      for (const std::uint32_t p : surfaces.patchesNear(s, target, target, searchRadius)) {
+      for (const std::uint32_t p : surfaces.patchesNear(s, target, target, searchRadius, search)) {
         const ContactSurface& surface = surfaces.mesh(s);
         for (std::size_t t = surface.patches()[p].first; t < surface.patches()[p].last; ++t) {
           const Index3& corner = surface.triangles()[t];
@@ -224,7 +225,7 @@ bool Grasping::slip(const Surfaces& surfaces, std::size_t hand, State& state) co
   return slipping;
 }
 
-void Grasping::settle(Surfaces& surfaces, State& state, Activity& activity, StepResult& result, StepLog& log) {
+void Grasping::settle(const Surfaces& surfaces, State& state, Activity& activity, StepResult& result, StepLog& log) {
   for (std::size_t hand = 0; hand < handCount; ++hand) {
     HandState& h = state.hand[hand];
     HandResult& out = result.hand[hand];

@@ -80,7 +80,7 @@ Vec3 velocityOf(const Skin& skin, std::span<const Vec3> velocity, const Index3& 
 }  // namespace
 
 void HookTouchSearch::findTriangles(const HookSweep& sweep, std::size_t structure, const Bodies& bodies,
-                                    Surfaces& surfaces, const State& state) {
+                                    const Surfaces& surfaces, const State& state) {
   const double reach = model_.scene().cautery.reach +
                        tissueWay(bodies[model_.structures()[structure].body].velocity(state), bodies.step());
   const ContactSurface& mesh = surfaces.mesh(structure);
@@ -90,7 +90,7 @@ void HookTouchSearch::findTriangles(const HookSweep& sweep, std::size_t structur
     const double moved = std::max((part.now[0] - part.before[0]).norm(), (part.now[1] - part.before[1]).norm());
     const Box box = boundsOf(part, reach);
     for (const std::uint32_t p :
-         surfaces.patchesNear(structure, part.now[0], part.now[1], part.radius + reach + moved)) {
+         surfaces.patchesNear(structure, part.now[0], part.now[1], part.radius + reach + moved, search_)) {
       for (std::size_t t = mesh.patches()[p].first; t < mesh.patches()[p].last; ++t) {
         Box own;
         for (int k = 0; k < 3; ++k) own.include(points[static_cast<std::size_t>(mesh.triangles()[t][k])]);
@@ -114,7 +114,7 @@ void HookTouchSearch::touchConnective(const HookSweep& sweep, double step, const
 }
 
 void HookTouchSearch::touchOrgan(const HookSweep& sweep, std::size_t structure, const Bodies& bodies,
-                                 Surfaces& surfaces, const State& state, HookTouches& out) {
+                                 const Surfaces& surfaces, const State& state, HookTouches& out) {
   const StructureModel& s = model_.structures()[structure];
   const OrganModel& organ = model_.organs()[s.index];
   const double reach = model_.scene().cautery.reach;
@@ -203,8 +203,8 @@ void HookTouchSearch::touchVessel(const HookSweep& sweep, std::size_t structure,
   }
 }
 
-void HookTouchSearch::touchFat(const HookSweep& sweep, std::size_t structure, const Bodies& bodies, Surfaces& surfaces,
-                               const State& state, HookTouches& out) {
+void HookTouchSearch::touchFat(const HookSweep& sweep, std::size_t structure, const Bodies& bodies,
+                               const Surfaces& surfaces, const State& state, HookTouches& out) {
   const StructureModel& s = model_.structures()[structure];
   findTriangles(sweep, structure, bodies, surfaces, state);
   const std::vector<Vec3>& points = surfaces.points(structure);
@@ -236,7 +236,7 @@ void HookTouchSearch::takeOutOfDimples(const HookSweep& sweep, std::size_t struc
   }
 }
 
-void HookTouchSearch::run(const HookSweep& sweep, Bodies& bodies, Surfaces& surfaces, const State& state,
+void HookTouchSearch::run(const HookSweep& sweep, Bodies& bodies, const Surfaces& surfaces, const State& state,
                           HookTouches& out) {
   out.strand.resize(model_.connective().size());
   for (std::vector<StrandTouch>& strands : out.strand) strands.clear();

@@ -24,7 +24,7 @@ constexpr double maxJawSpeed = 5.0;
 }  // namespace
 
 /// Least gap between the placed instrument and all structures, at most `limit` (m).
-double InstrumentMotion::gapOf(Surfaces& surfaces, const State& state, std::size_t hand, double limit) const {
+double InstrumentMotion::gapOf(const Surfaces& surfaces, const State& state, std::size_t hand, double limit) {
   double least = gapBetween(instrument_, other_, limit);
   for (std::size_t s = 0; s < surfaces.size(); ++s) {
     for (const Capsule& c : instrument_.capsule) {
@@ -32,8 +32,8 @@ double InstrumentMotion::gapOf(Surfaces& surfaces, const State& state, std::size
       const Vec3 dimple = dimpleOf(state.hand[hand], s, c.piece);
       const Vec3 p0 = c.p0 + dimple;
       const Vec3 p1 = c.p1 + dimple;
-      const double search = capsuleSearch(c.radius, notNegative(least - allowed));
-      const std::span<const std::uint32_t> near = surfaces.patchesNear(s, p0, p1, search);
+      const double far = capsuleSearch(c.radius, notNegative(least - allowed));
+      const std::span<const std::uint32_t> near = surfaces.patchesNear(s, p0, p1, far, search_);
       if (near.empty()) continue;
       least = allowed + minGap(surfaces.mesh(s), surfaces.points(s), near, p0, p1, c.radius, least - allowed);
     }
@@ -41,7 +41,7 @@ double InstrumentMotion::gapOf(Surfaces& surfaces, const State& state, std::size
   return least;
 }
 
-void InstrumentMotion::advance(Surfaces& surfaces, std::size_t hand, State& state, InstrumentTravel& travel) {
+void InstrumentMotion::advance(const Surfaces& surfaces, std::size_t hand, State& state, InstrumentTravel& travel) {
   HandState& h = state.hand[hand];
   const HandDescription& description = model_.scene().hands[hand];
   const Pose real{h.realPosition, h.realOrientation};
@@ -89,7 +89,7 @@ void InstrumentMotion::advance(Surfaces& surfaces, std::size_t hand, State& stat
   travel.reach = contactMargin + std::min(left, maxSlide);
 }
 
-InstrumentTravels InstrumentMotion::run(Surfaces& surfaces, State& state, StepLog& log, ContactResult& contact) {
+InstrumentTravels InstrumentMotion::run(const Surfaces& surfaces, State& state, StepLog& log, ContactResult& contact) {
   InstrumentTravels travel;
   for (std::size_t hand = 0; hand < handCount; ++hand) travel[hand].before = simulatedPose(state.hand[hand]);
   grasping_.release(surfaces, state, log, contact);

@@ -179,8 +179,8 @@ constexpr std::array<double, 4> retreats{0.002, 0.005, 0.01, 0.02};
 
 }  // namespace
 
-void instrumentContacts(const Model& model, Surfaces& surfaces, const State& state, std::size_t hand,
-                        const PlacedInstrument& instrument, std::size_t structure, double far,
+void instrumentContacts(const Model& model, const Surfaces& surfaces, const State& state, std::size_t hand,
+                        const PlacedInstrument& instrument, std::size_t structure, double far, Surfaces::Search& search,
                         std::vector<SurfaceContact>& out) {
   out.clear();
   for (const Capsule& c : instrument.capsule) {
@@ -188,7 +188,8 @@ void instrumentContacts(const Model& model, Surfaces& surfaces, const State& sta
     const Vec3 dimple = dimpleOf(state.hand[hand], structure, c.piece);
     const Vec3 p0 = c.p0 + dimple;
     const Vec3 p1 = c.p1 + dimple;
-    const std::span<const std::uint32_t> near = surfaces.patchesNear(structure, p0, p1, capsuleSearch(c.radius, far));
+    const std::span<const std::uint32_t> near =
+        surfaces.patchesNear(structure, p0, p1, capsuleSearch(c.radius, far), search);
     const std::size_t first = out.size();
     capsuleContacts(surfaces.mesh(structure), surfaces.points(structure), near, p0, p1, c.radius, far, c.piece, out);
     const double allowed = allowedDepth(model, state, hand, c, structure);
@@ -201,12 +202,13 @@ void instrumentContacts(const Model& model, Surfaces& surfaces, const State& sta
 
 /// The deepest that the placed instrument stands in any structure or in the other instrument, and every point where it
 /// does.
-double PenetrationResolver::findInside(Surfaces& surfaces, const State& state, std::size_t hand, const Pose& pose) {
+double PenetrationResolver::findInside(const Surfaces& surfaces, const State& state, std::size_t hand,
+                                       const Pose& pose) {
   const Vec3& port = model_.scene().hands[hand].port;
   inside_.clear();
   double depth = 0.0;
   for (std::size_t s = 0; s < surfaces.size(); ++s) {
-    instrumentContacts(model_, surfaces, state, hand, instrument_, s, 0.0, found_);
+    instrumentContacts(model_, surfaces, state, hand, instrument_, s, 0.0, search_, found_);
     for (const SurfaceContact& contact : found_) {
       if (!(contact.gap < 0.0)) continue;
       inside_.push_back({toolRow(port, pose, contact.onAxis, contact.normal), contact.normal, contact.gap});
@@ -249,7 +251,7 @@ ToolRow PenetrationResolver::minWayOut() const {
 
 /// Follows minWayOut() from a pose, pass by pass. Keeps the best pose met: folds and pinches may lead a pass
 /// astray.
-PenetrationResolver::Outcome PenetrationResolver::search(Surfaces& surfaces, const State& state, std::size_t hand,
+PenetrationResolver::Outcome PenetrationResolver::search(const Surfaces& surfaces, const State& state, std::size_t hand,
                                                          Pose pose) {
   const HandState& s = state.hand[hand];
   const HandDescription& description = model_.scene().hands[hand];
@@ -277,7 +279,7 @@ PenetrationResolver::Outcome PenetrationResolver::search(Surfaces& surfaces, con
   }
 }
 
-void PenetrationResolver::run(Surfaces& surfaces, std::size_t hand, State& state, ContactResult& contact) {
+void PenetrationResolver::run(const Surfaces& surfaces, std::size_t hand, State& state, ContactResult& contact) {
   HandState& s = state.hand[hand];
   if (s.instrument == InstrumentKind::none) return;
   const Vec3& port = model_.scene().hands[hand].port;

@@ -75,7 +75,7 @@ class PenetrationResolver {
 
   /// Writes the hand's simulated pose; raises `contact.maxDepth` or `pinchedDepth` to what is left (m).
   /// @pre surfaces are current
-  void run(Surfaces& surfaces, std::size_t hand, State& state, ContactResult& contact);
+  void run(const Surfaces& surfaces, std::size_t hand, State& state, ContactResult& contact);
 
  private:
   /// A point at which an instrument stands inside a structure or the other instrument.
@@ -91,21 +91,22 @@ class PenetrationResolver {
     bool pinched;  ///< between tissue on two sides
   };
 
-  double findInside(Surfaces& surfaces, const State& state, std::size_t hand, const Pose& pose);
+  double findInside(const Surfaces& surfaces, const State& state, std::size_t hand, const Pose& pose);
   [[nodiscard]] ToolRow minWayOut() const;
-  Outcome search(Surfaces& surfaces, const State& state, std::size_t hand, Pose pose);
+  Outcome search(const Surfaces& surfaces, const State& state, std::size_t hand, Pose pose);
 
   const Model& model_;
   PlacedInstrument instrument_, other_;
   std::vector<ClashPoint> clash_;
   std::vector<SurfaceContact> found_;
+  Surfaces::Search search_;
   std::vector<Inside> inside_;
 };
 
 /// Contacts of a hand's instrument with a structure, nearer than `far` (m). Their gaps count from allowedDepth(), and
 /// from the dimples that the capsules press. @pre surfaces are current
-void instrumentContacts(const Model& model, Surfaces& surfaces, const State& state, std::size_t hand,
-                        const PlacedInstrument& instrument, std::size_t structure, double far,
+void instrumentContacts(const Model& model, const Surfaces& surfaces, const State& state, std::size_t hand,
+                        const PlacedInstrument& instrument, std::size_t structure, double far, Surfaces::Search& search,
                         std::vector<SurfaceContact>& out);
 
 /// Jaws that close on tissue grasp it: points of a structure's skin between them are tied to the instrument (bilateral
@@ -117,20 +118,21 @@ class Grasping {
 
   /// Before the instruments move: discards grasped points whose fat was carved away, and releases what open jaws or
   /// exchanged instruments held. Writes HandState's grasp. @pre surfaces are current
-  void release(Surfaces& surfaces, State& state, StepLog& log, ContactResult& contact);
+  void release(const Surfaces& surfaces, State& state, StepLog& log, ContactResult& contact);
   /// After they moved: jaws that were open and close now grasp the tissue between them. @pre surfaces are current
-  void close(Surfaces& surfaces, State& state, StepLog& log) const;
+  void close(const Surfaces& surfaces, State& state, StepLog& log) const;
   /// A bilateral block for each grasped point, added to `blocks`. @pre surfaces are current
   void addBlocks(const Surfaces& surfaces, const State& state, std::vector<ContactBlock>& blocks) const;
   /// After the step: tissue that slipped or tore out. Fills each hand's `grasping` and `graspForce`; an organ that
   /// tears is opened. @pre surfaces are current
-  void settle(Surfaces& surfaces, State& state, Activity& activity, StepResult& result, StepLog& log);
+  void settle(const Surfaces& surfaces, State& state, Activity& activity, StepResult& result, StepLog& log);
 
  private:
-  void removeStaleGrasps(Surfaces& surfaces, std::size_t hand, State& state, StepLog& log, ContactResult& contact);
-  void end(Surfaces& surfaces, std::size_t hand, EventKind why, double value, State& state, StepLog& log,
+  void removeStaleGrasps(const Surfaces& surfaces, std::size_t hand, State& state, StepLog& log,
+                         ContactResult& contact);
+  void end(const Surfaces& surfaces, std::size_t hand, EventKind why, double value, State& state, StepLog& log,
            ContactResult& contact);
-  void closeOne(Surfaces& surfaces, std::size_t hand, State& state, StepLog& log) const;
+  void closeOne(const Surfaces& surfaces, std::size_t hand, State& state, StepLog& log) const;
   /// Moves slipping points along; discards those that left the jaws. @return whether any slips
   bool slip(const Surfaces& surfaces, std::size_t hand, State& state) const;
   [[nodiscard]] double heldFor(const HandState& hand, const State& state) const {

@@ -60,7 +60,7 @@ void wakeBodies(const Model& model, const Bodies& bodies, const InstrumentTravel
     }
   }
   for (std::size_t i = 0; i < state.tissue.key.size(); ++i) {
-    const std::uint64_t pair = state.tissue.key[i] >> 40U;
+    const std::uint64_t pair = state.tissue.key[i] >> pairShift;
     if (!(state.tissue.force[i] > wakingForce)) continue;
     if (pair >= model.tissuePairs().size()) {
       wakePressed(model, pair, quiet);

@@ -63,27 +63,31 @@ class InstrumentMotion {
   /// @param grasping outlives this
   InstrumentMotion(const Model& model, Grasping& grasping) : model_(model), grasping_(grasping) {}
   /// @pre surfaces are current
-  InstrumentTravels run(Surfaces& surfaces, State& state, StepLog& log, ContactResult& contact);
+  InstrumentTravels run(const Surfaces& surfaces, State& state, StepLog& log, ContactResult& contact);
 
  private:
-  void advance(Surfaces& surfaces, std::size_t hand, State& state, InstrumentTravel& travel);
-  double gapOf(Surfaces& surfaces, const State& state, std::size_t hand, double limit) const;
+  void advance(const Surfaces& surfaces, std::size_t hand, State& state, InstrumentTravel& travel);
+  double gapOf(const Surfaces& surfaces, const State& state, std::size_t hand, double limit);
 
   const Model& model_;
   Grasping& grasping_;
   PlacedInstrument instrument_, other_;
+  Surfaces::Search search_;
 };
 
 // Stage 3 of a step: contact points of instruments and among organs, and the bodies that are awake.
 
 /// Reads: simulated instruments, surfaces, velocities of the tissue. Writes: `contact.blocks` (in the order of hand,
 /// structure and contact point; grasps; instruments on each other; tissue on tissue), and which bodies are awake.
+/// Contact among tissue is searched while awake solids are linearised (SolidBody::linearise()): neither needs the
+/// other.
 class ContactDetection {
  public:
-  /// @param grasping outlives this
-  ContactDetection(const Model& model, const Grasping& grasping)
+  /// @param grasping, executor outlive this
+  ContactDetection(const Model& model, const Grasping& grasping, Executor& executor)
       : model_(model),
         grasping_(grasping),
+        executor_(executor),
         tissue_(model),
         travel_(model),
         vessels_(model, travel_),
@@ -97,11 +101,13 @@ class ContactDetection {
   }
   void precompute() { tissue_.precompute(); }
   /// @return the overlap of tissue as found (m) @pre surfaces are current
-  double run(Surfaces& surfaces, const Bodies& bodies, const InstrumentTravels& travels, const State& state,
+  double run(const Surfaces& surfaces, Bodies& bodies, const InstrumentTravels& travels, const State& state,
              Activity& activity, ContactSystem& contact);
 
  private:
-  void findInstrumentContacts(Surfaces& surfaces, const Bodies& bodies, const InstrumentTravels& travels,
+  double findTissueContacts(const Surfaces& surfaces, const Bodies& bodies, const State& state,
+                            const Activity& activity, std::vector<ContactBlock>& blocks);
+  void findInstrumentContacts(const Surfaces& surfaces, const Bodies& bodies, const InstrumentTravels& travels,
                               const State& state, std::vector<ContactBlock>& blocks);
   void addInstrumentBlock(const Surfaces& surfaces, const State& state, std::size_t hand, std::size_t structure,
                           const SurfaceContact& contact, std::vector<ContactBlock>& blocks) const;
@@ -110,12 +116,18 @@ class ContactDetection {
 
   const Model& model_;
   const Grasping& grasping_;
+  Executor& executor_;
   TissueContacts tissue_;
   TissueTravel travel_;
   VesselContacts vessels_;
   FatContacts fat_;
+  /// A hand and a structure.
+  struct Touching {
+    Surfaces::Search search;
+    std::vector<SurfaceContact> found;
+  };
   std::array<PlacedInstrument, handCount> instrument_;
-  std::vector<SurfaceContact> found_;
+  std::vector<Touching> touching_;  ///< by hands, then structures
   std::vector<ClashPoint> clash_;
 };
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sim/contact/broad_phase.h"
+#include "sim/math/executor.h"
 #include "sim/step/bodies.h"
 
 namespace calot {
@@ -20,15 +21,15 @@ inline constexpr double broadPhaseCell = 0.02;
 class Surfaces {
  public:
   /// @param make makes one broad phase a structure; none: SortedGrid
-  Surfaces(const Model& model, Bodies& bodies, MakeBroadPhase make);
+  Surfaces(const Model& model, Bodies& bodies, MakeBroadPhase make, Executor& executor);
 
   /// To be called when the State was replaced.
   void invalidate();
   void refresh(const State& state);
   /// The structure's surface is not that of the last refresh() any more.
-  void markStale(std::size_t structure) { current_[structure] = false; }
+  void markStale(std::size_t structure) { current_[structure] = 0; }
   void markBodyStale(std::size_t body);
-  [[nodiscard]] bool isCurrent(std::size_t structure) const { return current_[structure]; }
+  [[nodiscard]] bool isCurrent(std::size_t structure) const { return current_[structure] != 0; }
 
   [[nodiscard]] std::size_t size() const { return skin_.size(); }
   [[nodiscard]] const Skin& skin(std::size_t structure) const { return *skin_[structure]; }
@@ -37,24 +38,32 @@ class Surfaces {
   [[nodiscard]] const std::vector<Vec3>& points(std::size_t structure) const { return points_[structure]; }
   /// Bounds of its patches (m, W). @pre isCurrent()
   [[nodiscard]] const std::vector<Box>& bounds(std::size_t structure) const { return bounds_[structure]; }
-  [[nodiscard]] BroadPhase& broadPhase(std::size_t structure) { return *broad_[structure]; }
+  [[nodiscard]] const BroadPhase& broadPhase(std::size_t structure) const { return *broad_[structure]; }
 
+  /// Memory of a search, of whoever searches.
+  struct Search {
+    std::vector<BroadPhase::Pair> pair;
+    std::vector<std::uint32_t> near;
+  };
   /// Patches with everything that a structure has no farther than `far` from a segment (a conservative superset),
-  /// ascending. Valid until the next call. @pre isCurrent()
-  std::span<const std::uint32_t> patchesNear(std::size_t structure, const Vec3& p0, const Vec3& p1, double far);
+  /// ascending. Valid until the next search with the same memory. @pre isCurrent()
+  std::span<const std::uint32_t> patchesNear(std::size_t structure, const Vec3& p0, const Vec3& p1, double far,
+                                             Search& search) const;
 
  private:
+  void refresh(const State& state, std::size_t structure);
+
   const Model& model_;
+  Executor& executor_;
   std::vector<std::unique_ptr<Skin>> skin_;
   std::vector<std::unique_ptr<BroadPhase>> broad_;
   std::vector<std::vector<Vec3>> points_;
   std::vector<std::vector<Box>> bounds_;
-  std::vector<bool> current_;
-  std::vector<bool> refittable_;  ///< the broad phase holds earlier bounds of the same patches
-  std::vector<Box> earlierBounds_;
-  std::vector<std::uint32_t> changed_;
-  std::vector<BroadPhase::Pair> pairs_;
-  std::vector<std::uint32_t> near_;
+  std::vector<std::uint8_t> current_;
+  std::vector<std::uint8_t> refittable_;  ///< does the broad phase hold earlier bounds of the same patches?
+  std::vector<std::vector<Box>> earlierBounds_;
+  std::vector<std::vector<std::uint32_t>> changed_;
+  std::vector<std::size_t> stale_;
 };
 
 }  // namespace calot

@@ -63,7 +63,7 @@ bool isInverted(const Model& model, const State& state, std::size_t organ, int v
   return !(edge(1).dot(edge(2).cross(edge(3))) > 0.0);
 }
 
-double TissueContacts::addPair(Surfaces& surfaces, const State& state, std::size_t number,
+double TissueContacts::addPair(const Surfaces& surfaces, const State& state, std::size_t number,
                                std::vector<ContactBlock>& blocks) {
   const TissuePair& pair = model_.tissuePairs()[number];
   const double far = 2.0 * allowedOverlap;
@@ -99,14 +99,14 @@ double TissueContacts::addPair(Surfaces& surfaces, const State& state, std::size
     block.direction[0] = contact.normal;
     // Deep overlaps part over several steps, or organs would be thrown apart.
     block.gap[0] = std::max(contact.gap + allowedOverlap, -maxRecovery);
-    block.key = contact.key | static_cast<std::uint64_t>(number) << 40U;
+    block.key = contact.key | static_cast<std::uint64_t>(number) << pairShift;
     gap_.push_back(contact.gap);
     blocks.push_back(block);
   }
   return depth;
 }
 
-double TissueContacts::run(Surfaces& surfaces, const State& state, const std::vector<bool>& awake,
+double TissueContacts::run(const Surfaces& surfaces, const State& state, const std::vector<bool>& awake,
                            std::vector<ContactBlock>& blocks) {
   const std::size_t first = blocks.size();
   double depth = 0.0;

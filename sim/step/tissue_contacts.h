@@ -48,12 +48,13 @@ class TissueContacts {
   void precompute();
   /// Adds blocks of organs that are awake, at most `maxTissueContacts`. @return deepest overlap beyond that at rest (m)
   /// @pre surfaces are current
-  double run(Surfaces& surfaces, const State& state, const std::vector<bool>& awake, std::vector<ContactBlock>& blocks);
+  double run(const Surfaces& surfaces, const State& state, const std::vector<bool>& awake,
+             std::vector<ContactBlock>& blocks);
 
  private:
   const SurfacePair& restOf(std::size_t pair);
   const SurfaceDisplacement& displacementOf(const Surfaces& surfaces, std::size_t organ);
-  double addPair(Surfaces& surfaces, const State& state, std::size_t number, std::vector<ContactBlock>& blocks);
+  double addPair(const Surfaces& surfaces, const State& state, std::size_t number, std::vector<ContactBlock>& blocks);
 
   const Model& model_;
   std::vector<std::unique_ptr<const SurfacePair>> selfRest_;  ///< per organ; empty until it folds
@@ -179,7 +180,7 @@ class VesselContacts {
   void invalidate();
   /// Adds the blocks of pairs of which one is awake. @return deepest overlap beyond that at rest (m)
   /// @pre surfaces are current; the travel has followed each step since the last run or invalidate()
-  double run(Surfaces& surfaces, const TissueTravel& travel, const State& state, double step,
+  double run(const Surfaces& surfaces, const TissueTravel& travel, const State& state, double step,
              const std::vector<bool>& awake, std::vector<ContactBlock>& blocks);
 
   /// Searches among triangles or capsules in the last run().
@@ -213,8 +214,8 @@ class VesselContacts {
   void measureRest(const Vessel& vessel, Nearby& nearby);
   [[nodiscard]] Point endOnOrgan(const Surfaces& surfaces, std::size_t organ, std::span<const std::uint32_t> patches,
                                  const Vec3& end, double radius, double reach) const;
-  double touchOrgan(Surfaces& surfaces, const TissueTravel& travel, const State& state, double step, std::size_t organ,
-                    std::size_t vessel, std::vector<ContactBlock>& blocks);
+  double touchOrgan(const Surfaces& surfaces, const TissueTravel& travel, const State& state, double step,
+                    std::size_t organ, std::size_t vessel, std::vector<ContactBlock>& blocks);
   double touchVessel(const TissueTravel& travel, double step, std::size_t one, std::size_t two,
                      std::vector<ContactBlock>& blocks);
   [[nodiscard]] bool areOneWall(const Vessel& a, std::size_t i, const Vessel& b, std::size_t j) const;
@@ -224,10 +225,13 @@ class VesselContacts {
   std::vector<TreeDistances> distances_;  ///< per tree
   std::vector<Nearby> nearby_;            ///< per vessel, in TissueTravel's order
   std::vector<SurfaceContact> found_;
+  Surfaces::Search search_;
   std::size_t searches_ = 0;
 };
 
-/// The number that the keys of contact of two structures have in their bits from 40 up: after those of pairs of organs.
+/// Keys of contact have the number of their pair in the bits from here up; below, a vertex, a cube or a capsule.
+inline constexpr unsigned pairShift = 40;
+/// The number of two structures: after those of pairs of organs.
 std::uint64_t structurePairNumber(const Model& model, std::size_t a, std::size_t b);
 /// The structures of such a number. @pre it is no pair of organs
 std::array<std::size_t, 2> structuresOfPair(const Model& model, std::uint64_t number);
@@ -252,7 +256,7 @@ class FatContacts {
   /// Adds the blocks of pairs of which one is awake, the deepest of each body of fat. @return deepest overlap beyond
   /// that at rest (m)
   /// @pre surfaces are current; the travel has followed each step since the last run or invalidate()
-  double run(Surfaces& surfaces, const Bodies& bodies, const TissueTravel& travel, const State& state,
+  double run(const Surfaces& surfaces, const Bodies& bodies, const TissueTravel& travel, const State& state,
              const std::vector<bool>& awake, std::vector<ContactBlock>& blocks);
 
   /// Searches among triangles or capsules in the last run().
@@ -295,17 +299,18 @@ class FatContacts {
   void tie(Fat& fat);
   static void follow(const FatBody& body, const State& state, bool awake, Fat& fat);
   static void wear(const Fat& fat, double motion, std::vector<double>& clearance);
-  Nearest nearestOn(Surfaces& surfaces, const TissueTravel& travel, const State& state, const Target& target,
+  Nearest nearestOn(const Surfaces& surfaces, const TissueTravel& travel, const State& state, const Target& target,
                     const Vec3& from, double limit);
   double restDistance(const TissueTravel& travel, const Target& target, const Fat& fat, std::size_t cube, Pair& pair);
-  double touch(Surfaces& surfaces, const TissueTravel& travel, const State& state, const FatBody& body, double step,
-               Fat& fat, std::size_t target, std::vector<ContactBlock>& blocks);
+  double touch(const Surfaces& surfaces, const TissueTravel& travel, const State& state, const FatBody& body,
+               double step, Fat& fat, std::size_t target, std::vector<ContactBlock>& blocks);
 
   const Model& model_;
   std::vector<Target> target_;  ///< organs, then vessels
   std::vector<Fat> fat_;
   std::vector<double> gap_;  ///< of the blocks added, as found (m)
   std::vector<std::uint32_t> all_;
+  Surfaces::Search search_;
   std::size_t searches_ = 0;
 };
 

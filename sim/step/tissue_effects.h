@@ -68,18 +68,18 @@ class HookTouchSearch {
   explicit HookTouchSearch(const Model& model) : model_(model) {}
 
   /// @pre surfaces are current, organs and instruments are where the step led them
-  void run(const HookSweep& sweep, Bodies& bodies, Surfaces& surfaces, const State& state, HookTouches& out);
+  void run(const HookSweep& sweep, Bodies& bodies, const Surfaces& surfaces, const State& state, HookTouches& out);
 
  private:
   void touchConnective(const HookSweep& sweep, double step, const State& state, HookTouches& out) const;
-  void touchOrgan(const HookSweep& sweep, std::size_t structure, const Bodies& bodies, Surfaces& surfaces,
+  void touchOrgan(const HookSweep& sweep, std::size_t structure, const Bodies& bodies, const Surfaces& surfaces,
                   const State& state, HookTouches& out);
   void touchVessel(const HookSweep& sweep, std::size_t structure, const Bodies& bodies, const State& state,
                    HookTouches& out) const;
-  void touchFat(const HookSweep& sweep, std::size_t structure, const Bodies& bodies, Surfaces& surfaces,
+  void touchFat(const HookSweep& sweep, std::size_t structure, const Bodies& bodies, const Surfaces& surfaces,
                 const State& state, HookTouches& out);
   /// Triangles of a skin that the sweep may touch, ascending.
-  void findTriangles(const HookSweep& sweep, std::size_t structure, const Bodies& bodies, Surfaces& surfaces,
+  void findTriangles(const HookSweep& sweep, std::size_t structure, const Bodies& bodies, const Surfaces& surfaces,
                      const State& state);
 
   /// The electrode as an organ's mesh meets it: out of the dimples that it presses (dimpleOf()).
@@ -87,6 +87,7 @@ class HookTouchSearch {
 
   const Model& model_;
   HookSweep met_;
+  Surfaces::Search search_;
   std::vector<std::uint32_t> triangle_;
 };
 
@@ -195,7 +196,7 @@ class TissueEffects {
       : model_(model), search_(model), connective_(model), tools_(model), cautery_(model) {}
 
   /// @pre surfaces are current
-  void run(const InstrumentTravels& travels, Surfaces& surfaces, Bodies& bodies, State& state, Activity& activity,
+  void run(const InstrumentTravels& travels, const Surfaces& surfaces, Bodies& bodies, State& state, Activity& activity,
            StepResult& result, StepLog& log) {
     sweepHooks(model_, travels, state, sweeps_);
     for (std::size_t h = 0; h < handCount; ++h) search_.run(sweeps_[h], bodies, surfaces, state, touches_[h]);

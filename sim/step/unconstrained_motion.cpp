@@ -98,8 +98,7 @@ void UnconstrainedMotion::solveGroup(Bodies& bodies, const ContactSystem& contac
   if (activity.awake[members[0]]) {  // then all are
     for (const std::size_t b : members) {
       gatherLoads(bodies, contact, activity, state, b);
-      bodies.joined().solid(b).assembleUnconstrained(state, model_.scene().gravity, nodal_, tieLoads_,
-                                                     {attachments_, {}, joints_});
+      bodies.joined().solid(b).load(state, model_.scene().gravity, nodal_, tieLoads_, {attachments_, {}, joints_});
     }
     report = bodies.joined().solveUnconstrained(group, bodies.couplings(), contact.rows > 0);
     reportMiss(bodies, members[0], report, log);

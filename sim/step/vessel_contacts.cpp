@@ -18,7 +18,6 @@ namespace {
 constexpr double searchMargin = 0.003;
 constexpr double rounding = 1e-9;   ///< of a motion (m)
 constexpr double wholeOrgan = 0.3;  ///< no point inside an organ is farther from its surface (m)
-constexpr unsigned pairShift = 40;  ///< of a contact's key: below, the capsules; from here up, the pair
 /// A contact nearer to a capsule's end than this share of the capsule is that of the end. Assumed.
 constexpr double endShare = 0.05;
 
@@ -118,7 +117,7 @@ VesselContacts::Point VesselContacts::endOnOrgan(const Surfaces& surfaces, std::
   return point;
 }
 
-double VesselContacts::touchOrgan(Surfaces& surfaces, const TissueTravel& travel, const State& state, double step,
+double VesselContacts::touchOrgan(const Surfaces& surfaces, const TissueTravel& travel, const State& state, double step,
                                   std::size_t o, std::size_t vessel, std::vector<ContactBlock>& blocks) {
   const Vessel& v = travel.vessels()[vessel];
   Nearby& nearby = nearby_[vessel];
@@ -161,7 +160,7 @@ double VesselContacts::touchOrgan(Surfaces& surfaces, const TissueTravel& travel
       clearance = {away, true};
       continue;
     }
-    const std::span<const std::uint32_t> patches = surfaces.patchesNear(o, c.p0, c.p1, limit);
+    const std::span<const std::uint32_t> patches = surfaces.patchesNear(o, c.p0, c.p1, limit, search_);
     clearance = {limit, false};
     if (patches.empty()) continue;
     ++searches_;
@@ -272,7 +271,7 @@ double VesselContacts::touchVessel(const TissueTravel& travel, double step, std:
   return depth;
 }
 
-double VesselContacts::run(Surfaces& surfaces, const TissueTravel& travel, const State& state, double step,
+double VesselContacts::run(const Surfaces& surfaces, const TissueTravel& travel, const State& state, double step,
                            const std::vector<bool>& awake, std::vector<ContactBlock>& blocks) {
   searches_ = 0;
   const auto wear = [](std::vector<Clearance>& list, std::size_t capsules, double motion) {

@@ -272,7 +272,7 @@ TEST(FatOnTissue, WhatIsFarApartIsNotSearched) {
   ASSERT_TRUE(model);
   SerialExecutor executor;
   Bodies bodies(*model, executor);
-  Surfaces surfaces(*model, bodies, nullptr);
+  Surfaces surfaces(*model, bodies, nullptr, executor);
   State state = initialState(*model, 1);
   bodies.beginStep(state);
   TissueTravel travel(*model);

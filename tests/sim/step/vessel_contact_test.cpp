@@ -349,7 +349,7 @@ TEST(VesselContact, WhatIsFarApartIsNotSearched) {
   ASSERT_TRUE(model);
   SerialExecutor executor;
   Bodies bodies(*model, executor);
-  Surfaces surfaces(*model, bodies, nullptr);
+  Surfaces surfaces(*model, bodies, nullptr, executor);
   State state = initialState(*model, 1);
   bodies.beginStep(state);
   TissueTravel travel(*model);

@@ -217,11 +217,16 @@ TEST(ViolentPulls, OnTheWholeOperationStayBounded) {
   pull("cholecystectomy", 101, heavy() ? 10 : 1, heavy() ? 1200 : 600, heldBackWithFat);
 }
 
-TEST(ViolentPulls, GiveTheSameBitsOnTwoThreads) {
-  const std::unique_ptr<const Model> model = test::buildModel(sceneNamed("clip-and-cut"));
-  ASSERT_TRUE(model);
-  recorder::WorkerPool two(2);
-  EXPECT_EQ(runWild(*model, 7, 250).digest, runWild(*model, 7, 250, &two).digest);
+TEST(ViolentPulls, GiveTheSameBitsForAnyNumberOfWorkers) {
+  for (const auto& [scene, steps] : {std::pair("clip-and-cut", 100), std::pair("cholecystectomy", 40)}) {
+    const std::unique_ptr<const Model> model = test::buildModel(sceneNamed(scene));
+    ASSERT_TRUE(model);
+    const auto alone = runWild(*model, 7, steps).digest;
+    for (const unsigned workers : {2U, 3U, 5U, 8U}) {
+      recorder::WorkerPool pool(workers);
+      EXPECT_EQ(runWild(*model, 7, steps, &pool).digest, alone) << scene << ", " << workers << " workers";
+    }
+  }
 }
 
 }  // namespace
