@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/math/floating_point.h"
 #include "sim/solid/block_matrix.h"
 #include "sim/solid/sweeps.h"
 
@@ -108,20 +107,13 @@ double ConjugateGradient::update(const Part& part, float alpha) {
 }
 
 SolveReport ConjugateGradient::solveJoined(std::span<const Part> parts, std::span<const Coupled> couplings,
-                                           const SolveGoal& goal, Executor& executor) {
-  const auto forEach = [&](auto&& work) {
-    executor.run(parts.size(), [&](std::size_t i) {
-      const FloatingPointScope scope;
-      work(parts[parts.size() - 1 - i]);  // fat, the largest, is last
-    });
-  };
+                                           const SolveGoal& goal) {
   const auto sumOver = [&](auto&& of) {
-    forEach([&](const Part& part) { part.gradient.sum_ = of(part); });
     double sum = 0.0;
-    for (const Part& part : parts) sum += part.gradient.sum_;
+    for (const Part& part : parts) sum += of(part);
     return sum;
   };
-  forEach([&](const Part& part) { part.gradient.begin(part, goal.goesOn); });
+  for (const Part& part : parts) part.gradient.begin(part, goal.goesOn);
   // With a lattice r is the residual itself, which the update subtracts from zero.
   const double start =
       sumOver([](const Part& part) { return part.gradient.update(part, part.gradient.pairs_ ? -1.0F : 0.0F); });
@@ -135,7 +127,7 @@ SolveReport ConjugateGradient::solveJoined(std::span<const Part> parts, std::spa
   double size = start;
   float beta = 0.0F;
   while (size > target && report.iterations < goal.cap) {
-    forEach([beta](const Part& part) { part.gradient.backward(part, beta); });
+    for (const Part& part : parts) part.gradient.backward(part, beta);
     for (const Coupled& c : couplings) c.by.addTo(parts[c.first].gradient, parts[c.second].gradient);
     const double curvature = sumOver([](const Part& part) { return part.gradient.forward(part); });
     if (!(curvature > 0.0)) break;  // not positive definite or NaN: keep the current iterate
@@ -153,15 +145,13 @@ SolveReport ConjugateGradient::solveJoined(std::span<const Part> parts, std::spa
 SolveReport ConjugateGradient::solve(const BlockMatrix& matrix, std::span<const float> values, std::span<const float> b,
                                      std::span<float> x, const SolveGoal& goal) {
   const Part part{*this, matrix, values, nullptr, b, x};
-  SerialExecutor alone;
-  return solveJoined({&part, 1}, {}, goal, alone);
+  return solveJoined({&part, 1}, {}, goal);
 }
 
 SolveReport ConjugateGradient::solve(const BlockMatrix& matrix, std::span<const float> values, CoarseLattice& lattice,
                                      std::span<const float> b, std::span<float> x, const SolveGoal& goal) {
   const Part part{*this, matrix, values, &lattice, b, x};
-  SerialExecutor alone;
-  return solveJoined({&part, 1}, {}, goal, alone);
+  return solveJoined({&part, 1}, {}, goal);
 }
 
 SolveReport ConjugateGradient::solveMany(const BlockMatrix& matrix, std::span<const float> values,

@@ -5,8 +5,8 @@
 //   t = (D + L)^-T p,   s = (D + L)^-1 (p - D t + E t),   result t + s.
 // The backward sweep scatters to earlier rows, so that only L is stored. The start is always zero: State needs no
 // warm start, and a binding iteration cap cannot make the error grow. Matrix and vectors are float; sums are
-// double, in an order fixed by the matrix. A part of a joined system is a task for an executor; what is within a part
-// is not: a sweep of a thousand rows takes less time than distributing its colours to threads.
+// double, in an order fixed by the matrix. Single-threaded: a sweep of a thousand rows takes less time than
+// distributing its colours to threads, and the parts of a joined system as tasks gain nothing.
 #pragma once
 
 #include <array>
@@ -14,7 +14,6 @@
 #include <span>
 #include <vector>
 
-#include "sim/math/executor.h"
 #include "sim/math/vectors.h"
 #include "sim/solid/block_matrix.h"
 
@@ -81,8 +80,8 @@ class ConjugateGradient {
   /// Solves the system of all parts and their couplings as one: parts are preconditioned each by its own sweeps (and
   /// lattice), couplings are part of the product alone. Without couplings and of one part, this is solve().
   /// @pre the whole is positive definite
-  static SolveReport solveJoined(std::span<const Part> parts, std::span<const Coupled> couplings, const SolveGoal& goal,
-                                 Executor& executor);
+  static SolveReport solveJoined(std::span<const Part> parts, std::span<const Coupled> couplings,
+                                 const SolveGoal& goal);
 
   /// Search direction of the present iteration at a row; the last number is zero.
   [[nodiscard]] FourFloats directionAt(std::size_t row) const {
@@ -128,7 +127,6 @@ class ConjugateGradient {
   std::vector<float> u_, sRows_;            ///< by rows: u, and for a single right-hand side a copy of s
   std::vector<float> q_, y_, c_, uw_, pq_;  ///< with a lattice: coarse_lattice.cpp
   bool pairs_ = false;                      ///< does the present solve have a lattice?
-  double sum_ = 0.0;                        ///< its part of the joined system's present sum
 };
 
 // Coupling of the linear systems of several solids.

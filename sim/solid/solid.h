@@ -112,7 +112,7 @@ class SolidSolver {
   /// and adds the solution to each freeVelocity(). Without couplings and of one solid, this is the second half of
   /// solveUnconstrained() and of applyImpulses().
   static SolveReport solveJoined(std::span<SolidSolver* const> solids, std::span<const Coupled> couplings,
-                                 const Settings& settings, Executor& executor);
+                                 const Settings& settings);
 
   /// The system of this step: of the whole solid, or of the remaining cubes. @pre assembleUnconstrained()
   [[nodiscard]] const SolidSystem& system() const { return *system_; }

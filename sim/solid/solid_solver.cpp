@@ -118,7 +118,7 @@ void SolidSolver::precompute(const SolidModel& model, const Settings& settings, 
 }
 
 SolveReport SolidSolver::solveJoined(std::span<SolidSolver* const> solids, std::span<const Coupled> couplings,
-                                     const Settings& settings, Executor& executor) {
+                                     const Settings& settings) {
   std::vector<ConjugateGradient::Part> parts;
   std::vector<ConjugateGradient::Coupled> coupled;
   double mass = 0.0;
@@ -135,7 +135,7 @@ SolveReport SolidSolver::solveJoined(std::span<SolidSolver* const> solids, std::
     goal.tolerance *= smoothErrorFactor;
     goal.absolute *= smoothErrorFactor;
   }
-  const SolveReport report = ConjugateGradient::solveJoined(parts, coupled, goal, executor);
+  const SolveReport report = ConjugateGradient::solveJoined(parts, coupled, goal);
   for (SolidSolver* solid : solids) solid->addSolution();
   return report;
 }
@@ -221,7 +221,7 @@ SolveReport SolidSolver::solveUnconstrained(const SolidModel& model, SolidState&
                                             Executor& executor, const Surroundings& surroundings) {
   assembleUnconstrained(model, state, gravity, external, settings, executor, surroundings);
   SolidSolver* self = this;
-  return solveJoined({&self, 1}, {}, settings, executor);
+  return solveJoined({&self, 1}, {}, settings);
 }
 
 void SolidSolver::assembleUnconstrained(const SolidModel& model, SolidState& state, const Vec3& gravity,
@@ -316,8 +316,7 @@ SolveReport SolidSolver::responses(const SolidModel& model, std::span<const Impu
 SolveReport SolidSolver::applyImpulses(std::span<const Vec3> impulse, const Settings& settings) {
   takeImpulses(impulse);
   SolidSolver* self = this;
-  SerialExecutor alone;
-  return solveJoined({&self, 1}, {}, settings, alone);
+  return solveJoined({&self, 1}, {}, settings);
 }
 
 void SolidSolver::takeImpulses(std::span<const Vec3> impulse) {

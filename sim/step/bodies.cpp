@@ -20,14 +20,13 @@ constexpr double looseFactor = 3.0;
 
 JoinedSolids::JoinedSolids(const Model& model, std::vector<OrganBody*> organs, std::vector<VesselBody*> vessels,
                            std::vector<FatMotion*> fat, const SolidSolver::Settings& settings,
-                           const SolidSolver::Settings& responses, Executor& executor)
+                           const SolidSolver::Settings& responses)
     : model_(model),
       organ_(std::move(organs)),
       vessel_(std::move(vessels)),
       fat_(std::move(fat)),
       settings_(settings),
-      responses_(responses),
-      executor_(executor) {
+      responses_(responses) {
   solid_.assign(organ_.begin(), organ_.end());
   solid_.insert(solid_.end(), fat_.begin(), fat_.end());
   first_.resize(solid_.size());
@@ -201,7 +200,7 @@ SolveReport JoinedSolids::solve(std::size_t group, std::span<TieCoupling> grown,
     const std::size_t fat = number(firstFat() + reaction->fat());
     coupled_.push_back({tie != nullptr ? number(tie->organ()) : fat, fat, *reaction});
   }
-  const SolveReport report = SolidSolver::solveJoined(solver_, coupled_, settings, executor_);
+  const SolveReport report = SolidSolver::solveJoined(solver_, coupled_, settings);
   for (const std::unique_ptr<VesselReaction>& reaction : reaction_) {
     if (isOf(*reaction, bodies[0])) reaction->pull(*fat_[reaction->fat()], *vessel_[reaction->tree()]);
   }
@@ -258,7 +257,7 @@ Bodies::Bodies(const Model& model, Executor& executor, ComplianceStore* complian
     fat_.push_back(fat.get());
     body_.push_back(std::move(fat));
   }
-  joined_ = std::make_unique<JoinedSolids>(model, organ_, vessel_, fat_, settings_, responseSettings_, executor);
+  joined_ = std::make_unique<JoinedSolids>(model, organ_, vessel_, fat_, settings_, responseSettings_);
   sortTies();
 }
 

@@ -188,7 +188,7 @@ class JoinedSolids {
   /// impulses
   JoinedSolids(const Model& model, std::vector<OrganBody*> organs, std::vector<VesselBody*> vessels,
                std::vector<FatMotion*> fat, const SolidSolver::Settings& settings,
-               const SolidSolver::Settings& responses, Executor& executor);
+               const SolidSolver::Settings& responses);
 
   /// Groups organs and fat by what holds them together, and linearises strands and ties over the step. Those of
   /// sleeping bodies are left out. @param awake per body @pre solveUnconstrained() of the vessels that are awake
@@ -262,7 +262,6 @@ class JoinedSolids {
   std::vector<FatMotion*> fat_;
   std::vector<SolidBody*> solid_;  ///< organs, then fat
   SolidSolver::Settings settings_, responses_;
-  Executor& executor_;
   std::vector<Tissue> tissue_;
   std::vector<FatTies> fatTies_;
   std::vector<std::unique_ptr<VesselReaction>> reaction_;  ///< per fat and tree

@@ -85,7 +85,7 @@ struct Pair {
     solverB.assembleUnconstrained(lowerSolid, b, Vec3::Zero(), {}, settings, executor, {loads.onB, {}});
     SolidSolver* solvers[] = {&solverA, &solverB};
     const SolidSolver::Coupled coupled{0, 1, coupling};
-    const SolveReport report = SolidSolver::solveJoined(solvers, {&coupled, 1}, settings, executor);
+    const SolveReport report = SolidSolver::solveJoined(solvers, {&coupled, 1}, settings);
     EXPECT_TRUE(report.converged) << report.residual;
     iterations = report.iterations;
     ASSERT_TRUE(solverA.advance(upperSolid, a, {}, h));
@@ -93,7 +93,6 @@ struct Pair {
   }
   /// Impulses on the upper block's nodes, to be called after step().
   void push(double h, std::span<const Vec3> impulse) {
-    SerialExecutor executor;
     SolidSolver::Settings settings;
     settings.step = h;
     settings.tolerance = 1e-6;
@@ -102,7 +101,7 @@ struct Pair {
     solverB.takeImpulses({});
     SolidSolver* solvers[] = {&solverA, &solverB};
     const SolidSolver::Coupled coupled{0, 1, coupling};
-    EXPECT_TRUE(SolidSolver::solveJoined(solvers, {&coupled, 1}, settings, executor).converged);
+    EXPECT_TRUE(SolidSolver::solveJoined(solvers, {&coupled, 1}, settings).converged);
   }
   [[nodiscard]] Vec3 momentum() const {
     Vec3 sum = Vec3::Zero();
