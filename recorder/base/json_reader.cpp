@@ -17,12 +17,7 @@ namespace {
 constexpr std::size_t maxFile = std::size_t{4} << 20U;
 constexpr int deepest = 32;
 
-// Quoted text from a file, cut and with control characters masked: a message stays one short line.
-std::string quoted(const std::string& text) {
-  std::string out = "\"";
-  for (const char c : text.substr(0, 60)) out += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? '?' : c;
-  return out + (text.size() > 60 ? "...\"" : "\"");
-}
+std::string quoted(const std::string& text) { return fmt::format("\"{}\"", shown(text, 60)); }
 
 std::string lineAndColumn(std::span<const std::byte> bytes, std::size_t at) {
   std::size_t line = 1, column = 1;
@@ -39,17 +34,15 @@ std::string lineAndColumn(std::span<const std::byte> bytes, std::size_t at) {
 
 std::string escaped(const std::string& key) {
   std::string out;
-  for (const char c : key) {
+  for (const char c : shown(key, 80)) {
     if (c == '~')
       out += "~0";
     else if (c == '/')
       out += "~1";
-    else if (static_cast<unsigned char>(c) < 0x20)
-      out += '?';
     else
       out += c;
   }
-  return out.substr(0, 80);
+  return out;
 }
 
 std::string rangeOf(const Range& rule) {

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
+#include <utility>
 
 namespace calot::recorder {
 namespace {
@@ -113,17 +114,20 @@ bool isUtf8(std::string_view text) {
   return true;
 }
 
-/// Letters and marks; not controls, blanks of other widths, changes of direction, private characters.
+/// Letters and marks; not controls, blanks of other widths, changes of direction, private characters (Unicode's
+/// categories Cc, Cf, Co, Cs, Zl, Zp, Zs). A code point that no version has assigned yet is shown.
 bool isShown(char32_t c) {
-  return c < 0x80 ? c >= ' ' && c <= '~'
-                  : c > 0xA0 && c != 0xAD && (c < 0x2000 || c > 0x206F) && (c < 0xD800 || c > 0xF8FF) && c != 0x3000 &&
-                        c != 0xFEFF && c < 0xFFF0;
+  if (c < 0x80) return c >= ' ' && c <= '~';
+  constexpr std::pair<char32_t, char32_t> hidden[] = {
+      {0x80, 0xA0},     {0xAD, 0xAD},     {0x600, 0x605},   {0x61C, 0x61C},   {0x6DD, 0x6DD},
+      {0x70F, 0x70F},   {0x890, 0x891},   {0x8E2, 0x8E2},   {0x1680, 0x1680}, {0x180E, 0x180E},
+      {0x2000, 0x206F}, {0x3000, 0x3000}, {0xD800, 0xF8FF}, {0xFEFF, 0xFEFF}, {0xFFF0, ~char32_t{0}}};
+  return std::ranges::none_of(hidden, [&](const auto& range) { return c >= range.first && c <= range.second; });
 }
 
 }  // namespace
 
-std::string shown(std::string_view word) {
-  constexpr std::size_t most = 40;
+std::string shown(std::string_view word, std::size_t most) {
   std::string text;
   for (std::size_t count = 0; !word.empty() && count < most; ++count) {
     std::size_t bytes = 0;

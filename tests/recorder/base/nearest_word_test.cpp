@@ -12,6 +12,17 @@ namespace {
 
 const std::vector<std::string> commands{"record", "recover", "replay", "render", "regrade", "study", "participant"};
 
+TEST(ShownWord, KeepsLettersAndMasksWhatHidesOrTurns) {
+  EXPECT_EQ(shown("Müller 日本 µm"), "Müller 日本 µm");
+  EXPECT_EQ(shown("\xD7\x8F"), "\xD7\x8F");  // assigned by no version of Unicode yet
+  for (const char* hidden : {"\n",     "\x7F",   "\u0085", "\u00A0", "\u00AD",     "\u0600",     "\u061C", "\u06DD",
+                             "\u070F", "\u0890", "\u08E2", "\u1680", "\u180E",     "\u200F",     "\u2028", "\u202E",
+                             "\u2066", "\u3000", "\uE000", "\uFEFF", "\U0001D173", "\U000E0001", "\xFF"})
+    EXPECT_EQ(shown(std::string("a") + hidden + "b"), "a?b");
+  EXPECT_EQ(shown("\xED\xA0\x80"), "???");  // half of a pair of UTF-16
+  EXPECT_EQ(shown("日本日本", 3), "日本日...");
+}
+
 TEST(NearestWord, DistancesCountEachMistakeOnce) {
   EXPECT_EQ(wordDistance("", ""), 0U);
   EXPECT_EQ(wordDistance("abc", ""), 3U);
