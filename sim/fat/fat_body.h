@@ -62,6 +62,11 @@ class CarvedContact final : public SurfaceTopology {
   /// Positions of the vertices (m, W), by index, for these positions of the solid's nodes. Entries without a vertex are
   /// unchanged. Allocates on first use.
   void positions(std::span<const Vec3> solid, std::vector<Vec3>& out) const;
+  /// A vertex in the reference configuration (m).
+  [[nodiscard]] Vec3 rest(int node) const {
+    const BrickLattice& lattice = model_.lattice();
+    return lattice.position(Index3::Zero()) + lattice.cell() * cellsOf(static_cast<std::size_t>(node));
+  }
   /// Nodes of the solid that a vertex depends on, and their weights.
   [[nodiscard]] MaterialPoint anchor(int node) const;
   /// A point of a triangle in terms of the solid's nodes: each corner's cube times the corner's weight, up to 24 nodes.

@@ -218,7 +218,7 @@ namespace {
 /// Is the structure of a dimple's key one that has dimples?
 bool isDimpleOf(const Model& model, std::uint64_t key) {
   const std::uint64_t structure = key >> 8U;
-  return structure < model.structures().size() && model.structures()[structure].kind == tissueId<OrganTissue>;
+  return structure < model.structures().size() && model.structures()[structure].soft != nullptr;
 }
 
 }  // namespace

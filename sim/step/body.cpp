@@ -134,9 +134,8 @@ bool TubeSkin::follow(const State& state) {
   BeamState rest = restState(beams_);
   rest.parting = beams.parting;
   rest.partedAt = beams.partedAt;
-  std::vector<Vec3> vertex;
-  tube_.positions(rest, vertex);
-  contact_.emplace(vertex, tube_.triangles());
+  tube_.positions(rest, rest_);
+  contact_.emplace(rest_, tube_.triangles());
   return true;
 }
 

@@ -41,6 +41,15 @@ void sweepHooks(const Model& model, const InstrumentTravels& travels, const Stat
   }
 }
 
+void takeOutOfDimples(const HookSweep& sweep, std::size_t structure, const State& state, HookSweep& out) {
+  out = sweep;
+  for (std::size_t k = 0; k < out.electrode.size(); ++k) {
+    const Vec3 dimple = dimpleOf(state.hand[sweep.hand], structure, out.piece[k]);
+    for (Vec3& end : out.electrode[k].before) end += dimple;
+    for (Vec3& end : out.electrode[k].now) end += dimple;
+  }
+}
+
 namespace {
 
 /// Tissue that moves further in a step is not looked for where it came from (m). Larger: more triangles are searched
@@ -227,15 +236,6 @@ void HookTouchSearch::touchFat(const HookSweep& sweep, std::size_t structure, co
   out.area += area;
 }
 
-void HookTouchSearch::takeOutOfDimples(const HookSweep& sweep, std::size_t structure, const State& state) {
-  met_ = sweep;
-  for (std::size_t k = 0; k < met_.electrode.size(); ++k) {
-    const Vec3 dimple = dimpleOf(state.hand[sweep.hand], structure, met_.piece[k]);
-    for (Vec3& end : met_.electrode[k].before) end += dimple;
-    for (Vec3& end : met_.electrode[k].now) end += dimple;
-  }
-}
-
 void HookTouchSearch::run(const HookSweep& sweep, Bodies& bodies, const Surfaces& surfaces, const State& state,
                           HookTouches& out) {
   out.strand.resize(model_.connective().size());
@@ -249,11 +249,14 @@ void HookTouchSearch::run(const HookSweep& sweep, Bodies& bodies, const Surfaces
   for (std::size_t s = 0; s < surfaces.size(); ++s) {
     const TissueId kind = model_.structures()[s].kind;
     if (kind == tissueId<OrganTissue>) {
-      takeOutOfDimples(sweep, s, state);
+      takeOutOfDimples(sweep, s, state, met_);
       touchOrgan(met_, s, bodies, surfaces, state, out);
     }
     if (kind == tissueId<VesselTissue>) touchVessel(sweep, s, bodies, state, out);
-    if (kind == tissueId<FatTissue>) touchFat(sweep, s, bodies, surfaces, state, out);
+    if (kind == tissueId<FatTissue>) {
+      takeOutOfDimples(sweep, s, state, met_);
+      touchFat(met_, s, bodies, surfaces, state, out);
+    }
   }
 }
 

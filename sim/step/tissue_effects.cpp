@@ -140,7 +140,8 @@ FatStroke CauteryEffects::carve(const HookSweep& sweep, const Dose& dose, std::s
                                 Activity& activity) {
   blades_.clear();
   const CauteryDescription& cautery = model_.scene().cautery;
-  for (const MovingCapsule& part : sweep.electrode) {
+  takeOutOfDimples(sweep, bodies.structureOfFat(fat), state, met_);
+  for (const MovingCapsule& part : met_.electrode) {
     blades_.push_back({part.before[0], part.before[1], part.now[0], part.now[1], part.radius + cautery.reach});
   }
   findTied(fat, bodies);

@@ -36,6 +36,9 @@ using HookSweeps = std::array<HookSweep, handCount>;
 
 void sweepHooks(const Model& model, const InstrumentTravels& travels, const State& state, HookSweeps& sweeps);
 
+/// The electrode as a structure's mesh meets it: out of the dimples that it presses (dimpleOf()).
+void takeOutOfDimples(const HookSweep& sweep, std::size_t structure, const State& state, HookSweep& out);
+
 /// Touched is what is no farther from the electrode than the scene's `reach`: strands, cells of organs' skins, stations
 /// of vessels' walls, the surface of fat. Every share of the step is exact for straight motion (sim/geometry/dwell.h),
 /// so that a sweep gives the same dose in steps of any length.
@@ -81,9 +84,6 @@ class HookTouchSearch {
   /// Triangles of a skin that the sweep may touch, ascending.
   void findTriangles(const HookSweep& sweep, std::size_t structure, const Bodies& bodies, const Surfaces& surfaces,
                      const State& state);
-
-  /// The electrode as an organ's mesh meets it: out of the dimples that it presses (dimpleOf()).
-  void takeOutOfDimples(const HookSweep& sweep, std::size_t structure, const State& state);
 
   const Model& model_;
   HookSweep met_;
@@ -165,6 +165,7 @@ class CauteryEffects {
   [[nodiscard]] static std::uint32_t firstTouched(const HookTouches& touches, const Bodies& bodies);
 
   const Model& model_;
+  HookSweep met_;
   std::vector<SweptCapsule> blades_;  ///< of the hook, as fat feels them
   std::vector<std::size_t> tied_;     ///< bodies that carried some of the fat before a stroke
 };

@@ -18,7 +18,7 @@ namespace {
 
 /// Force on a rigid sphere of 2.5 mm that is pressed into the middle of the block (N), by depth in mm: linear
 /// elasticity, no friction, the sphere's profile over the reference configuration; trilinear hexahedra of 0.25 mm under
-/// the sphere, whose dilatation is averaged (tests/accuracy/support/sphere_on_block.py). Cells twice as large give 1 to
+/// the sphere, whose dilatation is averaged (tests/accuracy/support/press_on_block.py). Cells twice as large give 1 to
 /// 5 % less.
 constexpr std::array<double, 7> reference{0.0, 0.01339, 0.03710, 0.06590, 0.09764, 0.13023, 0.16310};
 
