@@ -25,7 +25,7 @@ void ContactDetection::addInstrumentBlock(const Surfaces& surfaces, const State&
                                           std::size_t structure, const SurfaceContact& contact,
                                           std::vector<ContactBlock>& blocks) const {
   const StructureModel& touched = model_.structures()[structure];
-  const Pose tool = simulatedPose(state.hand[hand]);
+  const Pose tool = simulatedPose(state.hand[hand].instrument);
   ContactBlock block;
   block.kind = touched.friction > 0.0 ? BlockKind::frictional : BlockKind::unilateral;
   block.limit = touched.friction;
@@ -38,7 +38,7 @@ void ContactDetection::addInstrumentBlock(const Surfaces& surfaces, const State&
   const Mat3 frame = alongAxis(contact.normal, tool.orientation.toRotationMatrix().col(2)).toRotationMatrix();
   block.direction = {contact.normal, frame.col(0), frame.col(1)};
   block.gap = {contact.gap, 0.0, 0.0};
-  const Vec3 onAxis = contact.onAxis - dimpleOf(state.hand[hand], structure, contact.key >> 56U);
+  const Vec3 onAxis = contact.onAxis - dimpleOf(state.hand[hand].touches, structure, contact.key >> 56U);
   for (std::size_t k = 0; k < block.rows(); ++k) {
     touch.tool.row[k] = toolRow(model_.scene().hands[hand].port, tool, onAxis, block.direction[k]);
   }
@@ -65,10 +65,7 @@ void ContactDetection::findInstrumentContacts(const Surfaces& surfaces, const Bo
                                               const InstrumentTravels& travels, const State& state,
                                               std::vector<ContactBlock>& blocks) {
   const std::size_t structures = surfaces.size();
-  for (std::size_t h = 0; h < handCount; ++h) {
-    const HandState& hand = state.hand[h];
-    instrument_[h].place(model_.scene().hands[h], hand.instrument, simulatedPose(hand), hand.jaw);
-  }
+  for (std::size_t h = 0; h < handCount; ++h) instrument_[h].place(model_.scene().hands[h], state.hand[h].instrument);
   touching_.resize(handCount * structures);
   executor_.run(touching_.size(), [&](std::size_t task) {
     const FloatingPointScope scope;
