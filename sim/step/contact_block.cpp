@@ -164,10 +164,10 @@ void findWays(ContactSystem& contact) {
 
 }  // namespace
 
-Vec3 dimpleOf(const HandState& hand, std::size_t structure, std::size_t piece) {
+Vec3 dimpleOf(const TouchState& touches, std::size_t structure, std::size_t piece) {
   const std::uint64_t key = dimpleKey(structure, piece);
-  for (std::size_t k = 0; k < hand.dimpleKey.size(); ++k) {
-    if (hand.dimpleKey[k] == key) return hand.dimple[k];
+  for (std::size_t k = 0; k < touches.dimpleKey.size(); ++k) {
+    if (touches.dimpleKey[k] == key) return touches.dimple[k];
   }
   return Vec3::Zero();
 }
@@ -208,7 +208,7 @@ void findDimples(const Model& model, const State& state, double step, ContactSys
     dimple.size = press->size;
     dimple.modulus = contactModulus(*model.structures()[touch.structure].soft);
     dimple.newShare = newShare(model, touch.structure, step);
-    dimple.before = dimpleOf(state.hand[hand], touch.structure, press->piece);
+    dimple.before = dimpleOf(state.hand[hand].touches, touch.structure, press->piece);
     contact.dimples.push_back(dimple);
   }
   findWays(contact);
@@ -238,20 +238,20 @@ void evaluateDimpleGaps(std::span<const double> lambda, ContactSystem& contact) 
 
 void storeDimples(const Model& model, double step, const ContactSystem& contact, State& state) {
   for (std::size_t h = 0; h < handCount; ++h) {
-    HandState& hand = state.hand[h];
+    TouchState& touches = state.hand[h].touches;
     // An unloaded dimple fades.
     std::size_t kept = 0;
-    for (std::size_t k = 0; k < hand.dimpleKey.size(); ++k) {
-      const std::uint64_t key = hand.dimpleKey[k];
+    for (std::size_t k = 0; k < touches.dimpleKey.size(); ++k) {
+      const std::uint64_t key = touches.dimpleKey[k];
       const bool pressed = std::any_of(contact.dimples.begin(), contact.dimples.end(),
                                        [&](const Dimple& d) { return d.hand == h && d.key == key; });
-      const Vec3 left = (1.0 - newShare(model, key >> 8U, step)) * hand.dimple[k];
+      const Vec3 left = (1.0 - newShare(model, key >> 8U, step)) * touches.dimple[k];
       if (pressed || left.norm() < forgottenDepth) continue;
-      hand.dimpleKey[kept] = key;
-      hand.dimple[kept++] = left;
+      touches.dimpleKey[kept] = key;
+      touches.dimple[kept++] = left;
     }
-    hand.dimpleKey.resize(kept);
-    hand.dimple.resize(kept);
+    touches.dimpleKey.resize(kept);
+    touches.dimple.resize(kept);
   }
   for (std::size_t d = 0; d < contact.dimples.size(); ++d) {
     const Dimple& dimple = contact.dimples[d];
@@ -264,8 +264,8 @@ void storeDimples(const Model& model, double step, const ContactSystem& contact,
     const Vec3 now = dimple.force > smallForce ? Vec3(work / dimple.force * dimple.way)
                                                : Vec3((1.0 - dimple.newShare) * dimple.before);
     if (now.norm() < forgottenDepth) continue;
-    state.hand[dimple.hand].dimpleKey.push_back(dimple.key);
-    state.hand[dimple.hand].dimple.push_back(now);
+    state.hand[dimple.hand].touches.dimpleKey.push_back(dimple.key);
+    state.hand[dimple.hand].touches.dimple.push_back(now);
   }
 }
 

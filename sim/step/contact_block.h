@@ -200,7 +200,7 @@ class StepLog {
 
 /// Depth by which a structure's skin gives way to a hand's capsule beyond what the mesh resolves (m): detection takes
 /// the capsule as much farther out.
-Vec3 dimpleOf(const HandState& hand, std::size_t structure, std::size_t piece);
+Vec3 dimpleOf(const TouchState& touches, std::size_t structure, std::size_t piece);
 
 /// Size of the patch over which a structure's mesh spreads a force that its nodes take, as seen from a place on its
 /// skin (m).

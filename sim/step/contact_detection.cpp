@@ -66,7 +66,7 @@ void ContactDetection::addInstrumentBlock(const Surfaces& surfaces, const State&
                                           std::size_t structure, const SurfaceContact& contact,
                                           std::vector<ContactBlock>& blocks) const {
   const StructureModel& touched = model_.structures()[structure];
-  const Pose tool = simulatedPose(state.hand[hand]);
+  const Pose tool = simulatedPose(state.hand[hand].instrument);
   ContactBlock block;
   block.kind = touched.friction > 0.0 ? BlockKind::frictional : BlockKind::unilateral;
   block.limit = touched.friction;
@@ -79,7 +79,7 @@ void ContactDetection::addInstrumentBlock(const Surfaces& surfaces, const State&
   const Mat3 frame = alongAxis(contact.normal, tool.orientation.toRotationMatrix().col(2)).toRotationMatrix();
   block.direction = {contact.normal, frame.col(0), frame.col(1)};
   block.gap = {contact.gap, 0.0, 0.0};
-  const Vec3 onAxis = contact.onAxis - dimpleOf(state.hand[hand], structure, contact.key >> 56U);
+  const Vec3 onAxis = contact.onAxis - dimpleOf(state.hand[hand].touches, structure, contact.key >> 56U);
   for (std::size_t k = 0; k < block.rows(); ++k) {
     touch.tool.row[k] = toolRow(model_.scene().hands[hand].port, tool, onAxis, block.direction[k]);
   }
@@ -93,7 +93,7 @@ void ContactDetection::addInstrumentBlock(const Surfaces& surfaces, const State&
     press.foot = pointAt(now, contact.node, contact.weight);
     press.smooth = smoothNormal(skin.surface(), now, contact.node, contact.weight);
     if (press.smooth.isZero()) press.smooth = contact.normal;
-    press.size = pressedSize(capsule, press.smooth, dimpleOf(state.hand[hand], structure, press.piece).norm());
+    press.size = pressedSize(capsule, press.smooth, dimpleOf(state.hand[hand].touches, structure, press.piece).norm());
     const SolidSolver::Impulse centre = touch.tissue.place;
     touch.tissue.place = pressedPatch(skin, contact.node, contact.weight, press.radius);
     press.spread = meshSpread(touched, centre, touch.tissue.place);
@@ -106,10 +106,7 @@ void ContactDetection::findInstrumentContacts(const Surfaces& surfaces, const Bo
                                               const InstrumentTravels& travels, const State& state,
                                               std::vector<ContactBlock>& blocks) {
   const std::size_t structures = surfaces.size();
-  for (std::size_t h = 0; h < handCount; ++h) {
-    const HandState& hand = state.hand[h];
-    instrument_[h].place(model_.scene().hands[h], hand.instrument, simulatedPose(hand), hand.jaw);
-  }
+  for (std::size_t h = 0; h < handCount; ++h) instrument_[h].place(model_.scene().hands[h], state.hand[h].instrument);
   touching_.resize(handCount * structures);
   executor_.run(touching_.size(), [&](std::size_t task) {
     const FloatingPointScope scope;

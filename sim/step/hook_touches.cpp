@@ -24,11 +24,11 @@ void sweepHooks(const Model& model, const InstrumentTravels& travels, const Stat
     const CauteryDescription& cautery = model.scene().cautery;
     sweep.pace = currentPace(cautery, h);
     if (!(sweep.pace > 0.0)) continue;
-    sweep.charring = (h.buttons & button::cutPedal) != 0 ? cautery.cutChar : 1.0;
+    sweep.charring = (h.input.buttons & button::cutPedal) != 0 ? cautery.cutChar : 1.0;
     const HandDescription& description = model.scene().hands[hand];
-    const Pose now = simulatedPose(h);
-    const InstrumentShape hook =
-        instrumentShape(h.instrument, h.jaw, description.shaftRadius, (now.position - description.port).norm());
+    const Pose now = simulatedPose(h.instrument);
+    const InstrumentShape hook = instrumentShape(h.instrument.kind, h.instrument.jaw, description.shaftRadius,
+                                                 (now.position - description.port).norm());
     const InstrumentShape before = placed(hook, travels[hand].before);
     const InstrumentShape after = placed(hook, now);
     for (std::size_t k = 0; k < after.capsules().size(); ++k) {
@@ -44,7 +44,7 @@ void sweepHooks(const Model& model, const InstrumentTravels& travels, const Stat
 void takeOutOfDimples(const HookSweep& sweep, std::size_t structure, const State& state, HookSweep& out) {
   out = sweep;
   for (std::size_t k = 0; k < out.electrode.size(); ++k) {
-    const Vec3 dimple = dimpleOf(state.hand[sweep.hand], structure, out.piece[k]);
+    const Vec3 dimple = dimpleOf(state.hand[sweep.hand].touches, structure, out.piece[k]);
     for (Vec3& end : out.electrode[k].before) end += dimple;
     for (Vec3& end : out.electrode[k].now) end += dimple;
   }

@@ -26,9 +26,9 @@ namespace calot {
 
 // Stage 1 of a step: the newest measurement of each hand, and the newest camera.
 
-/// Reads: the step's samples. Writes: each hand's real pose, jaw, buttons and mounted instrument, what is asked of the
-/// assistant, the camera, and the digests of the samples as they came. A sample that is no measurement (isMeasurement)
-/// changes nothing but is reported when it begins and when it ends.
+/// Reads: the step's samples. Writes: each hand's input and mounted instrument, what is asked of the assistant, the
+/// camera, and the digests of the samples as they came. A sample that is no measurement (isMeasurement) changes nothing
+/// else but is reported when it begins and when it ends.
 class SampleStage {
  public:
   explicit SampleStage(const Model& model) : model_(model) {}

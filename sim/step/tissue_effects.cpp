@@ -36,16 +36,17 @@ bool isInjured(const BeamModel::Branch& branch, const BeamState& vessels, double
 }
 
 /// Smoke is reported in portions of a touch, and when it ends. @param source structure, or noStructure: no touch
-void emitSmoke(std::size_t number, std::uint32_t source, double energy, HandState& hand, StepLog& log) {
+void emitSmoke(std::size_t hand, std::uint32_t source, double energy, State& state, StepLog& log) {
+  BurnState& burn = state.hand[hand].burn;
   const auto emit = [&] {
-    if (hand.burnedEnergy > 0.0)
-      log.emit(EventKind::smoke, number, hand.burning, hand.simulatedPosition, hand.burnedEnergy);
-    hand.burnedEnergy = 0.0;
+    if (burn.energy > 0.0)
+      log.emit(EventKind::smoke, hand, burn.tissue, state.hand[hand].instrument.position, burn.energy);
+    burn.energy = 0.0;
   };
-  if (source != hand.burning) emit();
-  hand.burning = source;
-  hand.burnedEnergy += energy;
-  if (hand.burnedEnergy >= smokePortion) emit();
+  if (source != burn.tissue) emit();
+  burn.tissue = source;
+  burn.energy += energy;
+  if (burn.energy >= smokePortion) emit();
 }
 
 }  // namespace
@@ -160,7 +161,7 @@ void CauteryEffects::run(const HookSweeps& sweeps, const std::array<HookTouches,
   for (std::size_t h = 0; h < handCount; ++h) {
     if (!sweeps[h].energised()) {
       result.hand[h].cautery = Cautery::off;
-      emitSmoke(h, noStructure, 0.0, state.hand[h], log);
+      emitSmoke(h, noStructure, 0.0, state, log);
       continue;
     }
     const std::uint32_t source = firstTouched(touches[h], bodies);
@@ -178,7 +179,7 @@ void CauteryEffects::run(const HookSweeps& sweeps, const std::array<HookTouches,
       if (done.islands > 0.0) log.emit(EventKind::fatCameLoose, h, bodies.structureOfFat(f), done.where, done.islands);
     }
     result.hand[h].cautery = onTissue ? Cautery::onTissue : Cautery::withoutContact;
-    emitSmoke(h, source, onTissue ? cautery.power * bodies.step() : 0.0, state.hand[h], log);
+    emitSmoke(h, source, onTissue ? cautery.power * bodies.step() : 0.0, state, log);
   }
 }
 
@@ -209,7 +210,7 @@ void ConnectiveEffects::run(const HookSweeps& sweeps, const std::array<HookTouch
       burnStrands(tie.tissue, tissue, touches[h].strand[c], seconds, strands_);
       out.hookTouches += static_cast<std::uint32_t>(touches[h].strand[c].size());
       if (!strands_.empty()) {
-        log.emit(EventKind::strandsBurned, h, c, state.hand[h].simulatedPosition, shareOf(tie.tissue, strands_));
+        log.emit(EventKind::strandsBurned, h, c, state.hand[h].instrument.position, shareOf(tie.tissue, strands_));
       }
     }
     strands_.clear();
