@@ -299,6 +299,11 @@ ExitCode importMotion(ImportOptions& o) {
     throw Error(ErrorKind::invalid, "import: name motion files, or a table of them with --manifest");
   if (o.guess) {
     if (o.files.size() != 1) throw Error(ErrorKind::invalid, "import: --guess is for one file");
+    if (recorder::isKinematicsFile(o.files.front())) {
+      recorder::readKinematics(o.files.front());  // or its fault
+      throw Error(ErrorKind::invalid, Where{o.files.front()},
+                  "motion in 76 numbers a row without names (JIGSAWS) is recognised and has no map: leave --guess out");
+    }
     fmt::print("{}\n", recorder::guessColumns(o.files.front()).json);
     return ExitCode::yes;
   }

@@ -232,6 +232,11 @@ class MotionFiles(program.ProgramTest):
         for name, text in (("Motive", self.motive()), ("Vicon", vicon), ("ROS", ros)):
             self.assertRecognised(name, text, name, jerk=0.2)
 
+    def test_numbers_without_names_have_no_map(self):
+        rows = self.write("m.txt", "\n".join(" ".join(f"{0.01 * i + 0.1 * column:.6f}" for column in range(76)) for i in range(40)) + "\n")
+        self.refused(2, "import", rows, "--guess", names=(rows, "JIGSAWS", "leave --guess out"))
+        self.refused(4, "import", self.write("n.txt", "1 2 3\n4 5 6\n"), "--guess", names=(self.path("n.txt"), "76"))
+
     def assertRecognised(self, name, content, word, file="m.csv", jerk=0.05):
         """Read without a map, and by the map that --guess prints. @return the map"""
         with self.subTest(name):
