@@ -78,6 +78,12 @@ FatStroke FatMotion::stroke(State& state, std::span<const SweptCapsule> tool, do
   return done;
 }
 
+FatStroke FatMotion::tear(State& state) {
+  const FatStroke done = fat_.tear(state.fat[index_]);
+  changed_ = changed_ || done.changed;
+  return done;
+}
+
 bool FatSkin::follow(const State& /*state*/) {
   const bool changed = motion_.changed_;
   motion_.changed_ = false;

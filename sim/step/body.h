@@ -195,6 +195,12 @@ class FatMotion final : public SolidBody {
   /// Adopts a replaced State; stores the tissue's position for the strokes of this step.
   void beginStep(const State& state);
   FatStroke stroke(State& state, std::span<const SweptCapsule> tool, double rise);
+  /// FatBody::tear()
+  FatStroke tear(State& state);
+  /// FatBody::joins()
+  [[nodiscard]] bool joins(std::span<const std::uint32_t> thing, std::uint32_t things) {
+    return fat_.joins(thing, things);
+  }
   [[nodiscard]] const FatBody& fat() const { return fat_; }
   [[nodiscard]] Mat3 rotation(const State& state, int node) const override {
     return fat_.rotation(state.fat[index_], node);

@@ -250,6 +250,7 @@ void Settling::run(const ContactSystem& contact, const std::vector<bool>& diverg
   settleVessels(contact, bodies, activity, state, log);
   settleFat(contact, bodies, activity, state, result);
   rest(surfaces, bodies, activity, state);
+  hold_.run(bodies, activity, state, result);
   grasping_.settle(surfaces, state, activity, result, log);
   for (std::size_t h = 0; h < handCount; ++h) settleTouches(contact, h, state, result.hand[h], log);
   settleClash(contact, state, result.contact, log);

@@ -18,6 +18,7 @@
 #include "sim/step/body.h"
 #include "sim/step/contact_block.h"
 #include "sim/step/placed_instrument.h"
+#include "sim/step/specimen_hold.h"
 #include "sim/step/surfaces.h"
 #include "sim/step/tissue_contacts.h"
 #include "sim/tissue/organ/organ_tissue.h"
@@ -310,15 +311,16 @@ void reduceToHand(const Bodies& bodies, const State& state, const InstrumentTrav
 
 // Stage 9 of a step: what follows from the whole of it.
 
-/// Bodies come to rest, vessels tear, grasps slip or tear, touches begin and end. At last the guard of last resort:
-/// reports that the simulation ran away, and where.
+/// Bodies come to rest, vessels tear, grasps slip or tear, touches begin and end; then it is known what fat still
+/// holds. At last the guard of last resort: reports that the simulation ran away, and where.
 ///
 /// Reads: contact forces, and what the stages before left. Writes: extents, sleep counters, partings, grasps and
-/// touches of State; what they disturb; forces by structure, grasps and largest speeds of the result.
+/// touches of State; what they disturb; forces by structure, grasps, largest speeds and `holdsSpecimen` of the result.
 class Settling {
  public:
   /// @param grasping outlives this
-  Settling(const Model& model, Grasping& grasping) : model_(model), grasping_(grasping) {}
+  Settling(const Model& model, Grasping& grasping) : model_(model), grasping_(grasping), hold_(model) {}
+  void invalidate() { hold_.invalidate(); }
   /// @param diverged per body, see ContactResponse @pre surfaces are current but for what stage 8 changed
   void run(const ContactSystem& contact, const std::vector<bool>& diverged, Surfaces& surfaces, Bodies& bodies,
            State& state, Activity& activity, StepResult& result, StepLog& log);
@@ -338,6 +340,7 @@ class Settling {
 
   const Model& model_;
   Grasping& grasping_;
+  SpecimenHold hold_;
 };
 
 // Stage 10 of a step: StepResult.

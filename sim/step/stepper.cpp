@@ -114,6 +114,7 @@ void Stepper::invalidate() {
   p_->surfaces.invalidate();
   p_->bodies.invalidate();
   p_->contactDetection.invalidate();
+  p_->settling.invalidate();
   p_->contactSets = {};
   p_->digest.reset();
 }

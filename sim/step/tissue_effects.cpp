@@ -147,11 +147,30 @@ FatStroke CauteryEffects::carve(const HookSweep& sweep, const Dose& dose, std::s
   }
   findTied(fat, bodies);
   const FatStroke done = bodies.fat(fat).stroke(state, blades_, cautery.recession * dose.wall);
-  if (!done.changed) return done;
+  if (done.changed) release(fat, bodies, activity);
+  return done;
+}
+
+/// Fat is less than it was. @pre findTied() before
+void CauteryEffects::release(std::size_t fat, const Bodies& bodies, Activity& activity) const {
   activity.carved[fat] = true;
   activity.reshape(bodies.firstFat() + fat);
   for (const std::size_t body : tied_) activity.disturb(body);  // it bears less now
-  return done;
+}
+
+/// Strings that are pulled too far part by themselves, one a step.
+void CauteryEffects::tearFat(Bodies& bodies, State& state, Activity& activity, StepResult& result, StepLog& log) {
+  for (std::size_t f = 0; f < bodies.fatCount(); ++f) {
+    if (!activity.awake[bodies.firstFat() + f]) continue;
+    findTied(f, bodies);
+    const FatStroke done = bodies.fat(f).tear(state);
+    if (!done.changed) continue;
+    release(f, bodies, activity);
+    result.fat[f].islands += done.islands;
+    const std::size_t structure = bodies.structureOfFat(f);
+    log.emit(EventKind::fatTorn, StepLog::noHand, structure, done.where, done.removed - done.islands);
+    if (done.islands > 0.0) log.emit(EventKind::fatCameLoose, StepLog::noHand, structure, done.where, done.islands);
+  }
 }
 
 void CauteryEffects::run(const HookSweeps& sweeps, const std::array<HookTouches, handCount>& touches, Bodies& bodies,
@@ -181,6 +200,7 @@ void CauteryEffects::run(const HookSweeps& sweeps, const std::array<HookTouches,
     result.hand[h].cautery = onTissue ? Cautery::onTissue : Cautery::withoutContact;
     emitSmoke(h, source, onTissue ? cautery.power * bodies.step() : 0.0, state, log);
   }
+  tearFat(bodies, state, activity, result, log);
 }
 
 namespace {

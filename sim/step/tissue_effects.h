@@ -134,7 +134,7 @@ class VesselTools {
   PlacedInstrument instrument_;
 };
 
-// Effects of the energised hook on fat, organs and vessels. Internal to this folder.
+// Effects of the energised hook on fat, organs and vessels, and of tension on fat. Internal to this folder.
 //
 // Every place that is touched (HookTouches) counts the time that it got the full power. There are two counts. The
 // wall's exposure decides what opens or parts; the coagulating current adds to it at `coagulationPace`. Char counts the
@@ -161,7 +161,9 @@ class CauteryEffects {
                    StepLog& log) const;
   FatStroke carve(const HookSweep& sweep, const Dose& dose, std::size_t fat, Bodies& bodies, State& state,
                   Activity& activity);
+  void tearFat(Bodies& bodies, State& state, Activity& activity, StepResult& result, StepLog& log);
   void findTied(std::size_t fat, const Bodies& bodies);
+  void release(std::size_t fat, const Bodies& bodies, Activity& activity) const;
   [[nodiscard]] static std::uint32_t firstTouched(const HookTouches& touches, const Bodies& bodies);
 
   const Model& model_;
@@ -186,7 +188,8 @@ class ConnectiveEffects {
   std::vector<std::uint32_t> strands_;
 };
 
-/// Strands burn and tear, jaws set clips and cut, the hook carves fat, chars organs and burns vessels.
+/// Strands burn and tear, jaws set clips and cut, the hook carves fat, chars organs and burns vessels, strings of fat
+/// tear.
 ///
 /// Reads: poses and surfaces after stage 7, travels. Writes: topology and damage in State (strands, clips, partings,
 /// carved fields, char), what is written and disturbed in `activity`, the results of fat, connective tissue and
