@@ -20,10 +20,13 @@ namespace {
 constexpr unsigned structureShift = 52;
 static_assert(maxStructures <= std::size_t{1} << (56U - structureShift));
 
+/// A capsule that only just touches has flattened so far, in its radii. Larger: tilted bars are firmer at first touch.
+/// Assumed.
+constexpr double leastDepth = 0.1;
+
 /// Radius of a round end whose area is that of a capsule's side, as long as what touches of it: pressed in by `depth`,
 /// an axis at the angle theta to the skin touches over some 2 depth / tan(theta), but not beyond its ends.
 double pressedSize(const Capsule& capsule, const Vec3& normal, double depth) {
-  constexpr double leastDepth = 0.1;  // in radii
   const Vec3 axis = capsule.p1 - capsule.p0;
   const double length = axis.norm();
   const double up = std::abs(axis.dot(normal));
