@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
+#include <iterator>
 #include <utility>
 
 namespace calot::recorder {
@@ -122,7 +123,8 @@ bool isShown(char32_t c) {
       {0x80, 0xA0},     {0xAD, 0xAD},     {0x600, 0x605},   {0x61C, 0x61C},   {0x6DD, 0x6DD},
       {0x70F, 0x70F},   {0x890, 0x891},   {0x8E2, 0x8E2},   {0x1680, 0x1680}, {0x180E, 0x180E},
       {0x2000, 0x206F}, {0x3000, 0x3000}, {0xD800, 0xF8FF}, {0xFEFF, 0xFEFF}, {0xFFF0, ~char32_t{0}}};
-  return std::ranges::none_of(hidden, [&](const auto& range) { return c >= range.first && c <= range.second; });
+  return std::none_of(std::begin(hidden), std::end(hidden),
+                      [&](const auto& range) { return c >= range.first && c <= range.second; });
 }
 
 }  // namespace

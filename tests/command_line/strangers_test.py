@@ -233,9 +233,10 @@ class MotionFiles(program.ProgramTest):
             self.assertRecognised(name, text, name, jerk=0.2)
 
     def test_numbers_without_names_have_no_map(self):
-        rows = self.write("m.txt", "\n".join(" ".join(f"{0.01 * i + 0.1 * column:.6f}" for column in range(76)) for i in range(40)) + "\n")
+        hand = lambda i: f"{0.01 * i:.6f} 0 0.1  1 0 0  0 1 0  0 0 1  0 0 0  0 0 0  0.5"  # place, rotation, velocities, jaw
+        rows = self.write("m.txt", "".join("  ".join(4 * [hand(i)]) + "\n" for i in range(40)))
         self.refused(2, "import", rows, "--guess", names=(rows, "JIGSAWS", "leave --guess out"))
-        self.refused(4, "import", self.write("n.txt", "1 2 3\n4 5 6\n"), "--guess", names=(self.path("n.txt"), "76"))
+        self.refused(4, "import", self.write("n.txt", "1 2 3\n4 5 6\n"), "--guess", names=("n.txt", "76"))
 
     def assertRecognised(self, name, content, word, file="m.csv", jerk=0.05):
         """Read without a map, and by the map that --guess prints. @return the map"""
