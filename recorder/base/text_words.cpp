@@ -116,7 +116,8 @@ bool isUtf8(std::string_view text) {
 }
 
 /// Letters and marks; not controls, blanks of other widths, changes of direction, private characters (Unicode's
-/// categories Cc, Cf, Co, Cs, Zl, Zp, Zs). A code point that no version has assigned yet is shown.
+/// categories Cc, Cf, Co, Cs, Zl, Zp, Zs), nor anything from U+FFF0. Below that what no version of Unicode has assigned
+/// yet is shown.
 bool isShown(char32_t c) {
   if (c < 0x80) return c >= ' ' && c <= '~';
   constexpr std::pair<char32_t, char32_t> hidden[] = {

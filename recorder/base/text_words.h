@@ -29,8 +29,8 @@ std::string_view takeLine(std::string_view& text);
 /// With small letters for A to Z.
 std::string lowerCase(std::string_view text);
 
-/// A word for a message: short, its letters as they are, without control characters and what is not UTF-8.
-/// @param most characters; "..." stands for what is cut off
+/// A word for a message: short, its letters as they are, with '?' for what hides or turns text, for what lies from
+/// U+FFF0 and for what is not UTF-8. @param most characters; "..." stands for what is cut off
 std::string shown(std::string_view word, std::size_t most = 40);
 
 /// Text of a file as UTF-8 without its byte order mark. UTF-16 (by its mark, or by the zeros of its first line) and
