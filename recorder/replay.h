@@ -63,9 +63,9 @@ class StepWatch final : public Observer {
 struct Divergence {
   std::uint64_t step = 0;
   std::optional<std::uint64_t> tick;  ///< of the attempt, where it is a tick's value
-  std::string component;              ///< "hand.left", "organ.liver", "force", "observables", "events", "keyframe"
-  std::string field;                  ///< "realPosition"; what of the component
-  std::string detail;                 ///< index and both values where the recording holds them; or empty
+  std::string component;  ///< "hand.left.input", "organ.liver", "force", "observables", "events", "keyframe"
+  std::string field;      ///< "position"; what of the component
+  std::string detail;     ///< index and both values where the recording holds them; or empty
   bool operator==(const Divergence&) const = default;
 };
 

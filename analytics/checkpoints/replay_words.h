@@ -15,7 +15,7 @@ std::string wordsFor(const recorder::StepMisses& misses);
 /// "step 813: the simulation of 'liver' ran away (...)".
 std::string wordsFor(const recorder::Runaway& runaway);
 
-/// "diverged at step 13: hand.right realPosition (...)".
+/// "diverged at step 13: hand.right.input position (...)".
 std::string wordsFor(const recorder::Divergence& divergence);
 
 /// "the content chain is broken at flush 3 (...)". @pre it is not intact

@@ -15,6 +15,7 @@ namespace calot::analytics {
 namespace {
 
 constexpr std::size_t mostDecisions = 6;
+constexpr std::size_t shareResamples = 1999;  ///< every figure has some
 
 using CrossedValues = std::map<std::size_t, std::map<std::size_t, double>>;  ///< by person, by level of the facet
 
@@ -89,6 +90,9 @@ ValueTree componentsTree(const DesignFigure& figure, const std::string& facet, c
           {"person_variance", g.person},
           {"facet_variance", g.facet},
           {"residual_variance", g.residual},
+          {"group_variance", g.group},
+          {"common_variance", g.common},
+          {"interaction_variance", g.interaction},
           {"truncated", g.truncated},
           {"decisions", decisions},
           {"g_interval", g.gInterval},
@@ -96,6 +100,38 @@ ValueTree componentsTree(const DesignFigure& figure, const std::string& facet, c
                                ? ValueTree(nullptr)
                                : treeOf(intraclassCorrelation(crossed.table, IccForm::twoAverage),
                                         [](const IntraclassCorrelation& icc) { return ValueTree(icc.interval); })}};
+}
+
+ValueTree shareTree(const VarianceShare& share) {
+  return {{"share", share.value},
+          {"interval", treeOf(share.interval, [](const Interval& interval) { return ValueTree(interval); })}};
+}
+
+/// Shares of people nested in groups, with intervals; or the reason why there are none.
+ValueTree sharesTree(const DesignFigure& figure, const std::string& facet, std::span<const RatingTable> groups,
+                     const BootstrapOptions& bootstrap) {
+  ValueTree row{{"figure", figure.name}, {"unit", figure.unit}, {"facet", facet}, {"seed", bootstrap.seed}};
+  row["resamples"] = bootstrap.resamples;
+  const Expected<LevelShares> shares = levelShares(groups, bootstrap);
+  if (!shares) {
+    row["reason"] = shares.reason();
+    return row;
+  }
+  row["level"] = shareTree(shares->level);
+  row["common"] = shareTree(shares->common);
+  row["interaction"] = shareTree(shares->interaction);
+  row["residual"] = shareTree(shares->residual);
+  return row;
+}
+
+/// A share in per cent with its interval, where there is one.
+std::string percentText(const ValueTree& row, const char* of) {
+  if (!row.contains(of)) return "-";
+  const ValueTree &share = row[of], &interval = share["interval"];
+  const std::string value = fmt::format("{:.1f} %", 100.0 * share["share"].get<double>());
+  if (!interval.contains("lower")) return value;
+  return fmt::format("{} [{:.1f}, {:.1f}]", value, 100.0 * interval["lower"].get<double>(),
+                     100.0 * interval["upper"].get<double>());
 }
 
 /// A variance and its share of all.
@@ -150,7 +186,8 @@ bool addComponents(const DesignData& data, const DesignFigure& figure, const std
     groups.push_back(crossedOf(within(data, figure, g), all.table.raters, false));
     if (groups.back().table.subjects > 1) tables.push_back(groups.back().table);
   }
-  if (tables.size() > 1) add(all, tables, "within groups");
+  if (tables.size() > 1 && add(all, tables, "within groups"))
+    report.json["shares"].push_back(sharesTree(figure, facet, tables, {.resamples = shareResamples}));
   for (std::size_t g = 0; g < groups.size(); ++g) add(groups[g], {&groups[g].table, 1}, data.groups[g]);
   return true;
 }
@@ -184,7 +221,7 @@ bool addError(const DesignFigure& figure, const std::string& of, DesignReport& r
 
 void analyseReliability(const DesignData& data, const DesignChoices&, DesignReport& report) {
   std::vector<std::string> warnings;
-  for (const char* key : {"measurement_error", "components"}) report.json[key] = ValueTree::array();
+  for (const char* key : {"measurement_error", "components", "shares"}) report.json[key] = ValueTree::array();
   std::size_t analysed = 0;
   const bool leading = data.source == "cohort" || data.occasionWord == "row";
   for (const DesignFigure& figure : data.figures) {
@@ -224,6 +261,13 @@ void analyseReliability(const DesignData& data, const DesignChoices&, DesignRepo
                  {"residual", "", [](const ValueTree& row) { return shareText(row, "residual_variance"); }},
                  {"G [95 %]", "", [](const ValueTree& row) { return coefficientText(row, "g"); }},
                  {"Phi [95 %]", "", [](const ValueTree& row) { return coefficientText(row, "phi"); }}}),
+        tableOf("Shares of the variance within groups [95 %]", report.json["shares"],
+                {{"=figure", "", figureTitle},
+                 {"=facet", "/facet", plain},
+                 {"facet and residual", "", [](const ValueTree& row) { return percentText(row, "level"); }},
+                 {"facet, all alike", "", [](const ValueTree& row) { return percentText(row, "common"); }},
+                 {"facet x group", "", [](const ValueTree& row) { return percentText(row, "interaction"); }},
+                 {"residual", "", [](const ValueTree& row) { return percentText(row, "residual"); }}}),
         tableOf("Decision study: G / Phi of the mean of N", components, decisions)}) {
     if (!table.rows.empty()) report.tables.push_back(std::move(table));
   }
@@ -238,14 +282,16 @@ void analyseReliability(const DesignData& data, const DesignChoices&, DesignRepo
     report.notes.emplace_back(
         "all: in a mixture of groups that differ, G and Phi are larger than within a group, since differences between "
         "groups count as differences between people. within groups: people nested in groups. Where a score grades "
-        "people of one group, its own row counts.");
+        "people of one group, its own row counts. Shares within groups: what is not of people is the facet's, in all "
+        "groups alike or in one and not in another, or the residual, what it changes in one person and not in "
+        "another.");
   for (const std::string& warning : warnings) report.notes.push_back("Warning: " + warning + ".");
   report.methods =
       "The error of measurement is the pooled deviation of participants' attempts about their own means, with "
       "intervals "
       "from chi-squared. Variance components of participants by facet are those of the two-way analysis of variance of "
       "complete data, pooled within groups for people nested in groups; G and Phi have the intervals of ICC(3,k) and "
-      "ICC(2,k).";
+      "ICC(2,k), shares within groups those of a percentile bootstrap over people within their groups.";
 }
 
 }  // namespace calot::analytics

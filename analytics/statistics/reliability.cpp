@@ -51,6 +51,7 @@ MeanSquares meanSquares(const RatingTable& table) {
   if (rest < rounding) rest = 0.0;
   if (rows < rounding) rows = 0.0;
   if (columns < rounding) columns = 0.0;
+  if (columns < rounding) columns = 0.0;
   return {rows / (n - 1.0), columns / (k - 1.0), rest / ((n - 1.0) * (k - 1.0))};
 }
 
@@ -127,46 +128,6 @@ Expected<IntraclassCorrelation> intraclassCorrelation(const RatingTable& table, 
   }
   const bool sound = std::isfinite(interval.lower) && std::isfinite(interval.upper) && interval.lower <= interval.upper;
   result.interval = sound ? Expected<Interval>(interval) : NoResult{"the approximate interval breaks down"};
-  return result;
-}
-
-DecisionStudy Generalizability::at(std::size_t k) const {
-  assert(k > 0);
-  const double n = static_cast<double>(k), relative = residual / n, absolute = (facet + residual) / n;
-  const auto share = [&](double error) { return person > 0.0 ? person / (person + error) : 0.0; };
-  return {share(relative), share(absolute), std::sqrt(relative), std::sqrt(absolute)};
-}
-
-Expected<Generalizability> generalizability(std::span<const RatingTable> groups) {
-  Generalizability result;
-  result.groups = groups.size();
-  double people = 0.0, residual = 0.0, levels = 0.0, df1 = 0.0;
-  for (const RatingTable& table : groups) {
-    if (const std::string reason = objection(table); !reason.empty()) return NoResult{reason};
-    const MeanSquares m = meanSquares(table);
-    const double df = static_cast<double>(table.subjects) - 1.0;
-    people += df * m.subjects;
-    residual += df * m.residual;
-    levels += m.raters / static_cast<double>(groups.size());
-    df1 += df;
-    result.people += table.subjects;
-    result.levels = table.raters;
-  }
-  people /= df1;
-  residual /= df1;
-  const auto component = [&result](double difference, double count) {
-    if (difference < 0.0) result.truncated = true;
-    return difference < 0.0 ? 0.0 : difference / count;
-  };
-  const double k = static_cast<double>(result.levels), p = 0.975;
-  result.person = component(people - residual, k);
-  result.facet = component(levels - residual, static_cast<double>(result.people) / static_cast<double>(result.groups));
-  result.residual = residual;
-  const double f = people / residual, df2 = df1 * (k - 1.0);
-  result.gInterval = residual > 0.0 && people > 0.0
-                         ? Expected<Interval>(Interval{1.0 - fisherQuantile(p, df1, df2) / f,
-                                                       1.0 - 1.0 / (f * fisherQuantile(p, df2, df1)), 0.95, "F"})
-                         : NoResult{"people or levels do not differ"};
   return result;
 }
 

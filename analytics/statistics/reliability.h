@@ -12,6 +12,7 @@
 
 #include "analytics/statistics/descriptive.h"
 #include "analytics/statistics/expected.h"
+#include "analytics/statistics/resampling.h"
 
 namespace calot::analytics {
 
@@ -27,11 +28,12 @@ struct RatingTable {
 /// equal.
 std::string objection(const RatingTable& table);
 
-/// Mean squares of the two-way analysis of variance without replication.
+/// Mean squares of the two-way analysis of variance without replication; each exactly 0 where below the rounding of the
+/// values.
 struct MeanSquares {
   double subjects = 0.0;  ///< n - 1 degrees of freedom
   double raters = 0.0;    ///< k - 1
-  double residual = 0.0;  ///< (n - 1) (k - 1); exactly 0 where below the rounding of the values
+  double residual = 0.0;  ///< (n - 1) (k - 1)
 };
 /// @pre objection() is empty.
 MeanSquares meanSquares(const RatingTable& table);
@@ -80,6 +82,9 @@ struct Generalizability {
   double person = 0.0;                                      ///< variance p of people
   double facet = 0.0;                                       ///< variance f of the raters' leniency, or of occasions
   double residual = 0.0;                                    ///< variance e of interaction and error
+  double group = 0.0;                                       ///< of several: of their means, all being of the same size
+  double common = 0.0;                                      ///< of f: what a level changes in all groups alike
+  double interaction = 0.0;                                 ///< of f: what it changes in one group and not in another
   bool truncated = false;                                   ///< a negative estimate was set to 0
   Expected<Interval> gInterval = NoResult{"not computed"};  ///< of G with all levels, by the F distribution
 
@@ -90,10 +95,35 @@ struct Generalizability {
 /// with mean squares S of people, R of raters and E of the rest, p = (S - E) / k, f = (R - E) / n, e = E. With all k
 /// raters G is ICC(3,k) and Phi is ICC(2,k). No answer as objection(table).
 ///
-/// With several tables, people nested in groups: mean squares are pooled within groups, so that differences between
-/// groups are no differences between people; f holds what a level changes in each group. @pre all have the same levels
+/// With several tables, people nested in groups: S and E are pooled within groups, so that differences between groups
+/// are no differences between people; f, the mean of the groups' (R - E) / n, holds what a level changes in each group.
+/// Groups are fixed and count alike, and each component is what its source contributes to the variance of a value. With
+/// C the variance of the levels' means over all groups, Q that of the groups' means, h groups of n people and 1 / n
+/// their mean: common = C - E / (h n), interaction = f - common, group = (h - 1) / h (Q - S / (k n)) - interaction / k.
+/// Brennan's variances of group and of interaction, both random, are h / (h - 1) times these, and his of the level is
+/// common - interaction / (h - 1). Each is set to 0 by itself where it is negative. A group in which all is equal has
+/// mean squares of 0. @pre all have the same levels
 Expected<Generalizability> generalizability(std::span<const RatingTable> groups);
 inline Expected<Generalizability> generalizability(const RatingTable& table) { return generalizability({&table, 1}); }
+
+/// A share of the variance of a value within its group, p + f + e.
+struct VarianceShare {
+  double value = 0.0;
+  Expected<Interval> interval = NoResult{"not computed"};
+};
+
+struct LevelShares {
+  VarianceShare level;        ///< (f + e) / (p + f + e): all that depends on the level, alone or with group and person
+  VarianceShare common;       ///< what a level changes in all alike
+  VarianceShare interaction;  ///< what it changes in one group and not in another
+  VarianceShare residual;     ///< e / (p + f + e): what it changes in one person and not in another
+};
+
+/// Shares of generalizability(), with percentile intervals of a bootstrap over people within their groups; levels stay
+/// as they are. A resample's level means scatter by e / m beside what they do in the data, so twice E is taken off its
+/// R and C (Brennan 2001, 6.3, on the bias of resampled components). No answer as generalizability() and where nothing
+/// varies within groups. @pre as generalizability()
+Expected<LevelShares> levelShares(std::span<const RatingTable> groups, const BootstrapOptions& options = {});
 
 struct MeasurementError {
   std::size_t people = 0, attempts = 0;  ///< with two attempts or more

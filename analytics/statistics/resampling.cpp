@@ -14,9 +14,6 @@
 namespace calot::analytics {
 namespace {
 
-using Groups = std::vector<std::vector<double>>;
-using OfGroups = std::function<Expected<double>(const Groups&)>;
-
 /// Order statistic (B + 1) p, linear in between; `extreme` is set where that is outside of them.
 double tail(const std::vector<double>& sorted, double p, bool& extreme) {
   const double count = static_cast<double>(sorted.size()), place = (count + 1.0) * p;
@@ -27,42 +24,33 @@ double tail(const std::vector<double>& sorted, double p, bool& extreme) {
   return sorted[i] + (inside - below) * (sorted[i + 1] - sorted[i]);
 }
 
-Expected<Bootstrap> bootstrapOf(const Groups& groups, const OfGroups& statistic, const BootstrapOptions& options) {
-  assert(options.resamples >= 99 && options.level > 0.0 && options.level < 1.0);
-  const Expected<double> estimate = statistic(groups);
-  if (!estimate) return NoResult{estimate.reason()};
-  Bootstrap result;
-  result.estimate = *estimate;
-  result.seed = options.seed;
-  result.resamples = options.resamples;
-  RandomStream random(options.seed);
-  std::vector<double> values;
-  values.reserve(options.resamples);
-  Groups drawn = groups;
-  std::string lastReason;
-  for (std::size_t resample = 0; resample < options.resamples; ++resample) {
-    for (std::size_t g = 0; g < groups.size(); ++g) {
-      for (double& v : drawn[g]) v = groups[g][static_cast<std::size_t>(random.below(groups[g].size()))];
-    }
-    if (const Expected<double> value = statistic(drawn)) {
-      values.push_back(*value);
-    } else {
-      ++result.without;
-      lastReason = value.reason();
-    }
-  }
-  if (static_cast<double>(result.without) > mostResamplesWithout * static_cast<double>(options.resamples)) {
-    return NoResult{std::to_string(result.without) + " of " + std::to_string(options.resamples) +
-                    " resamples have no answer (" + lastReason + ")"};
-  }
+/// Interval of one statistic. @param bootstrap its estimate, seed, resamples, and how many of these are without an
+/// answer
+Expected<Bootstrap> intervalOf(std::vector<double> values, Bootstrap bootstrap, double level) {
   std::sort(values.begin(), values.end());
   if (values.front() == values.back()) return NoResult{"all resamples agree"};
-  const double half = (1.0 - options.level) / 2.0;
-  result.interval.lower = tail(values, half, result.extreme);
-  result.interval.upper = tail(values, 1.0 - half, result.extreme);
-  result.interval.level = options.level;
-  result.interval.method = "percentile bootstrap";
-  return result;
+  const double half = (1.0 - level) / 2.0;
+  bootstrap.interval.lower = tail(values, half, bootstrap.extreme);
+  bootstrap.interval.upper = tail(values, 1.0 - half, bootstrap.extreme);
+  bootstrap.interval.level = level;
+  bootstrap.interval.method = "percentile bootstrap";
+  return bootstrap;
+}
+
+/// The one of bootstrapSeveral().
+Expected<Bootstrap> bootstrapOne(const ValueGroups& groups,
+                                 const std::function<Expected<double>(const ValueGroups&)>& statistic,
+                                 const BootstrapOptions& options) {
+  const auto several = bootstrapSeveral(
+      groups,
+      [&](const ValueGroups& g) -> Expected<std::vector<double>> {
+        const Expected<double> value = statistic(g);
+        if (!value) return NoResult{value.reason()};
+        return std::vector<double>{*value};
+      },
+      options);
+  if (!several) return NoResult{several.reason()};
+  return several->front();
 }
 
 }  // namespace
@@ -70,15 +58,53 @@ Expected<Bootstrap> bootstrapOf(const Groups& groups, const OfGroups& statistic,
 Expected<Bootstrap> bootstrap(std::span<const double> x, const Statistic& statistic, const BootstrapOptions& options) {
   if (x.empty()) return NoResult{"no values"};
   if (!allFinite(x)) return NoResult{"a value is not finite"};
-  return bootstrapOf(
-      {{x.begin(), x.end()}}, [&](const Groups& g) { return statistic(g[0]); }, options);
+  return bootstrapOne(
+      {{x.begin(), x.end()}}, [&](const ValueGroups& g) { return statistic(g[0]); }, options);
 }
 
 Expected<Bootstrap> bootstrap(std::span<const double> x, std::span<const double> y, const TwoGroupStatistic& statistic,
                               const BootstrapOptions& options) {
   if (const std::string reason = twoGroupObjection(x, y); !reason.empty()) return NoResult{reason};
-  return bootstrapOf(
-      {{x.begin(), x.end()}, {y.begin(), y.end()}}, [&](const Groups& g) { return statistic(g[0], g[1]); }, options);
+  return bootstrapOne(
+      {{x.begin(), x.end()}, {y.begin(), y.end()}}, [&](const ValueGroups& g) { return statistic(g[0], g[1]); },
+      options);
+}
+
+Expected<std::vector<Expected<Bootstrap>>> bootstrapSeveral(const ValueGroups& groups, const SeveralOfGroups& statistic,
+                                                            const BootstrapOptions& options) {
+  assert(options.resamples >= 99 && options.level > 0.0 && options.level < 1.0);
+  const Expected<std::vector<double>> estimate = statistic(groups);
+  if (!estimate) return NoResult{estimate.reason()};
+  Bootstrap common;
+  common.seed = options.seed;
+  common.resamples = options.resamples;
+  RandomStream random(options.seed);
+  std::vector<std::vector<double>> values(estimate->size());
+  for (std::vector<double>& of : values) of.reserve(options.resamples);
+  ValueGroups drawn = groups;
+  std::string lastReason;
+  for (std::size_t resample = 0; resample < options.resamples; ++resample) {
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+      for (double& v : drawn[g]) v = groups[g][static_cast<std::size_t>(random.below(groups[g].size()))];
+    }
+    if (const Expected<std::vector<double>> value = statistic(drawn)) {
+      for (std::size_t i = 0; i < values.size(); ++i) values[i].push_back((*value)[i]);
+    } else {
+      ++common.without;
+      lastReason = value.reason();
+    }
+  }
+  if (static_cast<double>(common.without) > mostResamplesWithout * static_cast<double>(options.resamples)) {
+    return NoResult{std::to_string(common.without) + " of " + std::to_string(options.resamples) +
+                    " resamples have no answer (" + lastReason + ")"};
+  }
+  std::vector<Expected<Bootstrap>> result;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    Bootstrap one = common;
+    one.estimate = (*estimate)[i];
+    result.push_back(intervalOf(std::move(values[i]), one, options.level));
+  }
+  return result;
 }
 
 std::uint64_t RandomStream::below(std::uint64_t n) {

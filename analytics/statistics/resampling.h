@@ -9,6 +9,7 @@
 #include <random>
 #include <span>
 #include <utility>
+#include <vector>
 
 #include "analytics/statistics/expected.h"
 
@@ -42,6 +43,15 @@ Expected<Bootstrap> bootstrap(std::span<const double> x, const Statistic& statis
                               const BootstrapOptions& options = {});
 Expected<Bootstrap> bootstrap(std::span<const double> x, std::span<const double> y, const TwoGroupStatistic& statistic,
                               const BootstrapOptions& options = {});
+
+using ValueGroups = std::vector<std::vector<double>>;
+using SeveralOfGroups = std::function<Expected<std::vector<double>>(const ValueGroups&)>;
+
+/// Several statistics of any number of groups, of the same resamples; one answer each. `groups` may hold places of
+/// people in a table. No answer at all when there is none of the groups themselves. @pre as bootstrap(); no group is
+/// empty; the statistic has always as many values.
+Expected<std::vector<Expected<Bootstrap>>> bootstrapSeveral(const ValueGroups& groups, const SeveralOfGroups& statistic,
+                                                            const BootstrapOptions& options = {});
 
 /// Random numbers for resampling and simulation: 64-bit Mersenne Twister, whose bits the C++ standard fixes, with
 /// mappings of our own, since the standard library's own differ between libraries. Whoever uses one reports its seed.

@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
+#include "analytics/uncertainty/uncertainty.h"
 #include "apps/calot/command.h"
 #include "apps/calot/environment.h"
 #include "recorder/base/errors.h"
@@ -244,6 +247,77 @@ void writeSceneTemplate(const SceneTemplate& wanted) {
   fmt::print("{}\n{}\n", scene.string(), surface.string());
 }
 
+struct SceneDivision {
+  std::string scene, output;
+  double elements = 1.0;
+  std::optional<std::uint32_t> ticksPerStep;
+  bool force = false;
+};
+
+std::string textOf(const recorder::Asset& asset) {
+  return {reinterpret_cast<const char*>(asset.bytes.data()), asset.bytes.size()};
+}
+
+/// The scene's file with other numbers of elements and ticks, all else as it is.
+/// @throws Error (refused) where no scene can be built with them
+std::string dividedText(const recorder::LoadedScene& scene, const SceneDivision& wanted) {
+  const SceneDescription divided = analytics::redivided(
+      scene.description, wanted.ticksPerStep.value_or(scene.description.ticksPerStep), wanted.elements);
+  Json file = Json::parse(textOf(scene.assets.front()));
+  file["name"] = fs::path(wanted.output).stem().string();
+  file["ticksPerStep"] = divided.ticksPerStep;
+  const auto write = [&file](const char* list, const char* key, const auto& parts, auto member) {
+    for (std::size_t i = 0; i < parts.size(); ++i) file[list][i][key] = parts[i].*member;
+  };
+  write("organs", "tetrahedra", divided.organs, &OrganDescription::tetrahedra);
+  write("vessels", "elements", divided.vessels, &VesselDescription::elements);
+  write("connective", "strands", divided.connective, &ConnectiveDescription::strands);
+  write("fat", "cellsPerCube", divided.fat, &FatDescription::cellsPerCube);
+  std::string text = file.dump(2) + "\n";
+  std::vector<recorder::Asset> assets = scene.assets;
+  const auto* const bytes = reinterpret_cast<const std::byte*>(text.data());
+  assets.front().bytes.assign(bytes, bytes + text.size());
+  try {
+    const Model::Built built = Model::build(recorder::sceneFromAssets(std::move(assets)).description);
+    if (!built.model) throw Error(ErrorKind::refused, built.error);
+  } catch (const Error& fault) {
+    throw Error(ErrorKind::refused, Where{wanted.scene, fault.where().place}, "cannot be divided so: " + fault.fault());
+  }
+  return text;
+}
+
+bool isThere(const fs::path& path, const std::string& text) {
+  std::error_code ignored;
+  if (!fs::is_regular_file(path, ignored) || fs::file_size(path, ignored) != text.size()) return false;
+  return textOf({{}, recorder::readFileBytes(path, path.string(), text.size())}) == text;
+}
+
+/// Writes a scene divided otherwise, and its surfaces beside it as they are. What is there alike stays.
+/// @throws Error as dividedText(), and where another file is there
+void divideScene(const SceneDivision& wanted) {
+  const fs::path output = wanted.output;
+  if (output.extension() != ".json")
+    throw Error(ErrorKind::invalid, Where{wanted.output}, "a scene's name ends in .json");
+  const recorder::LoadedScene scene = recorder::loadScene(recorder::findScene(wanted.scene, assetFolders()));
+  const fs::path folder = output.parent_path();
+  const fs::path root = folder.filename() == "scenes" ? folder.parent_path() : folder;
+  std::vector<std::pair<fs::path, std::string>> files;
+  for (std::size_t i = 1; i < scene.assets.size(); ++i)
+    files.emplace_back(root / scene.assets[i].name, textOf(scene.assets[i]));
+  files.emplace_back(output, dividedText(scene, wanted));  // the last: with it all is there
+  for (const auto& [path, text] : files) {
+    std::error_code error;
+    if (path.has_parent_path()) fs::create_directories(path.parent_path(), error);
+    if (error)
+      throw Error(ErrorKind::failure, Where{path.parent_path().string()}, "cannot be made: " + error.message());
+    if (!isThere(path, text)) recorder::refuseOutput(path, wanted.force);
+  }
+  for (const auto& [path, text] : files) {
+    if (!isThere(path, text)) recorder::writeText(path, text, wanted.force);
+    fmt::print("{}\n", path.string());
+  }
+}
+
 }  // namespace
 
 void addScenes(CLI::App& app, Run& run) {
@@ -277,6 +351,20 @@ void addScene(CLI::App& app, Run& run) {
       ->required();
   addNumber(*made, "--tetrahedra", t->tetrahedra, "of the organ", 12, 100000);
   made->add_flag("--force", t->force, "replace files that are there");
+
+  const auto [divide, d] =
+      addCommand(command, run,
+                 {"divide", "Write a scene with more or fewer elements, or another step, all else as it is",
+                  "calot scene divide carve-fat --elements 2 -o my/scenes/carve-fat-finer.json"},
+                 divideScene);
+  divide->add_option("scene", d->scene, "name of a scene (calot scenes), or a scene file")->required();
+  addNumber(*divide, "--elements", d->elements,
+            "times the tetrahedra; vessels' elements, strands and fat's cubes by the same ratio of lengths", 0.1, 16.0);
+  divide->add_option("--ticks-per-step", d->ticksPerStep, "ticks of 1 ms in a step; without it those of the scene")
+      ->check(CLI::Range(1, 100));
+  divide->add_option("-o,--output", d->output, "the scene, FOLDER/scenes/NAME.json; the surfaces go into FOLDER")
+      ->required();
+  divide->add_flag("--force", d->force, "replace files that are there");
 }
 
 }  // namespace calot::apps

@@ -232,6 +232,9 @@ std::string hintFor(const SceneDescription& scene, const std::string& summary, c
     const std::string view = viewHint(scene, figures);
     return view.empty() ? vesselHint(scene, figures) : view;
   }
+  if (!scene.procedure.fat.empty() && !(figures.attached > 0.0))
+    return fmt::format("Fat still holds the {}: pull it away and divide what is drawn out.",
+                       spoken(scene.procedure.specimen));
   return fmt::format("{}Take the {} off its bed: pull it away and burn what is stretched. {:.0f} % is still attached.",
                      take(figures, InstrumentAction::burn), spoken(scene.procedure.specimen),
                      std::ceil(100.0 * figures.attached));

@@ -12,7 +12,7 @@ namespace {
 
 using Subject = EventWords::Subject;
 
-constexpr std::array<EventWords, 25> told{{
+constexpr std::array<EventWords, 26> told{{
     {EventKind::instrumentExchange, Subject::none, "instrument exchanged", false},
     {EventKind::instrumentsTouched, Subject::none, "instruments touched", false},
     {EventKind::retractionMore, Subject::structure, "more retraction asked for", false},
@@ -20,6 +20,7 @@ constexpr std::array<EventWords, 25> told{{
     {EventKind::graspSlip, Subject::structure, "slipped in the jaws", true},
     {EventKind::tissueTear, Subject::structure, "torn out of the jaws", true},
     {EventKind::strandsTorn, Subject::connective, "torn instead of burned", true},
+    {EventKind::fatTorn, Subject::structure, "thin string tore", false},
     {EventKind::connectiveFreed, Subject::connective, "divided", false},
     {EventKind::vesselTorn, Subject::structure, "torn", true},
     {EventKind::clipSet, Subject::structure, "clip set", false},

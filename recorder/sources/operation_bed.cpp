@@ -31,6 +31,9 @@ constexpr std::ptrdiff_t few = 3;       // where no more than these are left aro
 constexpr double fewLeft = 0.5;         // of what may stay on a vessel that counts as bare: the lower third is free
 constexpr double lowerShare = 0.37;     // of the strands: the lower third of the bed, and a little more
 constexpr std::uint32_t maxStrokes = 400;
+constexpr std::uint32_t mostLast = 60;  // strokes, or looks, for the fat that holds at the end
+constexpr double lastLook = 0.3;        // it waits for what tears by itself (s)
+constexpr double lastHalf = 0.007;      // of a stroke through it (m)
 
 }  // namespace
 
@@ -203,13 +206,34 @@ void WorkingMind::runStroke(const BedStroke& stroke) {
 }
 
 void WorkingMind::leaveBed(const Sight& sight, bool lowerThird) {
-  stage_ = lowerThird ? Stage::clip : Stage::done;
+  stage_ = lowerThird ? Stage::clip : Stage::last;
   vessel_ = 0;
   strokes_ = 0;
-  if (lowerThird) {
-    clip(sight);
+  lowerThird ? clip(sight) : divideLast(sight);
+}
+
+/// The hook divides fat that the other hand draws out, nearest first and across the pull; strings part by themselves.
+void WorkingMind::divideLast(const Sight& sight) {
+  if (sight.held && tools_.anatomy.divides() && strokes_ < mostLast) {
+    if (mount(InstrumentKind::hook, 0.0)) return;
+    ++strokes_;
+    if (sight.tether.empty()) {
+      hand().add({.to = hand().meant(), .dwell = lastLook, .sure = true});
+      return;
+    }
+    newError();
+    error_ *= 0.25;
+    const SeenTether& tether = sight.tether[(strokes_ - 1) % sight.tether.size()];
+    const Vec3 shaft = hand().shaft(tether.place);
+    Vec3 side = shaft.cross(tools_.scene.camera.orientation * Vec3::UnitY());
+    side /= std::max(side.norm(), 1e-9);
+    const Vec3 middle = tether.place + (std::min(tether.depth, wireLength) + sweepLead) * shaft + error_;
+    const double sign = strokes_ % 2U == 0 ? -1.0 : 1.0;
+    strokeThrough({middle - sign * lastHalf * side, middle + sign * lastHalf * side}, sign * side, retreat);
     return;
   }
+  failed_ = failed_ || (sight.held && tools_.anatomy.divides());
+  stage_ = Stage::done;
   const Vec3 here = hand().meant();
   go(here - 0.02 * hand().shaft(here), tools_.profile.motor.contactSpeed, 0.0);
   go(tools_.scene.hands[hand_].home, tools_.profile.motor.strokeSpeed, 0.0);

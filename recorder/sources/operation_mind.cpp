@@ -241,6 +241,8 @@ void WorkingMind::decide(const Sight& sight) {
     clip(sight);
   else if (stage_ == Stage::cut)
     cut(sight);
+  else if (stage_ == Stage::last)
+    divideLast(sight);
   else if (stage_ != Stage::done)
     burn(sight, stage_ == Stage::lowerThird);
 }

@@ -107,6 +107,12 @@ struct SeenColumn {
   [[nodiscard]] double fat() const { return top - bottom; }
 };
 
+/// Fat that still hangs between what moved with the specimen and what stayed.
+struct SeenTether {
+  Vec3 place = Vec3::Zero();  ///< where it is drawn out, nearest to the port of the hand that works (m, W)
+  double depth = 0.0;         ///< of it beyond that place, away from that port (m)
+};
+
 struct SeenHand {
   bool holds = false;       ///< its jaws hold tissue
   std::uint32_t clips = 0;  ///< left in the applier
@@ -116,6 +122,8 @@ struct Sight {
   std::vector<SeenVessel> vessel;
   std::vector<SeenStrand> strand;
   std::vector<SeenColumn> column;  ///< in the order of PerformerSight::columns()
+  bool held = false;               ///< fat still holds the specimen
+  std::vector<SeenTether> tether;  ///< nearest to the port first; empty while nothing is drawn out
   std::array<SeenHand, handCount> hand;
   Vec3 grip = Vec3::Zero();  ///< the place on the specimen that is to be held (m, W)
 };
@@ -168,6 +176,7 @@ class PerformerSight {
   void seeVessel(const SceneView& view, const VesselPlan& plan, SeenVessel& seen) const;
   void seeColumns(const SceneView& view, Sight& sight) const;
   void seeFat(const SceneView& view, const VesselPlan& plan, SeenVessel& seen) const;
+  void seeTethers(const SceneView& view, Sight& sight) const;
 
   std::vector<VesselPlan> vessel_;
   std::vector<ColumnPlan> column_;
@@ -179,7 +188,7 @@ class PerformerSight {
   Vec3 neck_ = Vec3::Zero();
   bool divides_ = false;
   double triangleDepth_ = 0.0;
-  std::size_t gripVertex_ = 0;
+  std::size_t gripVertex_ = 0, neckVertex_ = 0;
 };
 
 /// Both hands of an operation, its anatomy, and the operator's interpretation of its perception.
@@ -212,7 +221,8 @@ class HoldingMind {
   bool ready_ = false;
 };
 
-/// The hand that works: clears vessels of fat, frees the lower third of the bed, clips, cuts, frees the rest.
+/// The hand that works: clears vessels of fat, frees the lower third of the bed, clips, cuts, frees the rest, and
+/// divides the fat that still holds then.
 class WorkingMind {
  public:
   WorkingMind(const OperationTools& tools, std::size_t hand, std::uint64_t seed);
@@ -231,7 +241,7 @@ class WorkingMind {
   void sawBadClip() { ++badClips_[clipped_]; }
 
  private:
-  enum class Stage : std::uint8_t { clear, window, lowerThird, clip, cut, bed, done };
+  enum class Stage : std::uint8_t { clear, window, lowerThird, clip, cut, bed, last, done };
 
   void rankStrands(const Sight& sight);
   void clear(const Sight& sight);
@@ -245,6 +255,7 @@ class WorkingMind {
   bool thickestRow(const Sight& sight, std::size_t& first, std::size_t& last) const;
   void burn(const Sight& sight, bool lowerThird);
   void leaveBed(const Sight& sight, bool lowerThird);
+  void divideLast(const Sight& sight);
   struct BedStrand;
   struct BedStroke;
   [[nodiscard]] BedStroke bestStroke(const std::vector<BedStrand>& wanted) const;

@@ -98,8 +98,10 @@ void PerformerSight::planVessels(const SceneDescription& scene) {
 void PerformerSight::findSpecimen(const SceneDescription& scene) {
   const SurfaceDescription& skin = scene.organs[specimen_].surface;
   neck_ = skin.vertex[0];
-  for (const Vec3& v : skin.vertex) {
-    if (v.y() < neck_.y()) neck_ = v;
+  for (std::size_t i = 0; i < skin.vertex.size(); ++i) {
+    if (!(skin.vertex[i].y() < neck_.y())) continue;
+    neck_ = skin.vertex[i];
+    neckVertex_ = i;
   }
   std::vector<Vec3> normal(skin.vertex.size(), Vec3::Zero());
   for (const Index3& t : skin.triangle) {
@@ -178,8 +180,10 @@ Sight PerformerSight::look(const StepRecord& record) const {
     const HandResult& hand = record.result.hand[h];
     sight.hand[h] = {hand.grasping != 0, hand.clips};
   }
+  for (const FatResult& fat : record.result.fat) sight.held = sight.held || fat.holdsSpecimen;
   if (hasSpecimen()) {
     if (const SurfaceView* skin = surfaceNamed(view, specimenName_)) sight.grip = skin->position[gripVertex_];
+    if (sight.held) seeTethers(view, sight);
   }
   return sight;
 }
@@ -192,6 +196,8 @@ constexpr double margin = 0.04;        // so far from the triangle's edges, as a
 constexpr double fatAside = 0.0020;    // so far beside a vessel fat is looked at, from its surface (m)
 constexpr double fatOver = 0.0005;     // what is over a vessel reaches so far beside it (m)
 constexpr double nothing = -1.0;       // height of fat where there is none (m)
+constexpr double drawnOut = 0.015;     // the specimen has moved so far that what holds it shows (m)
+constexpr double tetherWidth = 0.006;  // what hangs nearer to one another is one (m)
 
 }  // namespace
 
@@ -267,6 +273,51 @@ void PerformerSight::seeFat(const SceneView& view, const VesselPlan& plan, SeenV
       const std::size_t bin = std::abs(aside) <= plan.radius + fatOver ? 0 : (aside < 0.0 ? 1 : 2);
       seen.fat[s][bin] = std::max(seen.fat[s][bin], -d.dot(shaft));
     }
+  }
+}
+
+/// The surface of fat goes along with what carries it: where it moved half as far as the specimen, it is drawn out
+/// between both.
+void PerformerSight::seeTethers(const SceneView& view, Sight& sight) const {
+  const SurfaceView* fat = fat_.empty() ? nullptr : surfaceNamed(view, fat_);
+  const SurfaceView* specimen = surfaceNamed(view, specimenName_);
+  if (fat == nullptr || specimen == nullptr) return;
+  const Vec3 way = specimen->position[neckVertex_] - specimen->rest[neckVertex_];
+  if (!(way.norm() > drawnOut)) return;
+  const auto share = [&](int v) {
+    const auto i = static_cast<std::size_t>(v);
+    return (fat->position[i] - fat->rest[i]).dot(way) / way.squaredNorm() - 0.5;
+  };
+  struct Drawn {
+    double height = 0.0;  // towards the port
+    Vec3 place = Vec3::Zero();
+  };
+  std::vector<Drawn> drawn;
+  for (const Index3& t : fat->triangle) {
+    for (int k = 0; k < 3; ++k) {
+      const int a = t[k], b = t[(k + 1) % 3];
+      const double from = share(a), to = share(b);
+      if (a > b || (from < 0.0) == (to < 0.0)) continue;
+      const Vec3& p = fat->position[static_cast<std::size_t>(a)];
+      const Vec3 place = p + from / (from - to) * (fat->position[static_cast<std::size_t>(b)] - p);
+      drawn.push_back({-(place - port_[worker_]).norm(), place});
+    }
+  }
+  std::sort(drawn.begin(), drawn.end(), [](const Drawn& a, const Drawn& b) {
+    if (a.height != b.height) return a.height > b.height;
+    return std::lexicographical_compare(a.place.data(), a.place.data() + 3, b.place.data(), b.place.data() + 3);
+  });
+  for (const Drawn& d : drawn) {
+    const auto same = std::find_if(sight.tether.begin(), sight.tether.end(), [&](const SeenTether& tether) {
+      const Vec3 away = d.place - tether.place;
+      const Vec3 shaft = shaftDirection(port_[worker_], tether.place);
+      return (away - away.dot(shaft) * shaft).norm() < tetherWidth;
+    });
+    if (same == sight.tether.end()) {
+      sight.tether.push_back({d.place, 0.0});
+      continue;
+    }
+    same->depth = std::max(same->depth, (d.place - same->place).dot(shaftDirection(port_[worker_], same->place)));
   }
 }
 

@@ -325,15 +325,29 @@ class Islands {
   /// removed entirely. @return number of nodes removed; times cell^3 is their volume
   std::int64_t remove(CarvedField& field);
 
+  // Connections. Things beside the field that hang on it have numbers from 0.
+
+  /// Finds the connected parts of the field, with `things` beside it that hang on nothing yet. Costs a search of the
+  /// graph of bricks. @pre the field is that of the last rebuild() or remove()
+  void connect(const CarvedField& field, std::uint32_t things);
+  /// Connects a thing with the part that an inside node belongs to. @pre connect() since the field's last change
+  void hang(std::uint32_t thing, std::uint32_t node) {
+    join(base_.back() + thing, component(node / BrickLattice::brickNodes, node % BrickLattice::brickNodes));
+  }
+  /// True if two things are connected, through the field and through things that hang on several of its parts.
+  [[nodiscard]] bool connected(std::uint32_t thing, std::uint32_t other) {
+    return root(base_.back() + thing) == root(base_.back() + other);
+  }
+
  private:
   void label(const CarvedField& field, std::uint32_t brick);
   void link(const CarvedField& field, std::uint32_t brick, int axis);
   bool relabel(const CarvedField& field, std::uint32_t brick);
-  void joinComponents(const CarvedField& field);
   void markAnchored(const CarvedField& field);
   std::int64_t removeLoose(CarvedField& field);
   std::size_t component(std::uint32_t brick, std::uint32_t local) const;
   std::uint32_t root(std::size_t component);
+  void join(std::size_t component, std::size_t other);
   /// The brick before or after along an axis. @return false: there is none
   bool neighbour(std::uint32_t brick, int axis, int step, std::uint32_t& out) const;
 
@@ -345,7 +359,7 @@ class Islands {
   std::vector<std::uint8_t> link_;       ///< bit a: the brick is connected to the next along axis a
   std::vector<std::uint8_t> label_;      ///< of each node, if its brick has several components
   std::vector<std::uint32_t> base_;      ///< number of a brick's first component
-  std::vector<std::uint32_t> parent_;
+  std::vector<std::uint32_t> parent_;    ///< of each component, then of each thing beside the field
   std::vector<std::uint8_t> anchored_;
   std::vector<std::uint32_t> work_;
   bool searched_ = false;  ///< since rebuild()

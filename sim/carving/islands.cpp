@@ -138,16 +138,17 @@ std::uint32_t Islands::root(std::size_t component) {
   return c;
 }
 
-void Islands::joinComponents(const CarvedField& field) {
+void Islands::join(std::size_t component, std::size_t other) {
+  const std::uint32_t a = root(component);
+  const std::uint32_t b = root(other);
+  parent_[std::max(a, b)] = std::min(a, b);
+}
+
+void Islands::connect(const CarvedField& field, std::uint32_t things) {
   const std::size_t bricks = lattice_.brickCount();
   for (std::size_t b = 0; b < bricks; ++b) base_[b + 1] = base_[b] + count_[b];
-  parent_.resize(base_[bricks]);
-  for (std::uint32_t c = 0; c < base_[bricks]; ++c) parent_[c] = c;
-  const auto join = [this](std::size_t x, std::size_t y) {
-    const std::uint32_t a = root(x);
-    const std::uint32_t b = root(y);
-    parent_[std::max(a, b)] = std::min(a, b);
-  };
+  parent_.resize(base_[bricks] + things);
+  for (std::uint32_t c = 0; c < parent_.size(); ++c) parent_[c] = c;
   const Index3& size = lattice_.bricks();
   const std::array<std::uint32_t, 3> step{1, static_cast<std::uint32_t>(size[0]),
                                           static_cast<std::uint32_t>(size[0] * size[1])};
@@ -208,7 +209,7 @@ std::int64_t Islands::remove(CarvedField& field) {
   }
   if (!less) return 0;
   searched_ = true;
-  joinComponents(field);
+  connect(field, 0);
   markAnchored(field);
   return removeLoose(field);
 }

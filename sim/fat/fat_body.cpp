@@ -189,12 +189,18 @@ FatStroke FatBody::stroke(FatState& state, std::span<const SweptCapsule> tool, d
   const double cell = model_.lattice().cell();
   const double depth = carveDepth * cell;
   if (state.carved.brick.capacity() == 0) field_.reserve(state.carved);
-  FatStroke out;
-  const double volumeBefore = volume_.total();
   motion_.choose(tool, state.solid.position, before_, fill_, depth);
   field_.begin();
   carve(field_, tool, motion_.boxes(), motion_, depth, rise);
+  return finish(state);
+}
+
+/// All that follows from a changed field.
+FatStroke FatBody::finish(FatState& state) {
+  FatStroke out;
   if (field_.changed().empty()) return out;
+  const double cell = model_.lattice().cell();
+  const double volumeBefore = volume_.total();
   const std::int64_t loose = islands_.remove(field_);
   field_.commit(state.carved);
   surface_.update(field_);

@@ -62,6 +62,11 @@ class CarvedContact final : public SurfaceTopology {
   /// Positions of the vertices (m, W), by index, for these positions of the solid's nodes. Entries without a vertex are
   /// unchanged. Allocates on first use.
   void positions(std::span<const Vec3> solid, std::vector<Vec3>& out) const;
+  /// A vertex in the reference configuration (m).
+  [[nodiscard]] Vec3 rest(int node) const {
+    const BrickLattice& lattice = model_.lattice();
+    return lattice.position(Index3::Zero()) + lattice.cell() * cellsOf(static_cast<std::size_t>(node));
+  }
   /// Nodes of the solid that a vertex depends on, and their weights.
   [[nodiscard]] MaterialPoint anchor(int node) const;
   /// A point of a triangle in terms of the solid's nodes: each corner's cube times the corner's weight, up to 24 nodes.
@@ -182,7 +187,7 @@ class FatVolume {
   std::vector<std::int64_t> region_;
 };
 
-/// Outcome of a stroke.
+/// Outcome of a stroke, or of a string that tore.
 struct FatStroke {
   bool changed = false;       ///< the field changed: the `carved` part of State must be rehashed
   double removed = 0.0;       ///< volume, islands included (m^3)
@@ -213,6 +218,16 @@ class FatBody {
   /// @param rise by which the surface can recede in this step (m), as for carve()
   FatStroke stroke(FatState& state, std::span<const SweptCapsule> tool,
                    double rise = std::numeric_limits<double>::infinity());
+  /// Parts a string of fat that is pulled too far (sim/fat/fat_strings.cpp), at most one: the cube that is stretched
+  /// most, of those that are stretched too far for their section across the pull, loses all of its fat, and with it
+  /// what binds its neighbours. A function of the State alone. Allocates nothing. @pre the body is that of the State
+  FatStroke tear(FatState& state);
+
+  /// True if connected fat joins thing 0 with thing 1, through its ties and, from one part of it to another, through
+  /// further things. Costs a search of the graph of bricks.
+  /// @param thing per tie (FatModel::allTies()): number of what it hangs on @param things how many there are, at least
+  /// 2
+  [[nodiscard]] bool joins(std::span<const std::uint32_t> thing, std::uint32_t things);
 
   [[nodiscard]] const FatModel& model() const { return model_; }
   /// Remaining share of each cube, for SolidSolver and SolidModel::volume().
@@ -235,6 +250,9 @@ class FatBody {
 
  private:
   void rebuildAll();
+  FatStroke finish(FatState& state);
+  [[nodiscard]] int overstretched(const FatState& state) const;
+  [[nodiscard]] double section(int cube, int axis) const;
   void updateFill(std::span<const std::uint32_t> hexahedra);
   void measureTies(int cube);
   [[nodiscard]] Vec3 meanPosition(const FatState& state, std::uint32_t& nodes) const;

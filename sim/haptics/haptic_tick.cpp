@@ -119,8 +119,8 @@ HapticForce hapticTick(const HapticModel& model, HapticState& state, const Conta
 
 HapticState initialHaptics(const State& state, std::size_t hand) {
   HapticState haptics;
-  haptics.tip = state.hand[hand].realPosition;
-  haptics.orientation = state.hand[hand].realOrientation;
+  haptics.tip = state.hand[hand].input.position;
+  haptics.orientation = state.hand[hand].input.orientation;
   return haptics;
 }
 

@@ -173,7 +173,9 @@ const Judgement& Judge::observe(const StepResult& result) {
   const bool allParted =
       std::all_of(divide_.begin(), divide_.end(), [&](const Divide& d) { return isParted(result, d.vessel); });
   if (hasFat_ && result.fat[fat_].carved > 0.0) phase = allParted ? Phase::dissection : Phase::identification;
-  const bool freed = !hasBed_ || !(result.connective[bed_].attached > 0.0);
+  const bool held =
+      std::any_of(result.fat.begin(), result.fat.end(), [](const FatResult& f) { return f.holdsSpecimen; });
+  const bool freed = (!hasBed_ || !(result.connective[bed_].attached > 0.0)) && !held;
   if (allParted && freed) phase = Phase::done;
   if (phase == now_.phase) return now_;
   Event begin;

@@ -16,7 +16,7 @@ namespace calot {
 // judged again.
 
 /// Rises when a rule or a threshold below changes: figures that stand on it then have a new version.
-inline constexpr std::uint32_t judgementVersion = 1;
+inline constexpr std::uint32_t judgementVersion = 2;
 
 /// Phase of an attempt. Numbers are stored in recordings before version 4 of StepResult, and in events.
 enum class Phase : std::uint8_t { none = 0, identification = 1, clipping = 2, cutting = 3, dissection = 4, done = 5 };

@@ -20,7 +20,7 @@ struct DigestLayout {
     std::uint32_t component = 0;
     std::string name;  ///< "organ.liver/position"
   };
-  std::vector<std::string> components;  ///< "clock", "camera", "hand.left", "organ.liver", ...
+  std::vector<std::string> components;  ///< "clock", "camera", "hand.left.input", "organ.liver", ...
   std::vector<Field> fields;
 };
 

@@ -22,12 +22,12 @@ SceneView SceneViewer::view(const State& state) {
   for (std::size_t h = 0; h < handCount; ++h) {
     InstrumentView& instrument = view.instrument[h];
     const HandDescription& description = model.scene().hands[h];
-    instrument.kind = state.hand[h].instrument;
-    instrument.pose = {state.hand[h].simulatedPosition, state.hand[h].simulatedOrientation};
+    instrument.kind = state.hand[h].instrument.kind;
+    instrument.pose = {state.hand[h].instrument.position, state.hand[h].instrument.orientation};
     instrument.port = description.port;
     instrument.radius = description.shaftRadius;
-    instrument.jaw = state.hand[h].jaw;
-    instrument.touching = state.hand[h].touching != 0;
+    instrument.jaw = state.hand[h].instrument.jaw;
+    instrument.touching = state.hand[h].touches.structures != 0;
   }
   view.camera.position = state.camera.position;
   view.camera.orientation = state.camera.orientation;

@@ -155,12 +155,12 @@ State initialState(const Model& model, std::uint64_t seed) {
   for (std::size_t h = 0; h < handCount; ++h) {
     const HandDescription& hand = scene.hands[h];
     HandState& s = state.hand[h];
-    s.instrument = hand.instrument;
     const Pose pose = throughPort(hand.port, hand.home, Quat::Identity(), Vec3(0.0, 0.0, -1.0));
-    s.realPosition = s.simulatedPosition = pose.position;
-    s.realOrientation = s.simulatedOrientation = pose.orientation;
-    s.clips = hand.clips;
-    s.touchingSince.assign(model.structures().size(), 0);
+    s.input.position = s.instrument.position = pose.position;
+    s.input.orientation = s.instrument.orientation = pose.orientation;
+    s.instrument.kind = hand.instrument;
+    s.instrument.clips = hand.clips;
+    s.touches.since.assign(model.structures().size(), 0);
   }
   state.retraction = retractionsAtStart(scene);
   Tissues::forEach([&]<class Kind>(std::type_identity<Kind>, TissueId) { Kind::start(model, state); });
@@ -175,7 +175,8 @@ DigestLayout digestLayout(const Model& model) {
     layout.components.push_back(std::move(name));
     std::remove_cvref_t<decltype(part)>::fields(part, visitor);
   };
-  State::ownComponents(state, add);
+  State::ownComponents(
+      state, [&](const std::string& prefix, const char* name, const auto& part) { add(prefix + name, part); });
   State::tissueComponents(state, [&]<class Kind>(std::type_identity<Kind>, const char* prefix, std::size_t index,
                                                  const auto& part) { add(prefix + Kind::nameOf(model, index), part); });
   return layout;
@@ -218,7 +219,33 @@ namespace {
 /// Is the structure of a dimple's key one that has dimples?
 bool isDimpleOf(const Model& model, std::uint64_t key) {
   const std::uint64_t structure = key >> 8U;
-  return structure < model.structures().size() && model.structures()[structure].kind == tissueId<OrganTissue>;
+  return structure < model.structures().size() && model.structures()[structure].soft != nullptr;
+}
+
+bool fits(const Model& model, const TouchState& touches) {
+  return touches.since.size() == model.structures().size() && touches.key.size() == touches.force.size() &&
+         touches.dimpleKey.size() == touches.dimple.size() &&
+         std::all_of(touches.dimpleKey.begin(), touches.dimpleKey.end(),
+                     [&](std::uint64_t key) { return isDimpleOf(model, key); });
+}
+
+/// @pre vessels of `state` fit
+bool fits(const Model& model, const State& state, const GraspState& grasp) {
+  const std::size_t held = grasp.node.size();
+  if (grasp.weight.size() != held || grasp.place.size() != held || grasp.force.size() != held) return false;
+  if ((grasp.structure == noStructure) != (held == 0)) return false;
+  if (held == 0) return true;
+  if (grasp.structure >= model.structures().size()) return false;
+  // The stepper discards contact points whose fat was carved away.
+  if (model.structures()[grasp.structure].kind == tissueId<FatTissue>) return true;
+  const std::size_t vertices = skinVertices(model, state, grasp.structure);
+  return std::all_of(grasp.node.begin(), grasp.node.end(), [&](const std::array<std::uint32_t, 3>& corners) {
+    return std::all_of(corners.begin(), corners.end(), [&](std::uint32_t corner) { return corner < vertices; });
+  });
+}
+
+bool fits(const Model& model, const BurnState& burn) {
+  return burn.tissue == noStructure || burn.tissue < smokeOfConnective + model.connective().size();
 }
 
 }  // namespace
@@ -236,28 +263,7 @@ bool restoreState(const Model& model, std::span<const std::byte> bytes, State& s
       [&]<class Kind>(std::type_identity<Kind>, TissueId) { tissueFits = tissueFits && Kind::fits(model, read); });
   if (!tissueFits) return false;
   for (const HandState& hand : read.hand) {
-    const std::size_t burnable = smokeOfConnective + model.connective().size();
-    if (hand.burning != noStructure && hand.burning >= burnable) return false;
-    if (hand.touchingSince.size() != model.structures().size()) return false;
-    if (hand.contactKey.size() != hand.contactForce.size()) return false;
-    if (hand.dimpleKey.size() != hand.dimple.size()) return false;
-    for (const std::uint64_t key : hand.dimpleKey) {
-      if (!isDimpleOf(model, key)) return false;
-    }
-    const std::size_t held = hand.graspNode.size();
-    if (hand.graspWeight.size() != held || hand.graspPlace.size() != held || hand.graspForce.size() != held)
-      return false;
-    if ((hand.grasped == noStructure) != (held == 0)) return false;
-    if (held == 0) continue;
-    if (hand.grasped >= model.structures().size()) return false;
-    // The stepper discards contact points whose fat was carved away.
-    if (model.structures()[hand.grasped].kind == tissueId<FatTissue>) continue;
-    const std::size_t vertices = skinVertices(model, read, hand.grasped);
-    for (const std::array<std::uint32_t, 3>& corners : hand.graspNode) {
-      for (const std::uint32_t corner : corners) {
-        if (corner >= vertices) return false;
-      }
-    }
+    if (!fits(model, hand.touches) || !fits(model, read, hand.grasp) || !fits(model, hand.burn)) return false;
   }
   if (read.tissue.key.size() != read.tissue.force.size() || !fits(model.scene(), read.retraction)) return false;
   state = std::move(read);

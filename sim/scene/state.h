@@ -91,75 +91,127 @@ struct CameraState {
   }
 };
 
-/// HandState::grasped of jaws that hold nothing.
+/// Stands for no structure: GraspState::structure of jaws that hold nothing, BurnState::tissue of a hook that burns
+/// nothing.
 inline constexpr std::uint32_t noStructure = 0xFFFFFFFFU;
 
-struct HandState {
-  InstrumentKind instrument = InstrumentKind::none;
-  Vec3 realPosition = Vec3::Zero();              ///< tip after port and workspace (m)
-  Quat realOrientation = Quat::Identity();       ///< unit
-  Vec3 simulatedPosition = Vec3::Zero();         ///< tip where contact lets it be (m)
-  Quat simulatedOrientation = Quat::Identity();  ///< unit
-  double jaw = 0.0;                              ///< of the simulated instrument (rad)
-  double realJaw = 0.0;                          ///< as the operator holds it (rad)
+// A hand, concern by concern.
+
+/// A hand as it was last measured.
+struct InputState {
+  Vec3 position = Vec3::Zero();         ///< tip after port and workspace (m)
+  Quat orientation = Quat::Identity();  ///< unit
+  double jaw = 0.0;                     ///< as the operator holds it (rad)
   std::uint8_t buttons = 0;
-  bool valid = true;                         ///< the newest sample was a measurement
-  bool outside = false;                      ///< the newest sample lay outside the workspace
-  std::uint64_t invalidSince = 0;            ///< step in which measurements stopped
-  std::uint32_t touching = 0;                ///< bit s: structure s
-  std::vector<std::uint64_t> touchingSince;  ///< per structure: step in which the touch began
-  std::vector<std::uint64_t> contactKey;     ///< the last step's contacts: where,
-  std::vector<Vec3> contactForce;            ///< its normal and tangential parts (N); warm start of the next problem
-  std::vector<std::uint64_t> dimpleKey;      ///< dimples that its capsules press: where (structure and capsule),
-  std::vector<Vec3> dimple;                  ///< and how far the skin gave way beyond what its mesh shows (m)
-  std::uint32_t grasped = noStructure;       ///< structure that the jaws hold
-  bool jawsOpened = false;  ///< since they last closed: only then do they grasp, clip or cut when they close
-  std::uint32_t clips = 0;  ///< left in the clip applier
-  /// Tissue that the hook burns (a structure, or 100 + connective tissue), and energy put into it so far (J).
-  std::uint32_t burning = noStructure;
-  double burnedEnergy = 0.0;
-  /// Places of its skin that the jaws hold: corners of a triangle and barycentric coordinates,
-  std::vector<std::array<std::uint32_t, 3>> graspNode;
-  std::vector<Vec3> graspWeight;
-  std::vector<Vec3> graspPlace;  ///< where they are in frame I (m),
-  std::vector<Vec3> graspForce;  ///< and f_W on the instrument there (N); warm start
-  bool slipping = false;         ///< held tissue is being pulled through the jaws
-  std::uint64_t graspSince = 0;  ///< step in which the hold began
+  bool valid = true;               ///< the newest sample was a measurement
+  bool outside = false;            ///< the newest sample lay outside the workspace
+  std::uint64_t invalidSince = 0;  ///< step in which measurements stopped
   /// XXH3-64 of the last step's samples of this hand, as they came: a changed sample shows in its own step even where
   /// it moves nothing.
-  std::uint64_t inputs = 0;
+  std::uint64_t samples = 0;
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("instrument", self.instrument);
-    visit("realPosition", self.realPosition);
-    visit("realOrientation", self.realOrientation);
-    visit("simulatedPosition", self.simulatedPosition);
-    visit("simulatedOrientation", self.simulatedOrientation);
+    visit("position", self.position);
+    visit("orientation", self.orientation);
     visit("jaw", self.jaw);
-    visit("realJaw", self.realJaw);
     visit("buttons", self.buttons);
     visit("valid", self.valid);
     visit("outside", self.outside);
     visit("invalidSince", self.invalidSince);
-    visit("touching", self.touching);
-    visit("touchingSince", self.touchingSince);
-    visit("contactKey", self.contactKey);
-    visit("contactForce", self.contactForce);
-    visit("dimpleKey", self.dimpleKey);
-    visit("dimple", self.dimple);
-    visit("grasped", self.grasped);
+    visit("samples", self.samples);
+  }
+};
+
+/// The simulated instrument: where contact lets it be.
+struct InstrumentState {
+  InstrumentKind kind = InstrumentKind::none;
+  Vec3 position = Vec3::Zero();         ///< of the tip (m)
+  Quat orientation = Quat::Identity();  ///< unit
+  double jaw = 0.0;                     ///< rad
+  bool jawsOpened = false;  ///< since they last closed: only then do they grasp, clip or cut when they close
+  std::uint32_t clips = 0;  ///< left in the clip applier
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("kind", self.kind);
+    visit("position", self.position);
+    visit("orientation", self.orientation);
+    visit("jaw", self.jaw);
     visit("jawsOpened", self.jawsOpened);
     visit("clips", self.clips);
-    visit("burning", self.burning);
-    visit("burnedEnergy", self.burnedEnergy);
-    visit("graspNode", self.graspNode);
-    visit("graspWeight", self.graspWeight);
-    visit("graspPlace", self.graspPlace);
-    visit("graspForce", self.graspForce);
+  }
+};
+
+/// Tissue that the instrument presses on, and the warm start of the next contact problem.
+struct TouchState {
+  std::uint32_t structures = 0;          ///< bit s: structure s is touched
+  std::vector<std::uint64_t> since;      ///< per structure: step in which the touch began
+  std::vector<std::uint64_t> key;        ///< the last step's contacts: where,
+  std::vector<Vec3> force;               ///< its normal and tangential parts (N)
+  std::vector<std::uint64_t> dimpleKey;  ///< dimples that its capsules press: where (structure and capsule),
+  std::vector<Vec3> dimple;              ///< and how far the skin gave way beyond what its mesh shows (m)
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("structures", self.structures);
+    visit("since", self.since);
+    visit("key", self.key);
+    visit("force", self.force);
+    visit("dimpleKey", self.dimpleKey);
+    visit("dimple", self.dimple);
+  }
+};
+
+/// The hold of closed jaws: places of a structure's skin.
+struct GraspState {
+  std::uint32_t structure = noStructure;           ///< that the jaws hold
+  std::vector<std::array<std::uint32_t, 3>> node;  ///< per place: corners of a triangle of its skin,
+  std::vector<Vec3> weight;                        ///< barycentric coordinates,
+  std::vector<Vec3> place;                         ///< where the jaws hold it in frame I (m),
+  std::vector<Vec3> force;                         ///< and f_W on the instrument there (N); warm start
+  bool slipping = false;                           ///< held tissue is being pulled through the jaws
+  std::uint64_t since = 0;                         ///< step in which the hold began
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("structure", self.structure);
+    visit("node", self.node);
+    visit("weight", self.weight);
+    visit("place", self.place);
+    visit("force", self.force);
     visit("slipping", self.slipping);
-    visit("graspSince", self.graspSince);
-    visit("inputs", self.inputs);
+    visit("since", self.since);
+  }
+};
+
+/// The touch of an energised hook.
+struct BurnState {
+  std::uint32_t tissue = noStructure;  ///< that it burns: a structure, or smokeOfConnective + connective tissue
+  double energy = 0.0;                 ///< put into it since smoke was last reported (J)
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("tissue", self.tissue);
+    visit("energy", self.energy);
+  }
+};
+
+struct HandState {
+  InputState input;
+  InstrumentState instrument;
+  TouchState touches;
+  GraspState grasp;
+  BurnState burn;
+
+  /// Calls visit(name, part) for each concern: a component of State.
+  template <class Self, class Visit>
+  static void components(Self& self, Visit&& visit) {
+    visit("input", self.input);
+    visit("instrument", self.instrument);
+    visit("touches", self.touches);
+    visit("grasp", self.grasp);
+    visit("burn", self.burn);
   }
 };
 
@@ -190,9 +242,6 @@ struct TissueContactState {
 };
 
 struct State : Tissues::States {
-  /// Components that are written in every step stand before those of tissue.
-  static constexpr std::size_t tissueFrom = 7;
-
   ClockState clock;
   CameraState camera;
   std::array<HandState, handCount> hand;
@@ -203,20 +252,28 @@ struct State : Tissues::States {
   /// Calls visit(part) for each component, in the order of DigestLayout::components.
   template <class Self, class Visit>
   static void components(Self& self, Visit&& visit) {
-    ownComponents(self, [&](const char*, auto& part) { visit(part); });
+    ownComponents(self, [&](const char*, const char*, auto& part) { visit(part); });
     tissueComponents(self, [&](auto, const char*, std::size_t, auto& part) { visit(part); });
   }
 
-  /// Calls visit(name, part) for the components that every scene has.
+  /// Calls visit(prefix, name, part) for the components that every scene has: each is named prefix and name. They count
+  /// as written in every step, since they are small: hashing them costs less than finding out which of them changed.
   template <class Self, class Visit>
   static void ownComponents(Self& self, Visit&& visit) {
-    visit("clock", self.clock);
-    visit("camera", self.camera);
-    visit("hand.left", self.hand[0]);
-    visit("hand.right", self.hand[1]);
-    visit("instruments", self.instruments);
-    visit("tissue", self.tissue);
-    visit("retraction", self.retraction);
+    visit("", "clock", self.clock);
+    visit("", "camera", self.camera);
+    HandState::components(self.hand[0], [&](const char* name, auto& part) { visit("hand.left.", name, part); });
+    HandState::components(self.hand[1], [&](const char* name, auto& part) { visit("hand.right.", name, part); });
+    visit("", "instruments", self.instruments);
+    visit("", "tissue", self.tissue);
+    visit("", "retraction", self.retraction);
+  }
+
+  /// How many of them there are: the components of tissue come after.
+  [[nodiscard]] std::size_t tissueFrom() const {
+    std::size_t count = 0;
+    ownComponents(*this, [&](const char*, const char*, const auto&) { ++count; });
+    return count;
   }
 
   /// Calls visit(kind, prefix, index, part) for the others: each is named prefix and the name of the index-th of its

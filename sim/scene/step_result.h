@@ -64,6 +64,7 @@ enum class EventKind : std::uint16_t {
   instrumentsTouched = 46,  ///< one instrument began to touch the other; value: first normal force (N)
   retractionMore = 47,      ///< the assistant was asked for more; subject: structure; value: how far it now goes (m)
   retractionLess = 48,      ///< the same for less
+  fatTorn = 49,             ///< a string of fat tore; subject: structure; value: its volume (m^3)
 };
 
 /// Subject of smoke from connective tissue 0.

@@ -10,6 +10,6 @@ namespace calot {
 inline constexpr std::uint32_t simulationVersion = 19;
 
 /// Version of StepResult, and so of /observables.
-inline constexpr std::uint32_t stepResultVersion = 6;
+inline constexpr std::uint32_t stepResultVersion = 7;
 
 }  // namespace calot

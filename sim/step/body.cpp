@@ -78,6 +78,12 @@ FatStroke FatMotion::stroke(State& state, std::span<const SweptCapsule> tool, do
   return done;
 }
 
+FatStroke FatMotion::tear(State& state) {
+  const FatStroke done = fat_.tear(state.fat[index_]);
+  changed_ = changed_ || done.changed;
+  return done;
+}
+
 bool FatSkin::follow(const State& /*state*/) {
   const bool changed = motion_.changed_;
   motion_.changed_ = false;
@@ -134,9 +140,8 @@ bool TubeSkin::follow(const State& state) {
   BeamState rest = restState(beams_);
   rest.parting = beams.parting;
   rest.partedAt = beams.partedAt;
-  std::vector<Vec3> vertex;
-  tube_.positions(rest, vertex);
-  contact_.emplace(vertex, tube_.triangles());
+  tube_.positions(rest, rest_);
+  contact_.emplace(rest_, tube_.triangles());
   return true;
 }
 

@@ -91,6 +91,8 @@ class Skin {
   virtual void place(const State& state, std::vector<Vec3>& out) const = 0;
   /// True if this vertex exists now.
   [[nodiscard]] virtual bool exists(int /*node*/) const { return true; }
+  /// A vertex in the reference configuration (m).
+  [[nodiscard]] virtual Vec3 rest(int node) const = 0;
   /// A place on the skin in terms of the body's nodes.
   [[nodiscard]] virtual SolidSolver::Impulse influence(const std::array<int, 3>& corner, const Vec3& weight) const = 0;
 };
@@ -175,6 +177,7 @@ class OrganSkin final : public Skin {
   bool follow(const State& state) override;
   [[nodiscard]] const ContactSurface& surface() const override { return model_.surface; }
   void place(const State& state, std::vector<Vec3>& out) const override;
+  [[nodiscard]] Vec3 rest(int node) const override { return model_.skin[static_cast<std::size_t>(node)]; }
   [[nodiscard]] SolidSolver::Impulse influence(const std::array<int, 3>& corner, const Vec3& weight) const override;
 
  private:
@@ -192,6 +195,12 @@ class FatMotion final : public SolidBody {
   /// Adopts a replaced State; stores the tissue's position for the strokes of this step.
   void beginStep(const State& state);
   FatStroke stroke(State& state, std::span<const SweptCapsule> tool, double rise);
+  /// FatBody::tear()
+  FatStroke tear(State& state);
+  /// FatBody::joins()
+  [[nodiscard]] bool joins(std::span<const std::uint32_t> thing, std::uint32_t things) {
+    return fat_.joins(thing, things);
+  }
   [[nodiscard]] const FatBody& fat() const { return fat_; }
   [[nodiscard]] Mat3 rotation(const State& state, int node) const override {
     return fat_.rotation(state.fat[index_], node);
@@ -215,6 +224,7 @@ class FatSkin final : public Skin {
   bool follow(const State& state) override;
   [[nodiscard]] const ContactSurface& surface() const override { return motion_.fat_.contact().surface(); }
   void place(const State& state, std::vector<Vec3>& out) const override;
+  [[nodiscard]] Vec3 rest(int node) const override { return motion_.fat_.contact().rest(node); }
   [[nodiscard]] SolidSolver::Impulse influence(const std::array<int, 3>& corner, const Vec3& weight) const override;
   [[nodiscard]] bool exists(int node) const override { return motion_.fat_.contact().exists(node); }
 
@@ -268,12 +278,14 @@ class TubeSkin final : public Skin {
   bool follow(const State& state) override;
   [[nodiscard]] const ContactSurface& surface() const override { return *contact_; }
   void place(const State& state, std::vector<Vec3>& out) const override;
+  [[nodiscard]] Vec3 rest(int node) const override { return rest_[static_cast<std::size_t>(node)]; }
   [[nodiscard]] SolidSolver::Impulse influence(const std::array<int, 3>& corner, const Vec3& weight) const override;
 
  private:
   const BeamModel& beams_;
   std::size_t tree_;
   TubeSurface tube_;
+  std::vector<Vec3> rest_;
   std::optional<ContactSurface> contact_;
 };
 

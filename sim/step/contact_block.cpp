@@ -71,11 +71,6 @@ void addNodalForces(std::span<const ContactBlock> blocks, std::size_t body, std:
 
 namespace {
 
-/// Size of the patch over which a node of the lattice spreads a force, in edges of its cells. 0.225 gives the
-/// compliance of the meshes of a block of 1,100 to 20,000 tetrahedra, less that of the half-space outside the cells, at
-/// vertices, edges and faces within 5 %; this is best down to 6 mm (docs/explanation/accuracy.md). Larger: softer
-/// contact on coarse meshes.
-constexpr double nodeSpread = 0.235;
 /// Down to here a dimple follows the half-space; deeper, tissue counts as pressed together, and the dimple goes at most
 /// `lastDepth` further (m). Larger: thin instruments sink through organs; smaller: deep presses are too firm. Assumed.
 constexpr double elasticDepth = 0.006;
@@ -89,13 +84,12 @@ std::uint64_t dimpleKey(std::size_t structure, std::size_t piece) {
 
 /// w = h / (h + beta): share of the elastic dimple in that of a step.
 double newShare(const Model& model, std::size_t structure, double step) {
-  const OrganModel& organ = model.organs()[model.structures()[structure].index];
-  return step / (step + organ.solid.material().stiffnessDamping);
+  return step / (step + model.structures()[structure].soft->material().stiffnessDamping);
 }
 
 /// E* = E / (1 - nu^2) (Pa).
-double contactModulus(const OrganModel& organ) {
-  const LameConstants& lame = organ.solid.material().lame;
+double contactModulus(const SolidModel& soft) {
+  const LameConstants& lame = soft.material().lame;
   return 4.0 * lame.mu * (lame.lambda + lame.mu) / (lame.lambda + 2.0 * lame.mu);
 }
 
@@ -117,7 +111,9 @@ void evaluate(std::span<const double> lambda, bool derivative, ContactSystem& co
     contact.dimples[block.press()->dimple].force += block.press()->share * lambda[block.row];
   }
   for (Dimple& dimple : contact.dimples) {
-    dimple.end = roundEnd(notNegative(dimple.force), dimple.radius, dimple.modulus);
+    const double share = dimple.radius / dimple.size;
+    dimple.end = roundEnd(share * notNegative(dimple.force), dimple.radius, dimple.modulus);
+    dimple.end.slope *= share;
   }
   for (std::size_t i = 0; i < n; ++i) {
     const ContactBlock& a = contact.blocks[contact.pressed[i]];
@@ -168,17 +164,18 @@ void findWays(ContactSystem& contact) {
 
 }  // namespace
 
-Vec3 dimpleOf(const HandState& hand, std::size_t structure, std::size_t piece) {
+Vec3 dimpleOf(const TouchState& touches, std::size_t structure, std::size_t piece) {
   const std::uint64_t key = dimpleKey(structure, piece);
-  for (std::size_t k = 0; k < hand.dimpleKey.size(); ++k) {
-    if (hand.dimpleKey[k] == key) return hand.dimple[k];
+  for (std::size_t k = 0; k < touches.dimpleKey.size(); ++k) {
+    if (touches.dimpleKey[k] == key) return touches.dimple[k];
   }
   return Vec3::Zero();
 }
 
-double meshSpread(const OrganModel& organ, const SolidSolver::Impulse& place, const SolidSolver::Impulse& force) {
-  const double spread = nodeSpread * organ.cellSize;
-  const std::vector<Vec3>& rest = organ.solid.rest();
+double meshSpread(const StructureModel& structure, const SolidSolver::Impulse& place,
+                  const SolidSolver::Impulse& force) {
+  const double spread = structure.nodeSpread;
+  const std::vector<Vec3>& rest = structure.soft->rest();
   double inverse = 0.0;
   for (std::size_t a = 0; a < place.count; ++a) {
     const Vec3& at = rest[static_cast<std::size_t>(place.node[a])];
@@ -208,9 +205,10 @@ void findDimples(const Model& model, const State& state, double step, ContactSys
     dimple.hand = hand;
     dimple.key = key;
     dimple.radius = press->radius;
-    dimple.modulus = contactModulus(model.organs()[model.structures()[touch.structure].index]);
+    dimple.size = press->size;
+    dimple.modulus = contactModulus(*model.structures()[touch.structure].soft);
     dimple.newShare = newShare(model, touch.structure, step);
-    dimple.before = dimpleOf(state.hand[hand], touch.structure, press->piece);
+    dimple.before = dimpleOf(state.hand[hand].touches, touch.structure, press->piece);
     contact.dimples.push_back(dimple);
   }
   findWays(contact);
@@ -225,7 +223,7 @@ void findDimples(const Model& model, const State& state, double step, ContactSys
       if (one.tool.hand != two.tool.hand || one.structure != two.structure) continue;
       const double modulus = contact.dimples[a.dimple].modulus;
       const double squared = (a.foot - b.foot).squaredNorm();
-      const double tool = 0.5 * (flatEndSpread(a.radius) + flatEndSpread(b.radius));
+      const double tool = 0.5 * (flatEndSpread(a.size) + flatEndSpread(b.size));
       const double mesh = std::max(tool, 0.5 * (a.spread + b.spread));
       const double k = a.share * b.share * contact.dimples[a.dimple].way.dot(contact.dimples[b.dimple].way) *
                        (spreadCompliance(squared, tool, modulus) - spreadCompliance(squared, mesh, modulus));
@@ -240,20 +238,20 @@ void evaluateDimpleGaps(std::span<const double> lambda, ContactSystem& contact) 
 
 void storeDimples(const Model& model, double step, const ContactSystem& contact, State& state) {
   for (std::size_t h = 0; h < handCount; ++h) {
-    HandState& hand = state.hand[h];
+    TouchState& touches = state.hand[h].touches;
     // An unloaded dimple fades.
     std::size_t kept = 0;
-    for (std::size_t k = 0; k < hand.dimpleKey.size(); ++k) {
-      const std::uint64_t key = hand.dimpleKey[k];
+    for (std::size_t k = 0; k < touches.dimpleKey.size(); ++k) {
+      const std::uint64_t key = touches.dimpleKey[k];
       const bool pressed = std::any_of(contact.dimples.begin(), contact.dimples.end(),
                                        [&](const Dimple& d) { return d.hand == h && d.key == key; });
-      const Vec3 left = (1.0 - newShare(model, key >> 8U, step)) * hand.dimple[k];
+      const Vec3 left = (1.0 - newShare(model, key >> 8U, step)) * touches.dimple[k];
       if (pressed || left.norm() < forgottenDepth) continue;
-      hand.dimpleKey[kept] = key;
-      hand.dimple[kept++] = left;
+      touches.dimpleKey[kept] = key;
+      touches.dimple[kept++] = left;
     }
-    hand.dimpleKey.resize(kept);
-    hand.dimple.resize(kept);
+    touches.dimpleKey.resize(kept);
+    touches.dimple.resize(kept);
   }
   for (std::size_t d = 0; d < contact.dimples.size(); ++d) {
     const Dimple& dimple = contact.dimples[d];
@@ -266,8 +264,8 @@ void storeDimples(const Model& model, double step, const ContactSystem& contact,
     const Vec3 now = dimple.force > smallForce ? Vec3(work / dimple.force * dimple.way)
                                                : Vec3((1.0 - dimple.newShare) * dimple.before);
     if (now.norm() < forgottenDepth) continue;
-    state.hand[dimple.hand].dimpleKey.push_back(dimple.key);
-    state.hand[dimple.hand].dimple.push_back(now);
+    state.hand[dimple.hand].touches.dimpleKey.push_back(dimple.key);
+    state.hand[dimple.hand].touches.dimple.push_back(now);
   }
 }
 

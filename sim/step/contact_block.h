@@ -34,9 +34,10 @@ struct PushedTool {
   std::array<ToolRow, 3> row{ToolRow::Zero(), ToolRow::Zero(), ToolRow::Zero()};
 };
 
-/// How a capsule of an instrument presses on an organ (findDimples()).
+/// How a capsule of an instrument presses on soft tissue (findDimples()).
 struct Press {
   double radius = 0.0;         ///< of the capsule (m)
+  double size = 0.0;           ///< radius of a round end as large as what of the capsule touches (m)
   std::size_t piece = 0;       ///< its number
   Vec3 foot = Vec3::Zero();    ///< the place on the skin (m)
   Vec3 smooth = Vec3::Zero();  ///< the skin's normal there, without its edges
@@ -52,7 +53,7 @@ struct ToolOnTissue {
   PushedTool tool;
   PushedBody tissue;
   std::size_t structure = 0;
-  std::optional<Press> press;  ///< of an organ, where the scene has dimples
+  std::optional<Press> press;  ///< of soft tissue, where the scene has dimples
 };
 
 /// An instrument, pushed along, that holds tissue.
@@ -111,12 +112,13 @@ struct InstrumentTravel {
 };
 using InstrumentTravels = std::array<InstrumentTravel, handCount>;
 
-/// Pressure of one capsule of an instrument on an organ (findDimples()).
+/// Pressure of one capsule of an instrument on soft tissue (findDimples()).
 struct Dimple {
   std::size_t hand = 0;
   std::uint64_t key = 0;       ///< structure and capsule
   double radius = 0.0;         ///< of the capsule (m)
-  double modulus = 0.0;        ///< E* of the organ (Pa)
+  double size = 0.0;           ///< Press::size (m)
+  double modulus = 0.0;        ///< E* of the tissue (Pa)
   double newShare = 1.0;       ///< w, of the elastic dimple in that of a step
   Vec3 before = Vec3::Zero();  ///< of the last step (m)
   Vec3 way = Vec3::Zero();     ///< in which it gives way: the skin's normal, without its edges
@@ -198,11 +200,12 @@ class StepLog {
 
 /// Depth by which a structure's skin gives way to a hand's capsule beyond what the mesh resolves (m): detection takes
 /// the capsule as much farther out.
-Vec3 dimpleOf(const HandState& hand, std::size_t structure, std::size_t piece);
+Vec3 dimpleOf(const TouchState& touches, std::size_t structure, std::size_t piece);
 
-/// Size of the patch over which an organ's mesh spreads a force that its nodes take, as seen from a place on its skin
-/// (m).
-double meshSpread(const OrganModel& organ, const SolidSolver::Impulse& place, const SolidSolver::Impulse& force);
+/// Size of the patch over which a structure's mesh spreads a force that its nodes take, as seen from a place on its
+/// skin (m).
+double meshSpread(const StructureModel& structure, const SolidSolver::Impulse& place,
+                  const SolidSolver::Impulse& force);
 
 /// Collects the dimples of the blocks and what does not change within a step: `contact.dimples`,
 /// `contact.sharedDimple`.

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "sim/math/floating_point.h"
@@ -19,13 +20,56 @@ namespace {
 constexpr unsigned structureShift = 52;
 static_assert(maxStructures <= std::size_t{1} << (56U - structureShift));
 
+/// A capsule that only just touches has flattened so far, in its radii. Larger: tilted bars are firmer at first touch.
+/// Assumed.
+constexpr double leastDepth = 0.1;
+
+/// Radius of a round end whose area is that of a capsule's side, as long as what touches of it: pressed in by `depth`,
+/// an axis at the angle theta to the skin touches over some 2 depth / tan(theta), but not beyond its ends.
+double pressedSize(const Capsule& capsule, const Vec3& normal, double depth) {
+  const Vec3 axis = capsule.p1 - capsule.p0;
+  const double length = axis.norm();
+  const double up = std::abs(axis.dot(normal));
+  const double flat = std::sqrt(notNegative(length * length - up * up));
+  const double reach = 2.0 * std::max(depth, leastDepth * capsule.radius);
+  if (!(flat > 0.0)) return capsule.radius;
+  const double touching = flat * reach / (reach + up);
+  return std::sqrt(capsule.radius * (capsule.radius + 2.0 / std::numbers::pi * touching));
+}
+
+/// A place in a triangle. @param at of a node (m)
+template <class At>
+Vec3 pointAt(const At& at, const std::array<int, 3>& node, const Vec3& weight) {
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t k = 0; k < 3; ++k) sum += weight[static_cast<int>(k)] * at(node[k]);
+  return sum;
+}
+
+/// The skin's normal at a place in a triangle, as it varies between those at the corners (Phong 1975); zero where these
+/// cancel. @param at of a node (m)
+template <class At>
+Vec3 smoothNormal(const ContactSurface& mesh, const At& at, const std::array<int, 3>& node, const Vec3& weight) {
+  Vec3 sum = Vec3::Zero();
+  ContactSurface::Fan fan;
+  for (int k = 0; k < 3; ++k) {
+    Vec3 corner = Vec3::Zero();
+    for (const std::uint32_t t : mesh.trianglesAround(node[static_cast<std::size_t>(k)], fan)) {
+      const Index3& c = mesh.triangles()[t];
+      const Vec3 a = at(c[0]);
+      corner += (at(c[1]) - a).cross(at(c[2]) - a);
+    }
+    if (corner.squaredNorm() > 0.0) sum += weight[k] * corner.normalized();
+  }
+  return sum.norm() > 0.1 ? Vec3(sum.normalized()) : Vec3(Vec3::Zero());
+}
+
 }  // namespace
 
 void ContactDetection::addInstrumentBlock(const Surfaces& surfaces, const State& state, std::size_t hand,
                                           std::size_t structure, const SurfaceContact& contact,
                                           std::vector<ContactBlock>& blocks) const {
   const StructureModel& touched = model_.structures()[structure];
-  const Pose tool = simulatedPose(state.hand[hand]);
+  const Pose tool = simulatedPose(state.hand[hand].instrument);
   ContactBlock block;
   block.kind = touched.friction > 0.0 ? BlockKind::frictional : BlockKind::unilateral;
   block.limit = touched.friction;
@@ -38,24 +82,24 @@ void ContactDetection::addInstrumentBlock(const Surfaces& surfaces, const State&
   const Mat3 frame = alongAxis(contact.normal, tool.orientation.toRotationMatrix().col(2)).toRotationMatrix();
   block.direction = {contact.normal, frame.col(0), frame.col(1)};
   block.gap = {contact.gap, 0.0, 0.0};
-  const Vec3 onAxis = contact.onAxis - dimpleOf(state.hand[hand], structure, contact.key >> 56U);
+  const Vec3 onAxis = contact.onAxis - dimpleOf(state.hand[hand].touches, structure, contact.key >> 56U);
   for (std::size_t k = 0; k < block.rows(); ++k) {
     touch.tool.row[k] = toolRow(model_.scene().hands[hand].port, tool, onAxis, block.direction[k]);
   }
-  if (touched.kind == tissueId<OrganTissue> && model_.scene().solver.dimples) {
-    const OrganModel& organ = model_.organs()[touched.index];
-    const std::vector<Vec3>& points = surfaces.points(structure);
+  if (touched.soft != nullptr && model_.scene().solver.dimples) {
+    const Skin& skin = surfaces.skin(structure);
+    const auto now = [&](int node) { return surfaces.points(structure)[static_cast<std::size_t>(node)]; };
     Press& press = touch.press.emplace();
     press.piece = contact.key >> 56U;
-    press.radius = instrument_[hand].capsule[press.piece].radius;
-    for (std::size_t k = 0; k < 3; ++k) {
-      press.foot += contact.weight[static_cast<int>(k)] * points[static_cast<std::size_t>(contact.node[k])];
-    }
-    press.smooth = smoothNormal(organ.surface, points, contact.node, contact.weight);
+    const Capsule& capsule = instrument_[hand].capsule[press.piece];
+    press.radius = capsule.radius;
+    press.foot = pointAt(now, contact.node, contact.weight);
+    press.smooth = smoothNormal(skin.surface(), now, contact.node, contact.weight);
     if (press.smooth.isZero()) press.smooth = contact.normal;
+    press.size = pressedSize(capsule, press.smooth, dimpleOf(state.hand[hand].touches, structure, press.piece).norm());
     const SolidSolver::Impulse centre = touch.tissue.place;
-    touch.tissue.place = pressedPatch(organ, surfaces.skin(structure), contact.node, contact.weight, press.radius);
-    press.spread = meshSpread(organ, centre, touch.tissue.place);
+    touch.tissue.place = pressedPatch(skin, contact.node, contact.weight, press.radius);
+    press.spread = meshSpread(touched, centre, touch.tissue.place);
   }
   block.of = std::move(touch);
   blocks.push_back(std::move(block));
@@ -65,10 +109,7 @@ void ContactDetection::findInstrumentContacts(const Surfaces& surfaces, const Bo
                                               const InstrumentTravels& travels, const State& state,
                                               std::vector<ContactBlock>& blocks) {
   const std::size_t structures = surfaces.size();
-  for (std::size_t h = 0; h < handCount; ++h) {
-    const HandState& hand = state.hand[h];
-    instrument_[h].place(model_.scene().hands[h], hand.instrument, simulatedPose(hand), hand.jaw);
-  }
+  for (std::size_t h = 0; h < handCount; ++h) instrument_[h].place(model_.scene().hands[h], state.hand[h].instrument);
   touching_.resize(handCount * structures);
   executor_.run(touching_.size(), [&](std::size_t task) {
     const FloatingPointScope scope;
@@ -163,14 +204,9 @@ struct SkinPoint {
   Vec3 weight = Vec3::Zero();
 };
 
-Vec3 pointAt(const std::vector<Vec3>& points, const std::array<int, 3>& node, const Vec3& weight) {
-  Vec3 sum = Vec3::Zero();
-  for (std::size_t k = 0; k < 3; ++k) sum += weight[static_cast<int>(k)] * points[static_cast<std::size_t>(node[k])];
-  return sum;
-}
-
 std::size_t triangleOf(const ContactSurface& mesh, const std::array<int, 3>& node) {
-  const std::span<const std::uint32_t> around = mesh.trianglesAround(node[0]);
+  ContactSurface::Fan fan;
+  const std::span<const std::uint32_t> around = mesh.trianglesAround(node[0], fan);
   const auto same = [&](std::uint32_t t) {
     const Index3& at = mesh.triangles()[t];
     return at[0] == node[0] && at[1] == node[1] && at[2] == node[2];
@@ -181,15 +217,15 @@ std::size_t triangleOf(const ContactSurface& mesh, const std::array<int, 3>& nod
 
 /// The skin's point below or above another, from triangle to triangle; on the last one's border where the skin turns
 /// away from it.
-SkinPoint walkTo(const Vec3& target, const ContactSurface& mesh, const std::vector<Vec3>& points,
-                 const SkinPoint& start) {
+SkinPoint walkTo(const Vec3& target, const Skin& skin, const SkinPoint& start) {
+  const ContactSurface& mesh = skin.surface();
   SkinPoint at = start;
   std::size_t before = at.triangle;
   for (int step = 0;; ++step) {
     const Index3& t = mesh.triangles()[at.triangle];
-    const Vec3& a = points[static_cast<std::size_t>(t[0])];
-    const Vec3 ab = points[static_cast<std::size_t>(t[1])] - a;
-    const Vec3 ac = points[static_cast<std::size_t>(t[2])] - a;
+    const Vec3 a = skin.rest(t[0]);
+    const Vec3 ab = skin.rest(t[1]) - a;
+    const Vec3 ac = skin.rest(t[2]) - a;
     const Vec3 normal = ab.cross(ac);
     const double area = normal.squaredNorm();
     if (!(area > 0.0)) return start;
@@ -232,33 +268,18 @@ bool addPlace(SolidSolver::Impulse& place, const SolidSolver::Impulse& more) {
 
 }  // namespace
 
-Vec3 smoothNormal(const ContactSurface& mesh, const std::vector<Vec3>& points, const std::array<int, 3>& node,
-                  const Vec3& weight) {
-  Vec3 sum = Vec3::Zero();
-  for (int k = 0; k < 3; ++k) {
-    Vec3 corner = Vec3::Zero();
-    for (const std::uint32_t t : mesh.trianglesAround(node[static_cast<std::size_t>(k)])) {
-      const Index3& at = mesh.triangles()[t];
-      const Vec3& a = points[static_cast<std::size_t>(at[0])];
-      corner += (points[static_cast<std::size_t>(at[1])] - a).cross(points[static_cast<std::size_t>(at[2])] - a);
-    }
-    if (corner.squaredNorm() > 0.0) sum += weight[k] * corner.normalized();
-  }
-  return sum.norm() > 0.1 ? Vec3(sum.normalized()) : Vec3(Vec3::Zero());
-}
-
-SolidSolver::Impulse pressedPatch(const OrganModel& organ, const Skin& skin, const std::array<int, 3>& node,
-                                  const Vec3& weight, double radius) {
-  const Vec3 centre = pointAt(organ.skin, node, weight);
-  const std::array<Vec3, 2> along = alongPlane(smoothNormal(organ.surface, organ.skin, node, weight));
-  const SkinPoint start{triangleOf(organ.surface, node), weight};
+SolidSolver::Impulse pressedPatch(const Skin& skin, const std::array<int, 3>& node, const Vec3& weight, double radius) {
+  const auto rest = [&](int n) { return skin.rest(n); };
+  const Vec3 centre = pointAt(rest, node, weight);
+  const std::array<Vec3, 2> along = alongPlane(smoothNormal(skin.surface(), rest, node, weight));
+  const SkinPoint start{triangleOf(skin.surface(), node), weight};
   SolidSolver::Impulse patch = skin.influence(node, weight);
   for (std::size_t k = 0; k < patch.count; ++k) patch.weight[k] *= centrePoints;
   double points = centrePoints;
   for (const std::array<double, 2>& p : ringPoint) {
     const Vec3 target = centre + ringRadius * radius * (p[0] * along[0] + p[1] * along[1]);
-    const SkinPoint at = walkTo(target, organ.surface, organ.skin, start);
-    const Index3& t = organ.surface.triangles()[at.triangle];
+    const SkinPoint at = walkTo(target, skin, start);
+    const Index3& t = skin.surface().triangles()[at.triangle];
     if (addPlace(patch, skin.influence({t[0], t[1], t[2]}, at.weight))) points += 1.0;
   }
   for (std::size_t k = 0; k < patch.count; ++k) patch.weight[k] /= points;

@@ -236,11 +236,11 @@ Vec3 lastForce(const State& state, const ContactBlock& block) {
       force = state.tissue.force[static_cast<std::size_t>(found - keys.begin())] * block.direction[0];
     }
   } else if (const auto* grasp = block.as<Grasped>()) {
-    force = state.hand[grasp->tool.hand].graspForce[grasp->anchor];
+    force = state.hand[grasp->tool.hand].grasp.force[grasp->anchor];
   } else {
-    const HandState& hand = state.hand[keeperOf(block)];
-    for (std::size_t k = 0; k < hand.contactKey.size(); ++k) {
-      if (hand.contactKey[k] == block.key) force = hand.contactForce[k];
+    const TouchState& touches = state.hand[keeperOf(block)].touches;
+    for (std::size_t k = 0; k < touches.key.size(); ++k) {
+      if (touches.key[k] == block.key) force = touches.force[k];
     }
   }
   return force;
@@ -261,8 +261,8 @@ void loadWarmStart(const State& state, ContactSystem& contact) {
 
 void storeWarmStart(const ContactSystem& contact, State& state) {
   for (HandState& hand : state.hand) {
-    hand.contactKey.clear();
-    hand.contactForce.clear();
+    hand.touches.key.clear();
+    hand.touches.force.clear();
   }
   state.tissue.key.clear();
   state.tissue.force.clear();
@@ -273,11 +273,11 @@ void storeWarmStart(const ContactSystem& contact, State& state) {
       state.tissue.key.push_back(block.key);
       state.tissue.force.push_back(contact.lambda[block.row]);
     } else if (const auto* grasp = block.as<Grasped>()) {
-      state.hand[grasp->tool.hand].graspForce[grasp->anchor] = force;
+      state.hand[grasp->tool.hand].grasp.force[grasp->anchor] = force;
     } else {
-      HandState& hand = state.hand[keeperOf(block)];
-      hand.contactKey.push_back(block.key);
-      hand.contactForce.push_back(force);
+      TouchState& touches = state.hand[keeperOf(block)].touches;
+      touches.key.push_back(block.key);
+      touches.force.push_back(force);
     }
   }
 }

@@ -230,7 +230,7 @@ void reduceToHand(const Bodies& bodies, const State& state, const InstrumentTrav
       set.free.push_back(free);
       double rate = -block.direction[k].dot(velocity);
       if (block.as<ToolOnTool>() != nullptr) {
-        const Vec3 gone = state.hand[1 - hand].simulatedPosition - travels[1 - hand].before.position;
+        const Vec3 gone = state.hand[1 - hand].instrument.position - travels[1 - hand].before.position;
         rate += (*block.toolOf(1 - hand))[k].head<3>().dot(gone) / bodies.step();
       }
       set.rate.push_back(rate);
@@ -258,7 +258,7 @@ void ContactResponse::integrateTissue(Surfaces& surfaces, Bodies& bodies, const 
 /// The instrument goes where the virtual coupling and the contact forces are in balance.
 void ContactResponse::integrateInstrument(std::size_t hand, const InstrumentTravel& travel,
                                           const ContactSystem& contact, State& state, HandResult& result) const {
-  HandState& s = state.hand[hand];
+  InstrumentState& instrument = state.hand[hand].instrument;
   const HandDescription& description = model_.scene().hands[hand];
   ToolRow push = ToolRow::Zero();
   for (const ContactBlock& block : contact.blocks) {
@@ -271,9 +271,9 @@ void ContactResponse::integrateInstrument(std::size_t hand, const InstrumentTrav
   if (size > maxSlide) way *= maxSlide / size;
   const double roll =
       std::clamp(travel.stretch[3] + push[3] / description.rollStiffness, -maxRollStretch, maxRollStretch);
-  const Pose pose = movedTool(description.port, simulatedPose(s), way, roll);
-  s.simulatedPosition = pose.position;
-  s.simulatedOrientation = pose.orientation;
+  const Pose pose = movedTool(description.port, simulatedPose(instrument), way, roll);
+  instrument.position = pose.position;
+  instrument.orientation = pose.orientation;
   result.contactForce = push.head<3>();
   result.contactTorque = push[3];
 }

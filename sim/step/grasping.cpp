@@ -27,8 +27,8 @@ constexpr double lostDistance = 0.005;  ///< a point that slipped so far out of 
 constexpr std::array<double, 3> stations{1.0, 0.65, 0.3};
 
 double gripOf(const HandState& hand) {
-  return std::clamp(1.0 - hand.realJaw / instrumentOf(hand.instrument).jaw.closed, weakestGrip, 1.0) *
-         ((hand.buttons & button::lock) != 0 ? ratchetGrip : 1.0);
+  return std::clamp(1.0 - hand.input.jaw / instrumentOf(hand.instrument.kind).jaw.closed, weakestGrip, 1.0) *
+         ((hand.input.buttons & button::lock) != 0 ? ratchetGrip : 1.0);
 }
 
 Vec3 skinPoint(const std::vector<Vec3>& skin, const std::array<std::uint32_t, 3>& node, const Vec3& weight) {
@@ -50,19 +50,19 @@ Vec3 nearestIn(const SmallPolygon& polygon, const Vec3& p, double& least) {
 }
 
 /// Keeps the first `count` grasped points.
-void resizeGrasp(HandState& hand, std::size_t count) {
-  hand.graspNode.resize(count);
-  hand.graspWeight.resize(count);
-  hand.graspForce.resize(count);
-  hand.graspPlace.resize(count);
+void resizeGrasp(GraspState& grasp, std::size_t count) {
+  grasp.node.resize(count);
+  grasp.weight.resize(count);
+  grasp.force.resize(count);
+  grasp.place.resize(count);
 }
 
 /// Moves grasped point `from` to `to`. @pre to <= from
-void moveGrasp(HandState& hand, std::size_t from, std::size_t to) {
-  hand.graspNode[to] = hand.graspNode[from];
-  hand.graspWeight[to] = hand.graspWeight[from];
-  hand.graspForce[to] = hand.graspForce[from];
-  hand.graspPlace[to] = hand.graspPlace[from];
+void moveGrasp(GraspState& grasp, std::size_t from, std::size_t to) {
+  grasp.node[to] = grasp.node[from];
+  grasp.weight[to] = grasp.weight[from];
+  grasp.force[to] = grasp.force[from];
+  grasp.place[to] = grasp.place[from];
 }
 
 }  // namespace
@@ -70,37 +70,37 @@ void moveGrasp(HandState& hand, std::size_t from, std::size_t to) {
 void Grasping::end(const Surfaces& surfaces, std::size_t hand, EventKind why, double value, State& state, StepLog& log,
                    ContactResult& contact) {
   HandState& h = state.hand[hand];
-  log.emit(why, hand, h.grasped, h.simulatedPosition, value);
-  h.grasped = noStructure;
-  h.slipping = false;
-  resizeGrasp(h, 0);
+  log.emit(why, hand, h.grasp.structure, h.instrument.position, value);
+  h.grasp.structure = noStructure;
+  h.grasp.slipping = false;
+  resizeGrasp(h.grasp, 0);
   // Jaws may have sunk into what they held.
   resolver_.run(surfaces, hand, state, contact);
 }
 
 void Grasping::removeStaleGrasps(const Surfaces& surfaces, std::size_t hand, State& state, StepLog& log,
                                  ContactResult& contact) {
-  HandState& h = state.hand[hand];
-  if (h.grasped == noStructure) return;
-  const Skin& held = surfaces.skin(h.grasped);
+  GraspState& grasp = state.hand[hand].grasp;
+  if (grasp.structure == noStructure) return;
+  const Skin& held = surfaces.skin(grasp.structure);
   std::size_t kept = 0;
-  for (std::size_t a = 0; a < h.graspNode.size(); ++a) {
+  for (std::size_t a = 0; a < grasp.node.size(); ++a) {
     const auto exists = [&](std::uint32_t node) { return held.exists(static_cast<int>(node)); };
-    if (std::all_of(h.graspNode[a].begin(), h.graspNode[a].end(), exists)) moveGrasp(h, a, kept++);
+    if (std::all_of(grasp.node[a].begin(), grasp.node[a].end(), exists)) moveGrasp(grasp, a, kept++);
   }
-  resizeGrasp(h, kept);
+  resizeGrasp(grasp, kept);
   if (kept > 0) return;
-  end(surfaces, hand, EventKind::graspEnd, heldFor(h, state), state, log, contact);
+  end(surfaces, hand, EventKind::graspEnd, heldFor(grasp, state), state, log, contact);
 }
 
 void Grasping::release(const Surfaces& surfaces, State& state, StepLog& log, ContactResult& contact) {
   for (std::size_t hand = 0; hand < handCount; ++hand) removeStaleGrasps(surfaces, hand, state, log, contact);
   for (std::size_t hand = 0; hand < handCount; ++hand) {
     const HandState& h = state.hand[hand];
-    const InstrumentDefinition& instrument = instrumentOf(h.instrument);
-    const bool holds = instrument.action == InstrumentAction::grasp && h.realJaw <= instrument.jaw.opened;
-    if (h.grasped == noStructure || holds) continue;
-    end(surfaces, hand, EventKind::graspEnd, heldFor(h, state), state, log, contact);
+    const InstrumentDefinition& instrument = instrumentOf(h.instrument.kind);
+    const bool holds = instrument.action == InstrumentAction::grasp && h.input.jaw <= instrument.jaw.opened;
+    if (h.grasp.structure == noStructure || holds) continue;
+    end(surfaces, hand, EventKind::graspEnd, heldFor(h.grasp, state), state, log, contact);
   }
 }
 
@@ -110,12 +110,12 @@ void Grasping::close(const Surfaces& surfaces, State& state, StepLog& log) const
 
 void Grasping::closeOne(const Surfaces& surfaces, std::size_t hand, State& state, StepLog& log) const {
   HandState& h = state.hand[hand];
-  const InstrumentDefinition& instrument = instrumentOf(h.instrument);
-  if (h.realJaw > instrument.jaw.opened) h.jawsOpened = true;
+  const InstrumentDefinition& instrument = instrumentOf(h.instrument.kind);
+  if (h.input.jaw > instrument.jaw.opened) h.instrument.jawsOpened = true;
   if (instrument.action != InstrumentAction::grasp) return;
-  if (h.realJaw > instrument.jaw.closed || !h.jawsOpened) return;
-  h.jawsOpened = false;
-  const Pose tool = simulatedPose(h);
+  if (h.input.jaw > instrument.jaw.closed || !h.instrument.jawsOpened) return;
+  h.instrument.jawsOpened = false;
+  const Pose tool = simulatedPose(h.instrument);
   const Quat toJaws = tool.orientation.conjugate();
   const double shaftRadius = model_.scene().hands[hand].shaftRadius;
   const auto [from, to] = graspLine(instrument, shaftRadius);
@@ -154,46 +154,47 @@ void Grasping::closeOne(const Surfaces& surfaces, std::size_t hand, State& state
     if (near) continue;
     structure = nearestStructure;
     held.push_back(best.point);
-    h.graspNode.push_back({static_cast<std::uint32_t>(triangle[0]), static_cast<std::uint32_t>(triangle[1]),
-                           static_cast<std::uint32_t>(triangle[2])});
-    h.graspWeight.push_back(best.barycentric);
-    h.graspPlace.push_back(tool.orientation.conjugate() * (best.point - tool.position));
-    h.graspForce.push_back(Vec3::Zero());
+    h.grasp.node.push_back({static_cast<std::uint32_t>(triangle[0]), static_cast<std::uint32_t>(triangle[1]),
+                            static_cast<std::uint32_t>(triangle[2])});
+    h.grasp.weight.push_back(best.barycentric);
+    h.grasp.place.push_back(tool.orientation.conjugate() * (best.point - tool.position));
+    h.grasp.force.push_back(Vec3::Zero());
   }
   if (held.empty()) return;
-  h.grasped = static_cast<std::uint32_t>(*structure);
-  h.graspSince = state.clock.step;
-  h.slipping = false;
-  log.emit(EventKind::graspBegin, hand, *structure, h.simulatedPosition, h.realJaw);
+  h.grasp.structure = static_cast<std::uint32_t>(*structure);
+  h.grasp.since = state.clock.step;
+  h.grasp.slipping = false;
+  log.emit(EventKind::graspBegin, hand, *structure, h.instrument.position, h.input.jaw);
 }
 
 void Grasping::addBlocks(const Surfaces& surfaces, const State& state, std::vector<ContactBlock>& blocks) const {
   for (std::size_t hand = 0; hand < handCount; ++hand) {
     const HandState& h = state.hand[hand];
-    if (h.grasped == noStructure) continue;
+    const GraspState& grasp = h.grasp;
+    if (grasp.structure == noStructure) continue;
     const HandDescription& description = model_.scene().hands[hand];
-    const Pose tool = simulatedPose(h);
-    const double each = description.slipForce * gripOf(h) / static_cast<double>(h.graspNode.size());
-    for (std::size_t a = 0; a < h.graspNode.size(); ++a) {
-      const Vec3 onSkin = skinPoint(surfaces.points(h.grasped), h.graspNode[a], h.graspWeight[a]);
-      const Vec3 inJaws = tool.position + tool.orientation * h.graspPlace[a];
+    const Pose tool = simulatedPose(h.instrument);
+    const double each = description.slipForce * gripOf(h) / static_cast<double>(grasp.node.size());
+    for (std::size_t a = 0; a < grasp.node.size(); ++a) {
+      const Vec3 onSkin = skinPoint(surfaces.points(grasp.structure), grasp.node[a], grasp.weight[a]);
+      const Vec3 inJaws = tool.position + tool.orientation * grasp.place[a];
       ContactBlock block;
       block.kind = BlockKind::bilateral;
       block.limit = each;
-      Grasped grasp;
-      grasp.tool.hand = hand;
-      grasp.anchor = a;
-      grasp.tissue.body = model_.structures()[h.grasped].body;
-      grasp.tissue.place =
-          surfaces.skin(h.grasped).influence({static_cast<int>(h.graspNode[a][0]), static_cast<int>(h.graspNode[a][1]),
-                                              static_cast<int>(h.graspNode[a][2])},
-                                             h.graspWeight[a]);
+      Grasped grasped;
+      grasped.tool.hand = hand;
+      grasped.anchor = a;
+      grasped.tissue.body = model_.structures()[grasp.structure].body;
+      grasped.tissue.place = surfaces.skin(grasp.structure)
+                                 .influence({static_cast<int>(grasp.node[a][0]), static_cast<int>(grasp.node[a][1]),
+                                             static_cast<int>(grasp.node[a][2])},
+                                            grasp.weight[a]);
       for (std::size_t k = 0; k < 3; ++k) {
         block.direction[k] = Vec3::Unit(static_cast<int>(k));
         block.gap[k] = inJaws[static_cast<int>(k)] - onSkin[static_cast<int>(k)];
-        grasp.tool.row[k] = toolRow(description.port, tool, inJaws, block.direction[k]);
+        grasped.tool.row[k] = toolRow(description.port, tool, inJaws, block.direction[k]);
       }
-      block.of = std::move(grasp);
+      block.of = std::move(grasped);
       blocks.push_back(std::move(block));
     }
   }
@@ -201,55 +202,57 @@ void Grasping::addBlocks(const Surfaces& surfaces, const State& state, std::vect
 
 bool Grasping::slip(const Surfaces& surfaces, std::size_t hand, State& state) const {
   HandState& h = state.hand[hand];
+  GraspState& grasp = h.grasp;
   const HandDescription& description = model_.scene().hands[hand];
-  const double each = description.slipForce * gripOf(h) / static_cast<double>(h.graspNode.size());
-  const Pose tool = simulatedPose(h);
-  const auto [from, to] = graspLine(instrumentOf(h.instrument), description.shaftRadius);
+  const double each = description.slipForce * gripOf(h) / static_cast<double>(grasp.node.size());
+  const Pose tool = simulatedPose(h.instrument);
+  const auto [from, to] = graspLine(instrumentOf(h.instrument.kind), description.shaftRadius);
   bool slipping = false;
   std::size_t kept = 0;
-  for (std::size_t a = 0; a < h.graspNode.size(); ++a) {
-    Vec3 place = h.graspPlace[a];
+  for (std::size_t a = 0; a < grasp.node.size(); ++a) {
+    Vec3 place = grasp.place[a];
     bool gone = false;
-    if (h.graspForce[a].norm() >= each * (1.0 - 1e-9)) {
+    if (grasp.force[a].norm() >= each * (1.0 - 1e-9)) {
       slipping = true;
       place = tool.orientation.conjugate() *
-              (skinPoint(surfaces.points(h.grasped), h.graspNode[a], h.graspWeight[a]) - tool.position);
+              (skinPoint(surfaces.points(grasp.structure), grasp.node[a], grasp.weight[a]) - tool.position);
       const Vec3 onLine = from + closestOnSegment(place, from, to) * (to - from);
       gone = (place - onLine).norm() > searchRadius + lostDistance;
     }
     if (gone) continue;
-    moveGrasp(h, a, kept);
-    h.graspPlace[kept++] = place;
+    moveGrasp(grasp, a, kept);
+    grasp.place[kept++] = place;
   }
-  resizeGrasp(h, kept);
+  resizeGrasp(grasp, kept);
   return slipping;
 }
 
 void Grasping::settle(const Surfaces& surfaces, State& state, Activity& activity, StepResult& result, StepLog& log) {
   for (std::size_t hand = 0; hand < handCount; ++hand) {
     HandState& h = state.hand[hand];
+    GraspState& grasp = h.grasp;
     HandResult& out = result.hand[hand];
-    out.grasping = h.grasped == noStructure ? 0 : 1U << h.grasped;
+    out.grasping = grasp.structure == noStructure ? 0 : 1U << grasp.structure;
     out.graspForce = 0.0;
     out.gripForce = 0.0;
-    if (h.grasped == noStructure) continue;
+    if (grasp.structure == noStructure) continue;
     out.gripForce = model_.scene().hands[hand].slipForce * gripOf(h);
     Vec3 pull = Vec3::Zero();
-    for (const Vec3& f : h.graspForce) pull += f;
+    for (const Vec3& f : grasp.force) pull += f;
     out.graspForce = pull.norm();
     if (out.graspForce > model_.scene().hands[hand].tearForce) {
-      if (h.grasped < model_.organs().size())
-        perforateOrgan(model_, h.grasped, h.simulatedPosition, 0.0, state, activity, log);
+      if (grasp.structure < model_.organs().size())
+        perforateOrgan(model_, grasp.structure, h.instrument.position, 0.0, state, activity, log);
       end(surfaces, hand, EventKind::tissueTear, out.graspForce, state, log, result.contact);
       continue;
     }
     const bool slipping = slip(surfaces, hand, state);
-    if (slipping && !h.slipping) {
-      log.emit(EventKind::graspSlip, hand, h.grasped, h.simulatedPosition, out.graspForce);
+    if (slipping && !grasp.slipping) {
+      log.emit(EventKind::graspSlip, hand, grasp.structure, h.instrument.position, out.graspForce);
     }
-    h.slipping = slipping;
-    if (h.graspNode.empty()) {
-      end(surfaces, hand, EventKind::graspEnd, heldFor(h, state), state, log, result.contact);
+    grasp.slipping = slipping;
+    if (grasp.node.empty()) {
+      end(surfaces, hand, EventKind::graspEnd, heldFor(grasp, state), state, log, result.contact);
     }
   }
 }

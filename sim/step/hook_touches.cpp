@@ -24,11 +24,11 @@ void sweepHooks(const Model& model, const InstrumentTravels& travels, const Stat
     const CauteryDescription& cautery = model.scene().cautery;
     sweep.pace = currentPace(cautery, h);
     if (!(sweep.pace > 0.0)) continue;
-    sweep.charring = (h.buttons & button::cutPedal) != 0 ? cautery.cutChar : 1.0;
+    sweep.charring = (h.input.buttons & button::cutPedal) != 0 ? cautery.cutChar : 1.0;
     const HandDescription& description = model.scene().hands[hand];
-    const Pose now = simulatedPose(h);
-    const InstrumentShape hook =
-        instrumentShape(h.instrument, h.jaw, description.shaftRadius, (now.position - description.port).norm());
+    const Pose now = simulatedPose(h.instrument);
+    const InstrumentShape hook = instrumentShape(h.instrument.kind, h.instrument.jaw, description.shaftRadius,
+                                                 (now.position - description.port).norm());
     const InstrumentShape before = placed(hook, travels[hand].before);
     const InstrumentShape after = placed(hook, now);
     for (std::size_t k = 0; k < after.capsules().size(); ++k) {
@@ -38,6 +38,15 @@ void sweepHooks(const Model& model, const InstrumentTravels& travels, const Stat
       sweep.electrode.push_back({{from.p0, from.p1}, {to.p0, to.p1}, to.radius});
       sweep.piece.push_back(to.piece);
     }
+  }
+}
+
+void takeOutOfDimples(const HookSweep& sweep, std::size_t structure, const State& state, HookSweep& out) {
+  out = sweep;
+  for (std::size_t k = 0; k < out.electrode.size(); ++k) {
+    const Vec3 dimple = dimpleOf(state.hand[sweep.hand].touches, structure, out.piece[k]);
+    for (Vec3& end : out.electrode[k].before) end += dimple;
+    for (Vec3& end : out.electrode[k].now) end += dimple;
   }
 }
 
@@ -227,15 +236,6 @@ void HookTouchSearch::touchFat(const HookSweep& sweep, std::size_t structure, co
   out.area += area;
 }
 
-void HookTouchSearch::takeOutOfDimples(const HookSweep& sweep, std::size_t structure, const State& state) {
-  met_ = sweep;
-  for (std::size_t k = 0; k < met_.electrode.size(); ++k) {
-    const Vec3 dimple = dimpleOf(state.hand[sweep.hand], structure, met_.piece[k]);
-    for (Vec3& end : met_.electrode[k].before) end += dimple;
-    for (Vec3& end : met_.electrode[k].now) end += dimple;
-  }
-}
-
 void HookTouchSearch::run(const HookSweep& sweep, Bodies& bodies, const Surfaces& surfaces, const State& state,
                           HookTouches& out) {
   out.strand.resize(model_.connective().size());
@@ -249,11 +249,14 @@ void HookTouchSearch::run(const HookSweep& sweep, Bodies& bodies, const Surfaces
   for (std::size_t s = 0; s < surfaces.size(); ++s) {
     const TissueId kind = model_.structures()[s].kind;
     if (kind == tissueId<OrganTissue>) {
-      takeOutOfDimples(sweep, s, state);
+      takeOutOfDimples(sweep, s, state, met_);
       touchOrgan(met_, s, bodies, surfaces, state, out);
     }
     if (kind == tissueId<VesselTissue>) touchVessel(sweep, s, bodies, state, out);
-    if (kind == tissueId<FatTissue>) touchFat(sweep, s, bodies, surfaces, state, out);
+    if (kind == tissueId<FatTissue>) {
+      takeOutOfDimples(sweep, s, state, met_);
+      touchFat(met_, s, bodies, surfaces, state, out);
+    }
   }
 }
 

@@ -29,7 +29,7 @@ double InstrumentMotion::gapOf(const Surfaces& surfaces, const State& state, std
   for (std::size_t s = 0; s < surfaces.size(); ++s) {
     for (const Capsule& c : instrument_.capsule) {
       const double allowed = allowedDepth(model_, state, hand, c, s);
-      const Vec3 dimple = dimpleOf(state.hand[hand], s, c.piece);
+      const Vec3 dimple = dimpleOf(state.hand[hand].touches, s, c.piece);
       const Vec3 p0 = c.p0 + dimple;
       const Vec3 p1 = c.p1 + dimple;
       const double far = capsuleSearch(c.radius, notNegative(least - allowed));
@@ -42,18 +42,18 @@ double InstrumentMotion::gapOf(const Surfaces& surfaces, const State& state, std
 }
 
 void InstrumentMotion::advance(const Surfaces& surfaces, std::size_t hand, State& state, InstrumentTravel& travel) {
-  HandState& h = state.hand[hand];
+  const InputState& input = state.hand[hand].input;
+  InstrumentState& instrument = state.hand[hand].instrument;
   const HandDescription& description = model_.scene().hands[hand];
-  const Pose real{h.realPosition, h.realOrientation};
-  const HandState& neighbour = state.hand[1 - hand];
-  other_.place(model_.scene().hands[1 - hand], neighbour.instrument, simulatedPose(neighbour), neighbour.jaw);
+  const Pose real{input.position, input.orientation};
+  other_.place(model_.scene().hands[1 - hand], state.hand[1 - hand].instrument);
   double left = 0.0;
   for (int i = 0;; ++i) {
-    const Pose now = simulatedPose(h);
+    const Pose now = simulatedPose(instrument);
     const Vec3 way = real.position - now.position;
     const double roll = rollBetween(now.orientation, real.orientation);
-    const double closing = h.realJaw - h.jaw;
-    instrument_.place(description, h.instrument, now, std::max(h.jaw, h.realJaw));
+    const double closing = input.jaw - instrument.jaw;
+    instrument_.place(description, instrument.kind, now, std::max(instrument.jaw, input.jaw));
     // No point of the instrument moves farther: rotating about the port, it moves with the tip, and what stands off the
     // axis a little more.
     const InstrumentShape& local = instrument_.local;
@@ -61,7 +61,7 @@ void InstrumentMotion::advance(const Surfaces& surfaces, std::size_t hand, State
     left = way.norm() * (1.0 + local.lateralReach() / length) + std::abs(roll) * local.lateralReach() +
            0.5 * std::abs(closing) * local.jawReach();
     if (!(left > 0.0)) break;
-    instrument_.place(description, h.instrument, now, h.jaw);
+    instrument_.place(description, instrument);
     const double room = gapOf(surfaces, state, hand, left + 2.0 * contactMargin);
     double share = 0.0;
     if (room >= left + contactMargin) {
@@ -70,28 +70,28 @@ void InstrumentMotion::advance(const Surfaces& surfaces, std::size_t hand, State
       share = (room - contactMargin) / left;
     } else {
       const double most = maxJawSpeed * model_.stepSeconds();
-      h.jaw += std::clamp(closing, -most, most);
+      instrument.jaw += std::clamp(closing, -most, most);
       break;
     }
     const Pose next = share == 1.0 ? throughPort(description.port, real.position, real.orientation,
                                                  now.orientation.toRotationMatrix().col(2))
                                    : movedTool(description.port, now, share * way, share * roll);
-    h.simulatedPosition = next.position;
-    h.simulatedOrientation = next.orientation;
-    h.jaw = share == 1.0 ? h.realJaw : h.jaw + share * closing;
+    instrument.position = next.position;
+    instrument.orientation = next.orientation;
+    instrument.jaw = share == 1.0 ? input.jaw : instrument.jaw + share * closing;
     if (share == 1.0) {
       left = 0.0;
       break;
     }
   }
-  travel.reference = simulatedPose(h);
+  travel.reference = simulatedPose(instrument);
   travel.stretch = couplingStretch(travel.reference, real, hapticModel(model_, hand).maxStretch);
   travel.reach = contactMargin + std::min(left, maxSlide);
 }
 
 InstrumentTravels InstrumentMotion::run(const Surfaces& surfaces, State& state, StepLog& log, ContactResult& contact) {
   InstrumentTravels travel;
-  for (std::size_t hand = 0; hand < handCount; ++hand) travel[hand].before = simulatedPose(state.hand[hand]);
+  for (std::size_t hand = 0; hand < handCount; ++hand) travel[hand].before = simulatedPose(state.hand[hand].instrument);
   grasping_.release(surfaces, state, log, contact);
   for (std::size_t hand = 0; hand < handCount; ++hand) advance(surfaces, hand, state, travel[hand]);
   grasping_.close(surfaces, state, log);
@@ -132,42 +132,43 @@ std::uint64_t cameraInputs(std::span<const TickSamples> samples) {
 }  // namespace
 
 void SampleStage::readHand(std::span<const TickSamples> samples, std::size_t h, State& state, StepLog& log) const {
-  HandState& hand = state.hand[h];
-  hand.inputs = handInputs(samples, h);
+  InputState& input = state.hand[h].input;
+  InstrumentState& instrument = state.hand[h].instrument;
+  input.samples = handInputs(samples, h);
   const InstrumentSample* newest = nullptr;
   for (const TickSamples& tick : samples) {
     if (isMeasurement(tick.hand[h])) newest = &tick.hand[h];
   }
   const bool valid = isMeasurement(samples.back().hand[h]);
-  if (hand.valid && !valid) {
-    hand.invalidSince = state.clock.step;
-    log.emit(EventKind::sampleInvalid, h, 0, hand.realPosition, 0.0);
-  } else if (!hand.valid && valid) {
-    log.emit(EventKind::sampleValid, h, 0, hand.realPosition,
-             static_cast<double>(state.clock.step - hand.invalidSince) * model_.stepSeconds());
+  if (input.valid && !valid) {
+    input.invalidSince = state.clock.step;
+    log.emit(EventKind::sampleInvalid, h, 0, input.position, 0.0);
+  } else if (!input.valid && valid) {
+    log.emit(EventKind::sampleValid, h, 0, input.position,
+             static_cast<double>(state.clock.step - input.invalidSince) * model_.stepSeconds());
   }
-  hand.valid = valid;
+  input.valid = valid;
   if (newest == nullptr) return;
-  if (newest->instrument != hand.instrument) {
-    log.emit(EventKind::instrumentExchange, h, static_cast<std::size_t>(newest->instrument), hand.realPosition,
-             static_cast<double>(hand.instrument));
-    hand.instrument = newest->instrument;
-    hand.jawsOpened = false;
+  if (newest->instrument != instrument.kind) {
+    log.emit(EventKind::instrumentExchange, h, static_cast<std::size_t>(newest->instrument), input.position,
+             static_cast<double>(instrument.kind));
+    instrument.kind = newest->instrument;
+    instrument.jawsOpened = false;
   }
   const double outside = (newest->position - clampedToWorkspace(model_.scene(), newest->position)).norm();
-  if (outside > 0.0 && !hand.outside) log.emit(EventKind::outOfWorkspace, h, 0, newest->position, outside);
-  hand.outside = outside > 0.0;
-  const Pose pose = realPose(model_.scene(), h, *newest, hand.realPosition);
-  hand.realPosition = pose.position;
-  hand.realOrientation = pose.orientation;
-  hand.realJaw = std::min(notNegative(newest->jaw), maxJaw);
+  if (outside > 0.0 && !input.outside) log.emit(EventKind::outOfWorkspace, h, 0, newest->position, outside);
+  input.outside = outside > 0.0;
+  const Pose pose = realPose(model_.scene(), h, *newest, input.position);
+  input.position = pose.position;
+  input.orientation = pose.orientation;
+  input.jaw = std::min(notNegative(newest->jaw), maxJaw);
   readRequests(samples, h, state, log);
-  hand.buttons = newest->buttons;
+  input.buttons = newest->buttons;
 }
 
 /// A button asks once, as it goes down, in whichever tick of the step that is.
 void SampleStage::readRequests(std::span<const TickSamples> samples, std::size_t h, State& state, StepLog& log) const {
-  std::uint8_t before = state.hand[h].buttons;
+  std::uint8_t before = state.hand[h].input.buttons;
   for (const TickSamples& tick : samples) {
     if (!isMeasurement(tick.hand[h])) continue;
     const auto pressed = static_cast<std::uint8_t>(tick.hand[h].buttons & ~before);

@@ -23,17 +23,17 @@ constexpr double crushedDepth = 0.02;
 
 /// Are these the jaws of an applier that has closed, and not opened since, about a clip of this vessel? They crush what
 /// they clip; blunt bodies that closed on a tube which cannot give way would throw it about.
-bool isClosedOnClip(const Model& model, const State& state, const HandState& hand, std::size_t structure) {
+bool isClosedOnClip(const Model& model, const State& state, const InstrumentState& applier, std::size_t structure) {
   const StructureModel& s = model.structures()[structure];
-  if (s.kind != tissueId<VesselTissue> || hand.jawsOpened) return false;
-  if (instrumentOf(hand.instrument).action != InstrumentAction::clip) return false;
+  if (s.kind != tissueId<VesselTissue> || applier.jawsOpened) return false;
+  if (instrumentOf(applier.kind).action != InstrumentAction::clip) return false;
   const BeamModel& beams = model.vesselTrees()[s.index].beams;
   const BeamState& vessels = state.vessel[s.index];
   const double reach = 1.5 * model.scene().clip.legs;
   for (std::size_t c = 0; c < vessels.clips(); ++c) {
     if (vessels.clipBranch[c] != s.branch) continue;
     const Vec3 where = centreLine(beams, vessels, pointAt(beams, s.branch, vessels.clipPlace[c])).position;
-    if ((where - hand.simulatedPosition).squaredNorm() < reach * reach) return true;
+    if ((where - applier.position).squaredNorm() < reach * reach) return true;
   }
   return false;
 }
@@ -41,9 +41,9 @@ bool isClosedOnClip(const Model& model, const State& state, const HandState& han
 }  // namespace
 
 double currentPace(const CauteryDescription& cautery, const HandState& hand) {
-  if (instrumentOf(hand.instrument).action != InstrumentAction::burn) return 0.0;
-  if ((hand.buttons & button::cutPedal) != 0) return 1.0;
-  return (hand.buttons & button::coagulatePedal) != 0 ? cautery.coagulationPace : 0.0;
+  if (instrumentOf(hand.instrument.kind).action != InstrumentAction::burn) return 0.0;
+  if ((hand.input.buttons & button::cutPedal) != 0) return 1.0;
+  return (hand.input.buttons & button::coagulatePedal) != 0 ? cautery.coagulationPace : 0.0;
 }
 
 void PlacedInstrument::place(const HandDescription& hand, InstrumentKind kind, const Pose& at, double jaw) {
@@ -62,8 +62,8 @@ double allowedDepth(const Model& model, const State& state, std::size_t hand, co
   const bool jaw = capsule.part == Capsule::Part::upperJaw || capsule.part == Capsule::Part::lowerJaw;
   if (!jaw) return 0.0;
   const HandState& h = state.hand[hand];
-  if (isClosedOnClip(model, state, h, structure)) return crushedDepth;
-  return h.grasped == structure ? graspedDepth : 0.0;
+  if (isClosedOnClip(model, state, h.instrument, structure)) return crushedDepth;
+  return h.grasp.structure == structure ? graspedDepth : 0.0;
 }
 
 namespace {
@@ -185,7 +185,7 @@ void instrumentContacts(const Model& model, const Surfaces& surfaces, const Stat
   out.clear();
   for (const Capsule& c : instrument.capsule) {
     // In its dimple the skin has given way: the capsule meets the mesh that much farther out.
-    const Vec3 dimple = dimpleOf(state.hand[hand], structure, c.piece);
+    const Vec3 dimple = dimpleOf(state.hand[hand].touches, structure, c.piece);
     const Vec3 p0 = c.p0 + dimple;
     const Vec3 p1 = c.p1 + dimple;
     const std::span<const std::uint32_t> near =
@@ -253,13 +253,13 @@ ToolRow PenetrationResolver::minWayOut() const {
 /// astray.
 PenetrationResolver::Outcome PenetrationResolver::search(const Surfaces& surfaces, const State& state, std::size_t hand,
                                                          Pose pose) {
-  const HandState& s = state.hand[hand];
+  const InstrumentState& instrument = state.hand[hand].instrument;
   const HandDescription& description = model_.scene().hands[hand];
   Outcome best{pose, 1e300, false};
   double gone = 0.0;
   double mayGo = maxDisplacement;
   for (int pass = 0;; ++pass) {
-    instrument_.place(description, s.instrument, pose, s.jaw);
+    instrument_.place(description, instrument.kind, pose, instrument.jaw);
     const double depth = findInside(surfaces, state, hand, pose);
     if (pass == 0) mayGo = std::min(mayGo, wayForDepth * depth);
     if (depth < best.depth) {
@@ -280,12 +280,11 @@ PenetrationResolver::Outcome PenetrationResolver::search(const Surfaces& surface
 }
 
 void PenetrationResolver::run(const Surfaces& surfaces, std::size_t hand, State& state, ContactResult& contact) {
-  HandState& s = state.hand[hand];
-  if (s.instrument == InstrumentKind::none) return;
+  InstrumentState& instrument = state.hand[hand].instrument;
+  if (instrument.kind == InstrumentKind::none) return;
   const Vec3& port = model_.scene().hands[hand].port;
-  const Pose from = simulatedPose(s);
-  const HandState& neighbour = state.hand[1 - hand];
-  other_.place(model_.scene().hands[1 - hand], neighbour.instrument, simulatedPose(neighbour), neighbour.jaw);
+  const Pose from = simulatedPose(instrument);
+  other_.place(model_.scene().hands[1 - hand], state.hand[1 - hand].instrument);
   Outcome best = search(surfaces, state, hand, from);
   const double longest = wayForDepth * best.depth;
   for (const double retreat : retreats) {
@@ -294,8 +293,8 @@ void PenetrationResolver::run(const Surfaces& surfaces, std::size_t hand, State&
     const Outcome other = search(surfaces, state, hand, movedTool(port, from, back, 0.0));
     if (other.depth < best.depth) best = other;
   }
-  s.simulatedPosition = best.pose.position;
-  s.simulatedOrientation = best.pose.orientation;
+  instrument.position = best.pose.position;
+  instrument.orientation = best.pose.orientation;
   double& left = best.pinched ? contact.pinchedDepth : contact.maxDepth;
   left = std::max(left, best.depth);
 }

@@ -15,8 +15,8 @@
 
 namespace calot {
 
-/// Simulated pose of a hand's instrument: p_WI, q_WI.
-inline Pose simulatedPose(const HandState& hand) { return {hand.simulatedPosition, hand.simulatedOrientation}; }
+/// p_WI, q_WI.
+inline Pose simulatedPose(const InstrumentState& instrument) { return {instrument.position, instrument.orientation}; }
 
 /// The instrument's capsules at a pose.
 struct PlacedInstrument {
@@ -26,6 +26,11 @@ struct PlacedInstrument {
   std::vector<Capsule> capsule;  ///< in W
 
   void place(const HandDescription& hand, InstrumentKind kind, const Pose& at, double jaw);
+
+  /// As State has it.
+  void place(const HandDescription& hand, const InstrumentState& as) {
+    place(hand, as.kind, simulatedPose(as), as.jaw);
+  }
 };
 
 /// At which a hand's hook divides tissue now, of the cutting current's pace; 0 without current.
@@ -117,7 +122,7 @@ class Grasping {
   explicit Grasping(const Model& model) : model_(model), resolver_(model) {}
 
   /// Before the instruments move: discards grasped points whose fat was carved away, and releases what open jaws or
-  /// exchanged instruments held. Writes HandState's grasp. @pre surfaces are current
+  /// exchanged instruments held. Writes GraspState. @pre surfaces are current
   void release(const Surfaces& surfaces, State& state, StepLog& log, ContactResult& contact);
   /// After they moved: jaws that were open and close now grasp the tissue between them. @pre surfaces are current
   void close(const Surfaces& surfaces, State& state, StepLog& log) const;
@@ -135,8 +140,8 @@ class Grasping {
   void closeOne(const Surfaces& surfaces, std::size_t hand, State& state, StepLog& log) const;
   /// Moves slipping points along; discards those that left the jaws. @return whether any slips
   bool slip(const Surfaces& surfaces, std::size_t hand, State& state) const;
-  [[nodiscard]] double heldFor(const HandState& hand, const State& state) const {
-    return static_cast<double>(state.clock.step - hand.graspSince) * model_.stepSeconds();
+  [[nodiscard]] double heldFor(const GraspState& grasp, const State& state) const {
+    return static_cast<double>(state.clock.step - grasp.since) * model_.stepSeconds();
   }
 
   const Model& model_;

@@ -114,13 +114,13 @@ void Publication::publishFat(const Bodies& bodies, const Activity& activity, con
 }
 
 void Publication::publishHand(const HandState& hand, const Vec3& port, HandResult& out) {
-  out.instrument = hand.instrument;
-  out.tipReal = hand.realPosition;
-  out.tipSimulated = hand.simulatedPosition;
-  out.orientation = hand.simulatedOrientation;
-  out.jaw = hand.jaw;
-  out.clips = hand.clips;
-  out.insertion = (hand.simulatedPosition - port).norm();
+  out.instrument = hand.instrument.kind;
+  out.tipReal = hand.input.position;
+  out.tipSimulated = hand.instrument.position;
+  out.orientation = hand.instrument.orientation;
+  out.jaw = hand.instrument.jaw;
+  out.clips = hand.instrument.clips;
+  out.insertion = (hand.instrument.position - port).norm();
 }
 
 void Publication::run(const Bodies& bodies, const Activity& activity, const State& state, StepResult& result) const {

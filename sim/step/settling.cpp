@@ -178,7 +178,8 @@ void Settling::rest(Surfaces& surfaces, Bodies& bodies, const Activity& activity
 
 void Settling::settleTouches(const ContactSystem& contact, std::size_t h, State& state, HandResult& out,
                              StepLog& log) const {
-  HandState& hand = state.hand[h];
+  TouchState& touches = state.hand[h].touches;
+  const Vec3& tip = state.hand[h].instrument.position;
   std::fill(out.structureForce.begin(), out.structureForce.end(), 0.0);
   for (const ContactBlock& block : contact.blocks) {
     const auto* touch = block.as<ToolOnTissue>();
@@ -187,18 +188,18 @@ void Settling::settleTouches(const ContactSystem& contact, std::size_t h, State&
   out.touching = 0;
   for (std::size_t s = 0; s < model_.structures().size(); ++s) {
     const std::uint32_t bit = 1U << s;
-    const bool touched = (hand.touching & bit) != 0;
+    const bool touched = (touches.structures & bit) != 0;
     const bool now = out.structureForce[s] > minForce;
     if (now) out.touching |= bit;
     if (now && !touched) {
-      hand.touchingSince[s] = state.clock.step;
-      log.emit(EventKind::contactBegin, h, s, hand.simulatedPosition, out.structureForce[s]);
+      touches.since[s] = state.clock.step;
+      log.emit(EventKind::contactBegin, h, s, tip, out.structureForce[s]);
     } else if (touched && !now) {
-      log.emit(EventKind::contactEnd, h, s, hand.simulatedPosition,
-               static_cast<double>(state.clock.step - hand.touchingSince[s]) * model_.stepSeconds());
+      log.emit(EventKind::contactEnd, h, s, tip,
+               static_cast<double>(state.clock.step - touches.since[s]) * model_.stepSeconds());
     }
   }
-  hand.touching = out.touching;
+  touches.structures = out.touching;
 }
 
 /// One touch is one event: contact that is interrupted for less than clashPause goes on.
@@ -249,6 +250,7 @@ void Settling::run(const ContactSystem& contact, const std::vector<bool>& diverg
   settleVessels(contact, bodies, activity, state, log);
   settleFat(contact, bodies, activity, state, result);
   rest(surfaces, bodies, activity, state);
+  hold_.run(bodies, activity, state, result);
   grasping_.settle(surfaces, state, activity, result, log);
   for (std::size_t h = 0; h < handCount; ++h) settleTouches(contact, h, state, result.hand[h], log);
   settleClash(contact, state, result.contact, log);

@@ -18,6 +18,7 @@
 #include "sim/step/body.h"
 #include "sim/step/contact_block.h"
 #include "sim/step/placed_instrument.h"
+#include "sim/step/specimen_hold.h"
 #include "sim/step/surfaces.h"
 #include "sim/step/tissue_contacts.h"
 #include "sim/tissue/organ/organ_tissue.h"
@@ -26,9 +27,9 @@ namespace calot {
 
 // Stage 1 of a step: the newest measurement of each hand, and the newest camera.
 
-/// Reads: the step's samples. Writes: each hand's real pose, jaw, buttons and mounted instrument, what is asked of the
-/// assistant, the camera, and the digests of the samples as they came. A sample that is no measurement (isMeasurement)
-/// changes nothing but is reported when it begins and when it ends.
+/// Reads: the step's samples. Writes: each hand's input and mounted instrument, what is asked of the assistant, the
+/// camera, and the digests of the samples as they came. A sample that is no measurement (isMeasurement) changes nothing
+/// else but is reported when it begins and when it ends.
 class SampleStage {
  public:
   explicit SampleStage(const Model& model) : model_(model) {}
@@ -131,22 +132,16 @@ class ContactDetection {
   std::vector<ClashPoint> clash_;
 };
 
-// The patch of an organ's skin that takes the force of an instrument's capsule. Internal to this folder.
+// The patch of a skin that takes the force of an instrument's capsule. Internal to this folder.
 //
 // A force on the corners of one triangle pulls a node down by more than its cell where cells are as small as the tip,
 // and into a cone where they are larger: neither is linear any more. So a part of the force goes to a ring of points
 // about the contact point. How the skin gives way under such a load follows from the nodes' weights (meshSpread()); the
 // dimple is what a round end sinks in beyond that.
 
-/// The skin's normal at a place in a triangle, as it varies between those at the corners (Phong 1975); zero where these
-/// cancel.
-Vec3 smoothNormal(const ContactSurface& mesh, const std::vector<Vec3>& points, const std::array<int, 3>& node,
-                  const Vec3& weight);
-
-/// Nodes that take the force of a capsule on a triangle of an organ's skin. Depends on the place alone, not on how the
+/// Nodes that take the force of a capsule on a triangle of a skin. Depends on the place alone, not on how the
 /// skin is deformed. @param weight barycentric coordinates @param radius of the capsule (m)
-SolidSolver::Impulse pressedPatch(const OrganModel& organ, const Skin& skin, const std::array<int, 3>& node,
-                                  const Vec3& weight, double radius);
+SolidSolver::Impulse pressedPatch(const Skin& skin, const std::array<int, 3>& node, const Vec3& weight, double radius);
 
 // Stage 4 of a step: the unconstrained motion of all tissue.
 
@@ -316,15 +311,16 @@ void reduceToHand(const Bodies& bodies, const State& state, const InstrumentTrav
 
 // Stage 9 of a step: what follows from the whole of it.
 
-/// Bodies come to rest, vessels tear, grasps slip or tear, touches begin and end. At last the guard of last resort:
-/// reports that the simulation ran away, and where.
+/// Bodies come to rest, vessels tear, grasps slip or tear, touches begin and end; then it is known what fat still
+/// holds. At last the guard of last resort: reports that the simulation ran away, and where.
 ///
 /// Reads: contact forces, and what the stages before left. Writes: extents, sleep counters, partings, grasps and
-/// touches of State; what they disturb; forces by structure, grasps and largest speeds of the result.
+/// touches of State; what they disturb; forces by structure, grasps, largest speeds and `holdsSpecimen` of the result.
 class Settling {
  public:
   /// @param grasping outlives this
-  Settling(const Model& model, Grasping& grasping) : model_(model), grasping_(grasping) {}
+  Settling(const Model& model, Grasping& grasping) : model_(model), grasping_(grasping), hold_(model) {}
+  void invalidate() { hold_.invalidate(); }
   /// @param diverged per body, see ContactResponse @pre surfaces are current but for what stage 8 changed
   void run(const ContactSystem& contact, const std::vector<bool>& diverged, Surfaces& surfaces, Bodies& bodies,
            State& state, Activity& activity, StepResult& result, StepLog& log);
@@ -344,6 +340,7 @@ class Settling {
 
   const Model& model_;
   Grasping& grasping_;
+  SpecimenHold hold_;
 };
 
 // Stage 10 of a step: StepResult.

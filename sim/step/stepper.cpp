@@ -103,7 +103,7 @@ void Stepper::precompute() {
 const ContactSet& Stepper::contactSet(std::size_t hand) const { return p_->contactSets[hand]; }
 
 const StateDigest& Stepper::digest(const State& state) {
-  std::vector<bool> written(State::tissueFrom, true);
+  std::vector<bool> written(state.tissueFrom(), true);
   p_->activity.appendWritten(p_->bodies, written);
   const StateDigest& digest = p_->digest.update(state, written);
   assert(digest == digestOf(state));
@@ -114,6 +114,7 @@ void Stepper::invalidate() {
   p_->surfaces.invalidate();
   p_->bodies.invalidate();
   p_->contactDetection.invalidate();
+  p_->settling.invalidate();
   p_->contactSets = {};
   p_->digest.reset();
 }

@@ -96,10 +96,10 @@ constexpr double gripRoom = 0.0005;  ///< between blades and vessel where they c
 std::optional<VesselTools::Crossing> VesselTools::vesselBetween(const State& state, std::size_t hand,
                                                                 double length) const {
   std::optional<Crossing> best;
-  const Pose tool = simulatedPose(state.hand[hand]);
+  const Pose tool = simulatedPose(state.hand[hand].instrument);
   const Vec3 along = tool.orientation * Vec3::UnitZ();
   const Quat toJaws = tool.orientation.conjugate();
-  const InstrumentDefinition& instrument = instrumentOf(state.hand[hand].instrument);
+  const InstrumentDefinition& instrument = instrumentOf(state.hand[hand].instrument.kind);
   double least = 1e300;
   for (std::size_t s = model_.organs().size(); s < model_.structures().size(); ++s) {
     const StructureModel& structure = model_.structures()[s];
@@ -159,8 +159,7 @@ bool VesselTools::isGripped(const State& state, std::size_t hand, const Crossing
   const StructureModel& structure = model_.structures()[crossing.structure];
   const BeamModel& beams = model_.vesselTrees()[structure.index].beams;
   const double outer = beams.branches()[structure.branch].section.outerRadius;
-  instrument_.place(model_.scene().hands[hand], state.hand[hand].instrument, simulatedPose(state.hand[hand]),
-                    state.hand[hand].jaw);
+  instrument_.place(model_.scene().hands[hand], state.hand[hand].instrument);
   bool upper = false;
   bool lower = false;
   for (const Capsule& c : instrument_.capsule) {
@@ -175,11 +174,11 @@ bool VesselTools::isGripped(const State& state, std::size_t hand, const Crossing
 
 void VesselTools::setClipOn(std::size_t hand, const std::optional<Crossing>& crossing, State& state, Activity& activity,
                             StepLog& log) const {
-  HandState& h = state.hand[hand];
-  if (h.clips == 0) return;
-  --h.clips;
+  InstrumentState& applier = state.hand[hand].instrument;
+  if (applier.clips == 0) return;
+  --applier.clips;
   const auto drop = [&] {
-    log.emit(EventKind::clipDropped, hand, 0, h.simulatedPosition, static_cast<double>(h.clips));
+    log.emit(EventKind::clipDropped, hand, 0, applier.position, static_cast<double>(applier.clips));
   };
   if (!crossing) {
     drop();
@@ -195,7 +194,7 @@ void VesselTools::setClipOn(std::size_t hand, const std::optional<Crossing>& cro
   // An oblique vessel fills more of the legs.
   attempt.legs = clip.legs * crossing->sine;
   attempt.depth = crossing->depth * crossing->sine;
-  const Vec3 closing = crossing->frame.orientation.conjugate() * (h.simulatedOrientation * Vec3::UnitY());
+  const Vec3 closing = crossing->frame.orientation.conjugate() * (applier.orientation * Vec3::UnitY());
   attempt.roll = arctangent2(closing[1], closing[0]);
   const ClipSeat seat = clipSeat(beams, vessels, attempt);
   if (seat.missed) {
@@ -216,11 +215,11 @@ void VesselTools::setClipOn(std::size_t hand, const std::optional<Crossing>& cro
 
 void VesselTools::closeOne(std::size_t hand, State& state, Activity& activity, StepLog& log) {
   HandState& h = state.hand[hand];
-  const InstrumentDefinition& instrument = instrumentOf(h.instrument);
+  const InstrumentDefinition& instrument = instrumentOf(h.instrument.kind);
   const bool clips = instrument.action == InstrumentAction::clip;
-  if (!h.jawsOpened || (!clips && instrument.action != InstrumentAction::cut)) return;
-  const bool closed = h.realJaw <= instrument.jaw.closed || (clips && (h.buttons & button::fire) != 0);
-  if (!closed && (clips || h.realJaw > instrument.jaw.opened)) return;
+  if (!h.instrument.jawsOpened || (!clips && instrument.action != InstrumentAction::cut)) return;
+  const bool closed = h.input.jaw <= instrument.jaw.closed || (clips && (h.input.buttons & button::fire) != 0);
+  if (!closed && (clips || h.input.jaw > instrument.jaw.opened)) return;
   const std::optional<Crossing> crossing =
       vesselBetween(state, hand, clips ? model_.scene().clip.legs : instrument.bladeLength);
   if (clips) {
@@ -233,7 +232,7 @@ void VesselTools::closeOne(std::size_t hand, State& state, Activity& activity, S
   } else if (!closed) {
     return;
   }
-  h.jawsOpened = false;
+  h.instrument.jawsOpened = false;
 }
 
 void VesselTools::run(State& state, Activity& activity, StepLog& log) {

@@ -36,16 +36,17 @@ bool isInjured(const BeamModel::Branch& branch, const BeamState& vessels, double
 }
 
 /// Smoke is reported in portions of a touch, and when it ends. @param source structure, or noStructure: no touch
-void emitSmoke(std::size_t number, std::uint32_t source, double energy, HandState& hand, StepLog& log) {
+void emitSmoke(std::size_t hand, std::uint32_t source, double energy, State& state, StepLog& log) {
+  BurnState& burn = state.hand[hand].burn;
   const auto emit = [&] {
-    if (hand.burnedEnergy > 0.0)
-      log.emit(EventKind::smoke, number, hand.burning, hand.simulatedPosition, hand.burnedEnergy);
-    hand.burnedEnergy = 0.0;
+    if (burn.energy > 0.0)
+      log.emit(EventKind::smoke, hand, burn.tissue, state.hand[hand].instrument.position, burn.energy);
+    burn.energy = 0.0;
   };
-  if (source != hand.burning) emit();
-  hand.burning = source;
-  hand.burnedEnergy += energy;
-  if (hand.burnedEnergy >= smokePortion) emit();
+  if (source != burn.tissue) emit();
+  burn.tissue = source;
+  burn.energy += energy;
+  if (burn.energy >= smokePortion) emit();
 }
 
 }  // namespace
@@ -140,16 +141,36 @@ FatStroke CauteryEffects::carve(const HookSweep& sweep, const Dose& dose, std::s
                                 Activity& activity) {
   blades_.clear();
   const CauteryDescription& cautery = model_.scene().cautery;
-  for (const MovingCapsule& part : sweep.electrode) {
+  takeOutOfDimples(sweep, bodies.structureOfFat(fat), state, met_);
+  for (const MovingCapsule& part : met_.electrode) {
     blades_.push_back({part.before[0], part.before[1], part.now[0], part.now[1], part.radius + cautery.reach});
   }
   findTied(fat, bodies);
   const FatStroke done = bodies.fat(fat).stroke(state, blades_, cautery.recession * dose.wall);
-  if (!done.changed) return done;
+  if (done.changed) release(fat, bodies, activity);
+  return done;
+}
+
+/// Fat is less than it was. @pre findTied() before
+void CauteryEffects::release(std::size_t fat, const Bodies& bodies, Activity& activity) const {
   activity.carved[fat] = true;
   activity.reshape(bodies.firstFat() + fat);
   for (const std::size_t body : tied_) activity.disturb(body);  // it bears less now
-  return done;
+}
+
+/// Strings that are pulled too far part by themselves, one a step.
+void CauteryEffects::tearFat(Bodies& bodies, State& state, Activity& activity, StepResult& result, StepLog& log) {
+  for (std::size_t f = 0; f < bodies.fatCount(); ++f) {
+    if (!activity.awake[bodies.firstFat() + f]) continue;
+    findTied(f, bodies);
+    const FatStroke done = bodies.fat(f).tear(state);
+    if (!done.changed) continue;
+    release(f, bodies, activity);
+    result.fat[f].islands += done.islands;
+    const std::size_t structure = bodies.structureOfFat(f);
+    log.emit(EventKind::fatTorn, StepLog::noHand, structure, done.where, done.removed - done.islands);
+    if (done.islands > 0.0) log.emit(EventKind::fatCameLoose, StepLog::noHand, structure, done.where, done.islands);
+  }
 }
 
 void CauteryEffects::run(const HookSweeps& sweeps, const std::array<HookTouches, handCount>& touches, Bodies& bodies,
@@ -159,7 +180,7 @@ void CauteryEffects::run(const HookSweeps& sweeps, const std::array<HookTouches,
   for (std::size_t h = 0; h < handCount; ++h) {
     if (!sweeps[h].energised()) {
       result.hand[h].cautery = Cautery::off;
-      emitSmoke(h, noStructure, 0.0, state.hand[h], log);
+      emitSmoke(h, noStructure, 0.0, state, log);
       continue;
     }
     const std::uint32_t source = firstTouched(touches[h], bodies);
@@ -177,8 +198,9 @@ void CauteryEffects::run(const HookSweeps& sweeps, const std::array<HookTouches,
       if (done.islands > 0.0) log.emit(EventKind::fatCameLoose, h, bodies.structureOfFat(f), done.where, done.islands);
     }
     result.hand[h].cautery = onTissue ? Cautery::onTissue : Cautery::withoutContact;
-    emitSmoke(h, source, onTissue ? cautery.power * bodies.step() : 0.0, state.hand[h], log);
+    emitSmoke(h, source, onTissue ? cautery.power * bodies.step() : 0.0, state, log);
   }
+  tearFat(bodies, state, activity, result, log);
 }
 
 namespace {
@@ -208,7 +230,7 @@ void ConnectiveEffects::run(const HookSweeps& sweeps, const std::array<HookTouch
       burnStrands(tie.tissue, tissue, touches[h].strand[c], seconds, strands_);
       out.hookTouches += static_cast<std::uint32_t>(touches[h].strand[c].size());
       if (!strands_.empty()) {
-        log.emit(EventKind::strandsBurned, h, c, state.hand[h].simulatedPosition, shareOf(tie.tissue, strands_));
+        log.emit(EventKind::strandsBurned, h, c, state.hand[h].instrument.position, shareOf(tie.tissue, strands_));
       }
     }
     strands_.clear();

@@ -36,6 +36,9 @@ using HookSweeps = std::array<HookSweep, handCount>;
 
 void sweepHooks(const Model& model, const InstrumentTravels& travels, const State& state, HookSweeps& sweeps);
 
+/// The electrode as a structure's mesh meets it: out of the dimples that it presses (dimpleOf()).
+void takeOutOfDimples(const HookSweep& sweep, std::size_t structure, const State& state, HookSweep& out);
+
 /// Touched is what is no farther from the electrode than the scene's `reach`: strands, cells of organs' skins, stations
 /// of vessels' walls, the surface of fat. Every share of the step is exact for straight motion (sim/geometry/dwell.h),
 /// so that a sweep gives the same dose in steps of any length.
@@ -81,9 +84,6 @@ class HookTouchSearch {
   /// Triangles of a skin that the sweep may touch, ascending.
   void findTriangles(const HookSweep& sweep, std::size_t structure, const Bodies& bodies, const Surfaces& surfaces,
                      const State& state);
-
-  /// The electrode as an organ's mesh meets it: out of the dimples that it presses (dimpleOf()).
-  void takeOutOfDimples(const HookSweep& sweep, std::size_t structure, const State& state);
 
   const Model& model_;
   HookSweep met_;
@@ -134,7 +134,7 @@ class VesselTools {
   PlacedInstrument instrument_;
 };
 
-// Effects of the energised hook on fat, organs and vessels. Internal to this folder.
+// Effects of the energised hook on fat, organs and vessels, and of tension on fat. Internal to this folder.
 //
 // Every place that is touched (HookTouches) counts the time that it got the full power. There are two counts. The
 // wall's exposure decides what opens or parts; the coagulating current adds to it at `coagulationPace`. Char counts the
@@ -161,10 +161,13 @@ class CauteryEffects {
                    StepLog& log) const;
   FatStroke carve(const HookSweep& sweep, const Dose& dose, std::size_t fat, Bodies& bodies, State& state,
                   Activity& activity);
+  void tearFat(Bodies& bodies, State& state, Activity& activity, StepResult& result, StepLog& log);
   void findTied(std::size_t fat, const Bodies& bodies);
+  void release(std::size_t fat, const Bodies& bodies, Activity& activity) const;
   [[nodiscard]] static std::uint32_t firstTouched(const HookTouches& touches, const Bodies& bodies);
 
   const Model& model_;
+  HookSweep met_;
   std::vector<SweptCapsule> blades_;  ///< of the hook, as fat feels them
   std::vector<std::size_t> tied_;     ///< bodies that carried some of the fat before a stroke
 };
@@ -185,7 +188,8 @@ class ConnectiveEffects {
   std::vector<std::uint32_t> strands_;
 };
 
-/// Strands burn and tear, jaws set clips and cut, the hook carves fat, chars organs and burns vessels.
+/// Strands burn and tear, jaws set clips and cut, the hook carves fat, chars organs and burns vessels, strings of fat
+/// tear.
 ///
 /// Reads: poses and surfaces after stage 7, travels. Writes: topology and damage in State (strands, clips, partings,
 /// carved fields, char), what is written and disturbed in `activity`, the results of fat, connective tissue and

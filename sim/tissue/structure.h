@@ -33,6 +33,9 @@ struct StructureModel {
   std::size_t branch = 0;  ///< of a vessel: in its tree
   std::size_t body = 0;    ///< what it is solved with: organs, then vessel trees, then fat
   double friction = 0.0;   ///< Coulomb coefficient of an instrument on it
+  /// Solid that gives way in dimples where an instrument presses (docs/explanation/contact-forces.md); null: none does.
+  const SolidModel* soft = nullptr;
+  double nodeSpread = 0.0;  ///< size of the patch over which a node of `soft` spreads a force (m)
 };
 
 /// A spring and a damper between material points of two bodies that coincide in the reference configuration, or lie as

@@ -56,9 +56,9 @@ void compare(double friction, InstrumentKind instrument, double& worst, double& 
     maxError = std::max(maxError, error);
     if (i % 4 != 3 || result.hand[0].contactForce.norm() < 0.05) continue;
     const Pose reference = rig.stepper.contactSet(0).reference;
-    const Pose real{rig.state.hand[0].realPosition, rig.state.hand[0].realOrientation};
-    test::DenseContact dense = test::denseContact(*model, 0, before, reference, real, rig.state.hand[0].jaw, 0.0015,
-                                                  rig.stepper.contactSet(0));
+    const Pose real{rig.state.hand[0].input.position, rig.state.hand[0].input.orientation};
+    test::DenseContact dense = test::denseContact(*model, 0, before, reference, real, rig.state.hand[0].instrument.jaw,
+                                                  0.0015, rig.stepper.contactSet(0));
     // Two pieces of a shape may touch the same place: the reference counts it once.
     std::vector<ToolRow> published;
     for (const ToolRow& row : rig.stepper.contactSet(0).direction) {

@@ -7,18 +7,15 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <memory>
-#include <vector>
 
-#include "sim/step/stepper.h"
-#include "tests/sim/scene/support/scenes.h"
+#include "tests/accuracy/support/instrument_press.h"
 
 namespace calot {
 namespace {
 
 /// Force on a rigid sphere of 2.5 mm that is pressed into the middle of the block (N), by depth in mm: linear
 /// elasticity, no friction, the sphere's profile over the reference configuration; trilinear hexahedra of 0.25 mm under
-/// the sphere, whose dilatation is averaged (tests/accuracy/support/sphere_on_block.py). Cells twice as large give 1 to
+/// the sphere, whose dilatation is averaged (tests/accuracy/support/press_on_block.py). Cells twice as large give 1 to
 /// 5 % less.
 constexpr std::array<double, 7> reference{0.0, 0.01339, 0.03710, 0.06590, 0.09764, 0.13023, 0.16310};
 
@@ -33,63 +30,24 @@ double referenceAt(double depth) {
 }
 
 /// A block under a probe that stands upright above a place of its top.
-class Press {
+class Press : public test::InstrumentPress {
  public:
-  Press(std::uint32_t tetrahedra, double x, double y, std::uint32_t ticks = 10) : x_(x), y_(y) {
-    scene_ = test::blockScene(tetrahedra, 16);
-    scene_.ticksPerStep = ticks;
-    scene_.hands[0].instrument = InstrumentKind::probe;
-    scene_.hands[0].port = Vec3(x, y, 0.13);
-    scene_.hands[0].couplingStiffness = 1e4;
-    scene_.hands[0].maxForce = 1e3;
-    scene_.organs[0].friction = 0.0;
-    model_ = test::buildModel(scene_);
-    state_ = initialState(*model_, 1);
-    stepper_ = std::make_unique<Stepper>(*model_, executor_);
-  }
+  Press(std::uint32_t tetrahedra, double x, double y, std::uint32_t ticks = 10)
+      : InstrumentPress(scene(tetrahedra, ticks), InstrumentKind::probe, x, y, test::blockTop) {}
 
-  [[nodiscard]] double seconds() const { return model_->stepSeconds(); }
-
-  /// One step with the tip so far below the top.
-  const StepResult& step(double depth) {
-    std::vector<TickSamples> samples =
-        test::ticksAt(scene_, Vec3(x_, y_, test::blockTop - depth), scene_.hands[1].home);
-    for (TickSamples& tick : samples) tick.hand[0].instrument = InstrumentKind::probe;
-    const StepResult& result = stepper_->step(state_, samples);
-    misses += result.misses != 0 ? 1 : 0;
-    return result;
-  }
-
-  /// Goes there at 25 mm/s and waits until all is still, or for a second. @return force over that of the reference,
-  /// less one
+  /// @return force over that of the reference, less one
   double settle(double depth) {
-    const StepResult* result = nullptr;
-    double waited = 0.0;
-    for (double now = depth_; waited < 1.0;) {
-      now = std::min(depth, now + 0.025 * seconds());
-      result = &step(now);
-      if (now < depth) continue;
-      waited += seconds();
-      if (result->organ[0].maxSpeed < 5e-6) break;
-    }
-    depth_ = depth;
-    tip = test::blockTop - result->hand[0].tipSimulated[2];
-    force = result->hand[0].contactForce[2];
+    InstrumentPress::settle(depth, 5e-6);
     return force / referenceAt(tip) - 1.0;
   }
 
-  double tip = 0.0;    ///< depth of the simulated one (m)
-  double force = 0.0;  ///< N
-  int misses = 0;
-
  private:
-  double x_, y_;
-  double depth_ = -0.002;
-  SceneDescription scene_;
-  std::unique_ptr<const Model> model_;
-  SerialExecutor executor_;
-  State state_;
-  std::unique_ptr<Stepper> stepper_;
+  static SceneDescription scene(std::uint32_t tetrahedra, std::uint32_t ticks) {
+    SceneDescription scene = test::blockScene(tetrahedra, 16);
+    scene.ticksPerStep = ticks;
+    scene.organs[0].friction = 0.0;
+    return scene;
+  }
 };
 
 /// Middle of a face of the skin, beside one of its vertices (and of the mesh's), on an edge, in general position.

@@ -49,7 +49,7 @@ std::optional<PublishedSet> setOfLaidShaft(std::size_t contacts) {
     if (set.kind.size() < contacts) continue;
     const HandState& hand = state.hand[laidHand];
     return PublishedSet{
-        hapticModel(*model, laidHand), firstBlocks(set, contacts), {hand.realPosition, hand.realOrientation}};
+        hapticModel(*model, laidHand), firstBlocks(set, contacts), {hand.input.position, hand.input.orientation}};
   }
   return std::nullopt;
 }

@@ -141,6 +141,32 @@ class Scene(ProgramTest):
         self.refused(2, "scene", "template", program.SOURCE / "assets/organs/gallbladder.obj", "--unit", "m", "-o", target, names=("--force",))
         self.assertEqual(target.read_bytes(), before)
 
+    def test_a_scene_is_divided_otherwise(self):
+        original = json.loads((program.SOURCE / "assets/scenes/cholecystectomy.json").read_text())
+        made = self.path("d") / "scenes" / "fine.json"
+        divide = ("scene", "divide", "cholecystectomy", "-o", made)
+        self.well(*divide, "--elements", 8, "--ticks-per-step", 5)  # lengths halved
+        fine = json.loads(made.read_text())
+        self.assertEqual([o["tetrahedra"] for o in fine["organs"]], [8 * o["tetrahedra"] for o in original["organs"]])
+        self.assertEqual([v["elements"] for v in fine["vessels"]], [2 * v.get("elements", 40) for v in original["vessels"]])
+        self.assertEqual([c["strands"] for c in fine["connective"]], [4 * c["strands"] for c in original["connective"]])
+        self.assertEqual([f["cellsPerCube"] for f in fine["fat"]], [round(f["cellsPerCube"] / 2) for f in original["fat"]])
+        self.assertEqual((fine["name"], fine["ticksPerStep"]), ("fine", 5))
+        for part in ("organs", "vessels", "connective", "fat"):
+            for item in (*fine[part], *original[part]):
+                for key in ("tetrahedra", "elements", "strands", "cellsPerCube"):
+                    item.pop(key, None)
+        for scene in (fine, original):
+            for key in ("name", "ticksPerStep"):
+                scene.pop(key, None)
+        self.assertEqual(fine, original, "all else as it is")
+        before = made.read_bytes()
+        self.well(*divide, "--elements", 8, "--ticks-per-step", 5)  # what is there alike stays
+        self.refused(2, *divide, names=(made, "--force"))
+        self.assertEqual(made.read_bytes(), before)
+        self.refused(3, "scene", "divide", "cholecystectomy", "--elements", 0.1, "-o", self.path("d") / "scenes" / "coarse.json", names=("/fat/0/cellsPerCube",))
+        self.refused(2, "scene", "divide", "cholecystectomy", "-o", self.path("fine.txt"), names=("fine.txt", ".json"))
+
 
 if __name__ == "__main__":
     program.main()

@@ -106,7 +106,7 @@ class Checker:
                        "O3": organs if version >= 3 else 0, "P": int(version == 3 and b"procedure" in components),
                        "O4": organs if version >= 4 else 0, "T4": vessels if version >= 4 else 0,
                        "A4": fat if version >= 4 else 0, "V5": version >= 5, "T5": vessels if version >= 5 else 0,
-                       "V6": version >= 6,
+                       "V6": version >= 6, "A7": fat if version >= 7 else 0,
                        "D": int("/device" in file), "G": int(as_text(file.attrs["purpose"]) == b"golden"),
                        "K": sum(name.startswith(b"connective.") for name in components) if version >= 2 else 0}
         golden = self.counts["G"]

@@ -17,7 +17,7 @@ class Changed(program.ProgramTest):
         r = self.copy(skilled())
         with h5py.File(r, "r+") as file:
             file["/ticks/right/position"][1239, 2] += 2e-5
-        answer = self.refused(3, "replay", r, names=(r, "step 123", "hand.right", "reproducible", "chain broken"))
+        answer = self.refused(3, "replay", r, names=(r, "step 123", "hand.right.input", "reproducible", "chain broken"))
         self.assertEqual(answer.out, "")
 
     def test_pose_with_the_chain_made_to_fit(self):
@@ -26,7 +26,7 @@ class Changed(program.ProgramTest):
         with h5py.File(r, "r+") as file:
             file["/ticks/right/position"][1239, 2] += 2e-5
             recording_file.reseal(file)
-        answer = self.refused(3, "replay", r, names=(r, "step 123", "hand.right"))
+        answer = self.refused(3, "replay", r, names=(r, "step 123", "hand.right.input"))
         self.assertNotIn("chain", answer.err)
 
     def test_pose_at_a_tick_that_moves_nothing(self):
@@ -36,7 +36,7 @@ class Changed(program.ProgramTest):
         with h5py.File(r, "r+") as file:
             self.assertFalse(file["/ticks/right/force"][:300].any())
             file["/ticks/right/position"][234, 2] += 2e-5
-        self.refused(3, "replay", r, names=(r, "step 23", "hand.right inputs", "chain broken"))
+        self.refused(3, "replay", r, names=(r, "step 23", "hand.right.input samples", "chain broken"))
 
     def test_force(self):
         r = self.copy(skilled())

@@ -65,6 +65,7 @@ TEST(ResultComparison, SeesEveryChangeAndNamesIt) {
       {"vessels/largest_strain.size", [](StepResult& r) { r.vessel.clear(); }},
       {"fat/islands[0]", [](StepResult& r) { r.fat[0].islands = 1e-12; }},
       {"fat/uncleared[0]", [](StepResult& r) { r.fat[0].uncleared = 0.5; }},
+      {"fat/holds_specimen[0]", [](StepResult& r) { r.fat[0].holdsSpecimen = true; }},
       {"contact/tissue_depth", [](StepResult& r) { r.contact.tissueDepth = 1e-6; }},
       {"contact/instruments_touch", [](StepResult& r) { r.contact.instrumentsTouch = true; }},
       {"misses", [](StepResult& r) { r.misses = miss::contact; }},

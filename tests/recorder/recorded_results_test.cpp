@@ -127,6 +127,20 @@ TEST_F(EarlierOperation, LaterVersionsPassUnchanged) {
   EXPECT_EQ(&results.of(step_), &step_.result);
 }
 
+/// Before version 7 nothing tells what fat holds: they are done when they were.
+TEST_F(EarlierOperation, AreDoneWithoutAskingTheFat) {
+  for (const std::uint32_t version : {3U, 4U, 6U, stepResultVersion}) {
+    SCOPED_TRACE(version);
+    header_.stepResultVersion = version;
+    RecordedResults results(header_, scene_);
+    Judge judge(scene_);
+    RecordedStep last = step_;
+    last.result.vessel[0].partings = last.result.vessel[1].partings = 1;
+    last.result.connective[0].attached = 0.0;
+    EXPECT_EQ(judge.observe(results.of(last)).phase, Phase::done);
+  }
+}
+
 /// A recorded operation, judged by the rules and by others: the replay is bit-exact both times.
 TEST(GoldenContent, ARuleIsChangedAndNoBitIs) {
   struct Judging final : Observer {

@@ -58,7 +58,8 @@ TEST(Bodies, AStiffToolDoesNotPassThroughAThinSheet) {
       if (testing::Test::HasFailure()) break;
     }
     std::printf("sheet at %.1f m/s: deepest %.3f mm, in pinches %.3f mm, touched in %d of %d steps, tip at %.1f mm\n",
-                speed, 1e3 * deepest, 1e3 * pinched, touched, steps, 1e3 * loop.rig.state.hand[0].simulatedPosition[2]);
+                speed, 1e3 * deepest, 1e3 * pinched, touched, steps,
+                1e3 * loop.rig.state.hand[0].instrument.position[2]);
     EXPECT_GT(touched, 10);
     EXPECT_LE(deepest, 2e-4);
   }
@@ -187,7 +188,7 @@ TEST(Bodies, ATipInAFoldStaysThere) {
     double largest = 0.0;
     double deepest = 0.0;
     int pinches = 0;
-    Vec3 last = loop.rig.state.hand[0].simulatedPosition;
+    Vec3 last = loop.rig.state.hand[0].instrument.position;
     Vec3 lastReal = last;
     for (int step = 0; step < 500; ++step) {
       const StepResult& result = loop.step(sample, [] {});

@@ -151,14 +151,15 @@ Record shake(const Model& model, const std::array<Vec3, handCount>& about, std::
       record.holds += result.hand[h].grasping != 0 ? 1 : 0;
       if (step % measureEvery != 0) continue;
       const double depth = test::instrumentDepth(model, loop.rig.state, h);
-      EXPECT_LT(test::deepestDimple(loop.rig.state.hand[h]), 0.00801) << "dimples are bounded";
+      EXPECT_LT(test::deepestDimple(loop.rig.state.hand[h].touches), 0.00801) << "dimples are bounded";
       // In a pinch an instrument may have no way out; then the step must tell how deep it is. Jaws that hold tissue are
       // left out of the measure, the rest of their instrument is not.
       double& kept = result.contact.pinchedDepth > 0.0 ? record.pinched : record.deepest;
       if (depth > std::max(kept, 2e-4)) {
         std::printf("  seed %llu step %d hand %zu instrument %d: %.3f mm deep, told %.3f, pinched %.3f\n",
-                    static_cast<unsigned long long>(seed), step, h, static_cast<int>(loop.rig.state.hand[h].instrument),
-                    1e3 * depth, 1e3 * result.contact.maxDepth, 1e3 * result.contact.pinchedDepth);
+                    static_cast<unsigned long long>(seed), step, h,
+                    static_cast<int>(loop.rig.state.hand[h].instrument.kind), 1e3 * depth,
+                    1e3 * result.contact.maxDepth, 1e3 * result.contact.pinchedDepth);
       }
       kept = std::max(kept, depth);
     }
@@ -261,7 +262,7 @@ TEST(ViolentHands, TamperedStates) {
   ASSERT_TRUE(model);
   test::Rig rig(*model);
   for (int i = 0; i < 40; ++i) rig.step(Vec3(-0.005, 0.0, 0.03 - 0.0004 * i));
-  ASSERT_NE(rig.state.hand[0].touching, 0U);
+  ASSERT_NE(rig.state.hand[0].touches.structures, 0U);
   const std::vector<std::byte> bytes = saveState(rig.state);
   SCOPED_TRACE("seed 96");
   Random random(96);

@@ -30,6 +30,9 @@ std::vector<Field> FatAttachmentDescription::fields() {
 
 namespace {
 
+/// Size of the patch over which a node of the cubes spreads a force, in their edges.
+constexpr double cubeSpread = 0.22;
+
 std::vector<Field> triangleFields() {
   using S = FatDescription;
   return {
@@ -206,7 +209,9 @@ void FatTissue::listStructures(const Model& model, TissueId kind, std::size_t fi
                                std::vector<StructureModel>& structures) {
   for (std::size_t f = 0; f < model.fat().size(); ++f) {
     const FatDescription& d = model.scene().fat[f];
-    structures.push_back({d.name, d.appearance, d.role, kind, f, 0, firstBody + f, d.friction});
+    const double edge = d.cellsPerCube * d.cellSize;
+    structures.push_back({d.name, d.appearance, d.role, kind, f, 0, firstBody + f, d.friction, &model.fat()[f]->solid(),
+                          cubeSpread * edge});
   }
 }
 

@@ -54,6 +54,7 @@ struct FatResult {
   std::uint32_t iterations = 0;
   bool asleep = false;
   double uncleared = 0.0;
+  bool holdsSpecimen = false;
 
   template <class Visit>
   static void fields(Visit&& visit) {
@@ -71,6 +72,11 @@ struct FatResult {
     visit(ResultField{"uncleared", "1", "", 4,
                       "to_clear as a share of what was there before anything was carved; 0 without such a region"},
           &FatResult::uncleared);
+    visit(
+        ResultField{"holds_specimen", "", "", 7,
+                    "1: connected fat joins the scene's `specimen`, or a piece of vessel that hangs on it alone, with "
+                    "what stays"},
+        &FatResult::holdsSpecimen);
   }
 };
 

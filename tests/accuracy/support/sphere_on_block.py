@@ -1,10 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Reference of sphere_press_test.cpp: a rigid sphere on the block of tests/sim/scene/support/scenes.h, by another method.
+"""Reference of sphere_press_test.cpp and fat_press_test.cpp by another method: a rigid instrument pressed into a block that is held at its bottom.
 
-Linear elasticity, a quarter of the block, trilinear hexahedra with averaged dilatation (B-bar), graded away from the sphere; contact without
-friction, u_z >= profile(r) - depth at the nodes of the top (r at rest), as a linear complementarity problem on their condensed compliance.
-usage: sphere_on_block.py CELL_MM CELLS (under the sphere; and beyond 4 mm in each direction). Needs numpy and scipy. 0.25 and 8: two minutes.
+Linear elasticity, trilinear hexahedra with averaged dilatation (B-bar), graded away from the instrument; contact without friction,
+u_z >= profile(x, y) - depth at the nodes of the top (at rest), as a linear complementarity problem on their condensed compliance.
+usage: press_on_block.py CASE CELL_MM CELLS (under the instrument; and beyond in each direction). Needs numpy and scipy. CASE:
+  block     sphere of 2.5 mm on the block of tests/sim/scene/support/scenes.h, a quarter of it; 0.25 and 8: two minutes
+  fat       the same on fat_press_test.cpp's pad
+  hook      the electrode of sim/instruments/instruments.cpp, upright, on the pad: half of it
 """
 import sys
 
@@ -12,14 +15,41 @@ import numpy as np
 import scipy.sparse as sparse
 import scipy.sparse.linalg as linalg
 
-YOUNG, POISSON, RADIUS = 5000.0, 0.45, 0.0025
-HALF, HEIGHT, FINE = 0.03, 0.0255, 0.004
+MM = 1e-3
+BLOCK = {"young": 5000.0, "poisson": 0.45, "half": 30 * MM, "height": 25.5 * MM}
+PAD = {"young": 1600.0, "poisson": 0.4, "half": 18 * MM, "height": 12 * MM}
+RADIUS = 2.5 * MM
+# Axes of the electrode's capsules in y and z over the heel, and their radius.
+WIRE, BENDS = 0.6 * MM, np.array([[0.0, 10.0], [0.0, 1.9], [0.381, 0.981], [1.3, 0.6], [4.6, 0.6]]) * MM
+
+
+def sphere(x, y):
+    """Height of the underside over the lowest point, infinite beside it."""
+    inside = RADIUS**2 - x**2 - y**2
+    return np.where(inside > 1e-9 * RADIUS**2, RADIUS - np.sqrt(np.maximum(inside, 0.0)), np.inf)
+
+
+def electrode(x, y):
+    height = np.full(np.shape(x), np.inf)
+    for a, b in zip(BENDS, BENDS[1:]):
+        for share in np.linspace(0.0, 1.0, 401):  # spheres along the axis
+            cy, cz = a + share * (b - a)
+            inside = WIRE**2 - x**2 - (y - cy) ** 2
+            height = np.where(inside > 0.0, np.minimum(height, cz - np.sqrt(np.maximum(inside, 0.0))), height)
+    return height
+
+
+CASES = {  # block, underside, what is fine (m): to +x, to -y, to +y; depths
+    "block": (BLOCK, sphere, (4 * MM, 0.0, 4 * MM), MM * np.arange(1, 7)),
+    "fat": (PAD, sphere, (4 * MM, 0.0, 4 * MM), MM * np.array([0.5, 1, 2, 3])),
+    "hook": (PAD, electrode, (1.5 * MM, 1.5 * MM, 6 * MM), MM * np.array([0.5, 1, 2, 3])),
+}
 CORNERS = np.array([[-1, -1, -1], [1, -1, -1], [1, 1, -1], [-1, 1, -1], [-1, -1, 1], [1, -1, 1], [1, 1, 1], [-1, 1, 1]], float)
 
 
-def axis(length, cell, count):
-    """Equal cells as far as FINE, then `count` that grow by a constant ratio."""
-    fine = np.arange(round(FINE / cell) + 1) * cell
+def axis(length, reach, cell, count):
+    """Equal cells as far as `reach`, then `count` that grow by a constant ratio."""
+    fine = np.arange(round(reach / cell) + 1) * cell
     low, high = 1.0 + 1e-9, 4.0
     for _ in range(200):
         ratio = 0.5 * (low + high)
@@ -28,9 +58,9 @@ def axis(length, cell, count):
     return np.concatenate([fine, fine[-1] + coarse * (length - fine[-1]) / coarse[-1]])
 
 
-def stiffness(size):
+def stiffness(size, young, poisson):
     """Of one cell, 24 x 24."""
-    lam, mu = YOUNG * POISSON / ((1 + POISSON) * (1 - 2 * POISSON)), YOUNG / (2 * (1 + POISSON))
+    lam, mu = young * poisson / ((1 + poisson) * (1 - 2 * poisson)), young / (2 * (1 + poisson))
     law = np.diag([2 * mu] * 3 + [mu] * 3)
     law[:3, :3] += lam
     strains = []
@@ -62,41 +92,48 @@ def complementarity(matrix, free):
 
 
 def main():
-    cell, count = 1e-3 * float(sys.argv[1]), int(sys.argv[2])
-    x, z = axis(HALF, cell, count), -axis(HEIGHT, cell, count)
-    n, layers = len(x), len(z)
-    node = np.arange(n * n * layers).reshape(layers, n, n)
+    block, underside, (to_x, to_low, to_high), depths = CASES[sys.argv[1]]
+    cell, count = MM * float(sys.argv[2]), int(sys.argv[3])
+    x, z = axis(block["half"], to_x, cell, count), -axis(block["height"], 4 * MM, cell, count)
+    y = axis(block["half"], to_high, cell, count)
+    if to_low:
+        y = np.concatenate([-axis(block["half"], to_low, cell, count)[:0:-1], y])
+    nx, ny, layers = len(x), len(y), len(z)
+    node = np.arange(nx * ny * layers).reshape(layers, ny, nx)
     rows, columns, values, known = [], [], [], {}
     for k in range(layers - 1):
-        for j in range(n - 1):
-            for i in range(n - 1):
-                size = np.array([x[i + 1] - x[i], x[j + 1] - x[j], z[k] - z[k + 1]])
+        for j in range(ny - 1):
+            for i in range(nx - 1):
+                size = np.array([x[i + 1] - x[i], y[j + 1] - y[j], z[k] - z[k + 1]])
                 key = tuple(np.round(size, 9))
                 if key not in known:
-                    known[key] = stiffness(size)
+                    known[key] = stiffness(size, block["young"], block["poisson"])
                 corner = [node[k + 1 - dz, j + dy, i + dx] for dz in (0, 1) for dx, dy in ((0, 0), (1, 0), (1, 1), (0, 1))]
                 dofs = (3 * np.array(corner)[:, None] + np.arange(3)).ravel()
                 rows.append(np.repeat(dofs, 24))
                 columns.append(np.tile(dofs, 24))
                 values.append(known[key].ravel())
     matrix = sparse.coo_matrix((np.concatenate(values), (np.concatenate(rows), np.concatenate(columns)))).tocsr()
-    held = np.zeros((n * n * layers, 3), bool)
-    held[node[:, :, 0].ravel(), 0] = held[node[:, 0, :].ravel(), 1] = held[node[-1].ravel()] = True
+    held = np.zeros((nx * ny * layers, 3), bool)
+    held[node[:, :, 0].ravel(), 0] = held[node[-1].ravel()] = True
+    if not to_low:
+        held[node[:, 0, :].ravel(), 1] = True
     free = np.flatnonzero(~held.ravel())
     factor = linalg.splu(matrix[free][:, free].tocsc(), permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True})
-    radius = np.hypot(*np.meshgrid(x, x)).ravel()
-    top = np.flatnonzero(radius < RADIUS * (1 - 1e-9))
+    at_x, at_y = (at.ravel() for at in np.meshgrid(x, y))
+    profile = underside(at_x, at_y)
+    top = np.flatnonzero(profile < depths[-1])
+    profile = profile[top]
     place = np.searchsorted(free, 3 * node[0].ravel()[top] + 2)
     compliance = np.empty((len(top), len(top)))
     for c, at in enumerate(place):
         load = np.zeros(len(free))
         load[at] = 1.0
         compliance[:, c] = factor.solve(load)[place]
-    profile = RADIUS - np.sqrt(RADIUS**2 - radius[top] ** 2)
-    for depth in 1e-3 * np.arange(1, 7):
+    for depth in depths:
         below = profile < depth
-        force = 4 * complementarity(compliance[np.ix_(below, below)], profile[below] - depth).sum()
-        print(f"{1e3 * depth:.0f} mm: {force:.5f} N")
+        force = (2 if to_low else 4) * complementarity(compliance[np.ix_(below, below)], profile[below] - depth).sum()
+        print(f"{depth / MM:g} mm: {force:.5f} N", flush=True)
 
 
 if __name__ == "__main__":

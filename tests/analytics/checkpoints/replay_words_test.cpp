@@ -23,17 +23,17 @@ ReplayReport compared(ReplayVerdict verdict) {
 TEST(ReplayWords, SayWhatWasFound) {
   EXPECT_EQ(wordsFor(compared(ReplayVerdict::exact)), "bit-exact");
   ReplayReport report = compared(ReplayVerdict::diverged);
-  report.divergence = {13, 137, "hand.right", "realPosition", "index 0: recorded 1, here 2"};
+  report.divergence = {13, 137, "hand.right.input", "position", "index 0: recorded 1, here 2"};
   report.reproducible = true;
   EXPECT_EQ(wordsFor(report),
-            "diverged at step 13, tick 137: hand.right realPosition (index 0: recorded 1, here 2); reproducible: a "
+            "diverged at step 13, tick 137: hand.right.input position (index 0: recorded 1, here 2); reproducible: a "
             "second run differs in the same way");
   report.reproducible = false;
   report.chain = recorder::ChainVerdict{recorder::ChainFault::flush, 3, 50, 75, 0.5};
   const std::string broken =
       "the content chain is broken at flush 3 (steps 50 to 74, from 0.500 s on): what was recorded there was changed";
   EXPECT_EQ(wordsFor(report),
-            "diverged at step 13, tick 137: hand.right realPosition (index 0: recorded 1, here 2); not deterministic "
+            "diverged at step 13, tick 137: hand.right.input position (index 0: recorded 1, here 2); not deterministic "
             "here: a second run behaves differently; content chain broken: " +
                 broken);
   report.divergence.reset();

@@ -190,6 +190,30 @@ TEST(TableDesign, reliabilityOverRaters) {
   expectFault(ErrorKind::refused, "", {"\"P9\"", "score", "R0"}, [&] { (void)reportOf(text + "P9,R0,4\n", a); });
 }
 
+TEST(TableDesign, sharesWithinGroups) {
+  // Four people in two groups at two levels: means of people 0, 2 and 10, 12; level b is 1 more, in group y 3 more; and
+  // one person of each group goes 1 further.
+  Asked a = asked(Design::reliability, {"score"});
+  a.options.occasionColumns = {"level"};
+  const auto json =
+      reportOf("id,group,level,score\nA,x,a,0\nA,x,b,1\nB,x,a,2\nB,x,b,4\nC,y,a,10\nC,y,b,13\nD,y,a,12\nD,y,b,16\n", a)
+          .json;
+  ASSERT_EQ(json["shares"].size(), 1U);
+  const auto& nested = json["components"][1];
+  EXPECT_EQ(nested["of"], "within groups");
+  // By hand: S 6.25, R 2.25 and 12.25, E 0.25; levels' means over both groups differ by 2.5, groups' means by 11.
+  EXPECT_NEAR(nested["person_variance"].get<double>(), 3.0, 1e-12);
+  EXPECT_NEAR(nested["facet_variance"].get<double>(), 3.5, 1e-12);
+  EXPECT_NEAR(nested["residual_variance"].get<double>(), 0.25, 1e-12);
+  EXPECT_NEAR(nested["common_variance"].get<double>(), 3.125 - 0.0625, 1e-12);
+  EXPECT_NEAR(nested["interaction_variance"].get<double>(), 0.4375, 1e-12);
+  EXPECT_NEAR(nested["group_variance"].get<double>(), 0.5 * (60.5 - 1.5625) - 0.21875, 1e-12);
+  const auto& shares = json["shares"][0];
+  EXPECT_NEAR(shares["level"]["share"].get<double>(), 3.75 / 6.75, 1e-12);
+  EXPECT_NEAR(shares["residual"]["share"].get<double>(), 0.25 / 6.75, 1e-12);
+  EXPECT_EQ(shares["level"]["interval"]["method"], "percentile bootstrap");
+}
+
 TEST(TableDesign, correlationAgainstAColumn) {
   Asked a = asked(Design::correlation, {"seconds"});
   a.choices.against = "score:higher";

@@ -50,6 +50,20 @@ TEST(RandomStream, isUniformNormalAndShuffles) {
   EXPECT_NEAR(fourth / n, 3.0, 4.0 * std::sqrt(96.0 / n));
 }
 
+/// Several statistics have the intervals that each of them has alone.
+TEST(Bootstrap, severalAreOfTheSameResamples) {
+  const auto alone = bootstrap(skewed, [](std::span<const double> v) { return mean(v); }, {.resamples = 499});
+  const auto several = bootstrapSeveral({skewed},
+                                        [](const ValueGroups& g) {
+                                          return Expected<Values>(Values{1.0, *mean(g[0])});
+                                        },
+                                        {.resamples = 499});
+  ASSERT_TRUE(several) << several.reason();
+  EXPECT_FALSE(several->front()) << "a constant has no interval";
+  EXPECT_EQ((*several)[1]->interval.lower, alone->interval.lower);
+  EXPECT_EQ((*several)[1]->interval.upper, alone->interval.upper);
+}
+
 TEST(Bootstrap, meanOfASkewedSampleAsRsBoot) {
   // R 4.2.2, boot 1.3-28.1: set.seed(1); boot(x, function(d, i) mean(d[i]), R = 200000); boot.ci: percentile
   // [1.42, 4.94]. The generators differ: the simulated quantiles have a standard error of some .006 (50,000 resamples).

@@ -110,6 +110,8 @@ TEST(Hints, FollowTheProcedure) {
   figures.attached = 0.25;
   EXPECT_EQ(hint(),
             "Take the gallbladder off its bed: pull it away and burn what is stretched. 25 % is still attached.");
+  figures.attached = 0.0;
+  EXPECT_EQ(hint(), "Fat still holds the gallbladder: pull it away and divide what is drawn out.");
   EXPECT_EQ(whatIsUndone(scene, figures), "nothing was touched");
   figures.touched = true;
   EXPECT_EQ(whatIsUndone(scene, figures), "the procedure was still at its phase identification");

@@ -52,7 +52,7 @@ TEST(EventWords, CallFaultsWhatTheProcedureCounts) {
     EXPECT_TRUE(phrases.insert(words->phrase).second) << words->phrase << " is said of two kinds";
     if (words->fault) faults.insert(words->kind);
   }
-  EXPECT_EQ(all, 25);
+  EXPECT_EQ(all, 26);
   const std::set<EventKind> expected{
       EventKind::graspSlip,       EventKind::tissueTear,    EventKind::strandsTorn,    EventKind::vesselTorn,
       EventKind::clipHalfOn,      EventKind::clipOnClip,    EventKind::clipTooNear,    EventKind::clipDropped,

@@ -54,7 +54,7 @@ class Liar final : public Observer {
         samples[2].hand[0].position[0] += 1e-9;
         break;
       case Lie::About::digest:
-        digest.component[State::tissueFrom] ^= 1U;  // the liver is the first organ
+        digest.component[layout_.fields[placeOf(layout_, "organ.liver/position")].component] ^= 1U;
         digest.field[placeOf(layout_, "organ.liver/position")] ^= 1U;
         break;
       case Lie::About::volume:

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <iostream>
 
 #include "tests/sim/carving/support/carving_bodies.h"
@@ -79,6 +80,66 @@ TEST(Islands, ACutOffPartLeaves) {
     ASSERT_LT(model.lattice.position(model.lattice.nodeAt(n))[0], 0.001);
   }
   std::cout << removed << " nodes left with the part\n";
+}
+
+/// Two blocks, and a bridge between them where there is one.
+FieldModel blocks(bool bridge) {
+  const BrickLattice lattice(Vec3::Zero(), 1.0, Index3::Constant(26));
+  return test::fieldOf(lattice, 3.0, [bridge](const Vec3& p) {
+    const auto box = [&p](const Vec3& lower, const Vec3& upper) {
+      return std::max((lower - p).maxCoeff(), (p - upper).maxCoeff());
+    };
+    const double ends = std::min(box({2.5, 2.5, 2.5}, {8.5, 22.5, 22.5}), box({16.5, 2.5, 2.5}, {22.5, 22.5, 22.5}));
+    return bridge ? std::min(ends, box({8.0, 11.5, 11.5}, {17.0, 12.5, 12.5})) : ends;
+  });
+}
+
+TEST(Islands, ConnectWhatHangsOnTheSamePart) {
+  constexpr std::uint32_t left = 0, right = 1, loose = 2, beside = 3, things = 4;
+  const auto node = [](const FieldModel& model, int x) { return model.lattice.node({x, 12, 12}); };
+  const auto hangEnds = [&](Islands& islands, const CarvedField& field, const FieldModel& model) {
+    islands.connect(field, things);
+    islands.hang(left, node(model, 4));
+    islands.hang(right, node(model, 20));
+  };
+  const FieldModel whole = blocks(true);
+  const std::vector<std::uint32_t> anchors{node(whole, 4), node(whole, 20)};
+  CarvedField field(whole);
+  Islands islands(whole.lattice, anchors);
+  islands.rebuild(field);
+  hangEnds(islands, field, whole);
+  EXPECT_TRUE(islands.connected(left, right)) << "by a bridge of one node";
+  EXPECT_FALSE(islands.connected(left, loose));
+
+  CarvedBricks state;
+  field.begin();
+  BrickBits cut{};
+  const std::uint32_t middle = node(whole, 12);
+  cut[middle >> 6U & 7U] = std::uint64_t{1} << (middle & 63U);
+  field.remove(middle / BrickLattice::brickNodes, cut);
+  EXPECT_EQ(islands.remove(field), 0) << "both halves are anchored";
+  field.commit(state);
+  hangEnds(islands, field, whole);
+  EXPECT_FALSE(islands.connected(left, right)) << "the bridge is cut";
+  // A thing that hangs on both leads over.
+  islands.hang(loose, node(whole, 5));
+  EXPECT_FALSE(islands.connected(left, right));
+  islands.hang(loose, node(whole, 19));
+  EXPECT_TRUE(islands.connected(left, right));
+  EXPECT_FALSE(islands.connected(left, beside)) << "it hangs on nothing";
+
+  // As after a restore.
+  Islands anew(whole.lattice, anchors);
+  anew.rebuild(field);
+  hangEnds(anew, field, whole);
+  EXPECT_FALSE(anew.connected(left, right));
+
+  const FieldModel apart = blocks(false);
+  CarvedField two(apart);
+  Islands islandsOfTwo(apart.lattice, anchors);
+  islandsOfTwo.rebuild(two);
+  hangEnds(islandsOfTwo, two, apart);
+  EXPECT_FALSE(islandsOfTwo.connected(left, right));
 }
 
 }  // namespace

@@ -50,5 +50,23 @@ TEST(FatAllocation, NoStrokeAllocates) {
   EXPECT_GT(before, 0U);
 }
 
+TEST(FatAllocation, NoTearAllocates) {
+  const auto model =
+      test::fatOn(test::lumpSurface({0.012, 0.010, 0.006}), test::fatSettings(0.00075), {test::floorPartner(-0.003)});
+  FatBody body(*model);
+  FatState state = restState(*model);
+  const std::vector<std::uint32_t> thing(model->allTies().size(), 0);
+  std::size_t before = 0;
+  int torn = 0;
+  for (Vec3& p : state.solid.position) p[0] *= 3.5;  // a cube a step
+  for (int i = 0; i < 31; ++i) {
+    if (i == 1) before = allocations;
+    torn += body.tear(state).changed ? 1 : 0;
+    EXPECT_FALSE(body.joins(thing, 2)) << "all of it hangs on one thing";
+  }
+  EXPECT_EQ(allocations - before, 0U);
+  EXPECT_EQ(torn, 31);
+}
+
 }  // namespace
 }  // namespace calot

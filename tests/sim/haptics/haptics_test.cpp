@@ -187,8 +187,8 @@ TEST_F(HapticRun, ReproducesTheStepsForceAtTheStepsPose) {
       EXPECT_TRUE(isConsistent(set));
       std::fill(set.rate.begin(), set.rate.end(), 0.0);
       HapticState haptic;
-      haptic.tip = rig.state.hand[h].realPosition;
-      haptic.orientation = rig.state.hand[h].realOrientation;
+      haptic.tip = rig.state.hand[h].input.position;
+      haptic.orientation = rig.state.hand[h].input.orientation;
       haptic.set = set.step;
       haptic.lambda = set.lambda;
       const HapticForce force = hapticTick(model, haptic, set);
@@ -210,7 +210,7 @@ TEST_F(HapticRun, FollowsTheHandBetweenSteps) {
   test::Rig rig(*model_);
   const Vec3 pressing(-0.005, 0.002, test::blockTop - 0.001);
   for (int i = 0; i < 30; ++i) rig.step(pressing);
-  ASSERT_NE(rig.state.hand[0].touching, 0U);
+  ASSERT_NE(rig.state.hand[0].touches.structures, 0U);
   const HapticModel model = hapticModel(*model_, 0);
   HapticState haptic = initialHaptics(rig.state, 0);
   settled(model, haptic, rig.stepper.contactSet(0));

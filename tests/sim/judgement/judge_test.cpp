@@ -137,6 +137,20 @@ TEST_F(JudgeTest, PhasesFollowTheLastAct) {
   EXPECT_EQ(observe(judge).phase, Phase::done);
 }
 
+TEST_F(JudgeTest, FatThatHoldsTheSpecimenKeepsItFromBeingDone) {
+  Judge judge(sceneOfAll());
+  now_.vessel[0].partings = now_.vessel[1].partings = 1;
+  now_.fat[0].holdsSpecimen = true;
+  tell(EventKind::strandsBurned, 0, 0.01);
+  now_.connective[0].attached = 0.0;
+  EXPECT_EQ(observe(judge).phase, Phase::identification);
+  tell(EventKind::fatTorn, 5, 1e-9);
+  now_.fat[0].holdsSpecimen = false;
+  const Judgement& done = observe(judge);
+  EXPECT_EQ(done.phase, Phase::done) << "the last string is gone";
+  EXPECT_EQ(done.errors, 0U) << "a string that tears is no error";
+}
+
 TEST_F(JudgeTest, ClipsAreJudgedByTheScenesGaps) {
   const struct {
     double enclosed, gap, junction, end;

@@ -28,8 +28,8 @@ class StateTest : public testing::Test {
       rig.step(tips.left, tips.right);
     }
     state_ = std::make_unique<State>(rig.state);
-    ASSERT_FALSE(state_->hand[0].contactKey.empty()) << "the run must touch";
-    ASSERT_FALSE(state_->hand[1].contactKey.empty()) << "the run must touch";
+    ASSERT_FALSE(state_->hand[0].touches.key.empty()) << "the run must touch";
+    ASSERT_FALSE(state_->hand[1].touches.key.empty()) << "the run must touch";
   }
   static void TearDownTestSuite() {
     state_.reset();
@@ -95,9 +95,24 @@ TEST_F(StateTest, ChangingAFieldChangesItsDigestAndNoOther) {
 }
 
 TEST_F(StateTest, ComponentsAreNamedInOrder) {
-  EXPECT_EQ(model_->layout().components,
-            (std::vector<std::string>{"clock", "camera", "hand.left", "hand.right", "instruments", "tissue",
-                                      "retraction", "organ.block", "organ.ball", "charred.block", "charred.ball"}));
+  EXPECT_EQ(
+      model_->layout().components,
+      (std::vector<std::string>{"clock", "camera", "hand.left.input", "hand.left.instrument", "hand.left.touches",
+                                "hand.left.grasp", "hand.left.burn", "hand.right.input", "hand.right.instrument",
+                                "hand.right.touches", "hand.right.grasp", "hand.right.burn", "instruments", "tissue",
+                                "retraction", "organ.block", "organ.ball", "charred.block", "charred.ball"}));
+  EXPECT_EQ(model_->layout().components[state_->tissueFrom()], "organ.block");
+}
+
+TEST_F(StateTest, AChangedGraspChangesTheComponentOfGraspsAlone) {
+  State changed = *state_;
+  changed.hand[1].grasp.slipping = !changed.hand[1].grasp.slipping;
+  const StateDigest before = digestOf(*state_);
+  const StateDigest after = digestOf(changed);
+  for (std::size_t c = 0; c < after.component.size(); ++c) {
+    const std::string& name = model_->layout().components[c];
+    EXPECT_EQ(after.component[c] != before.component[c], name == "hand.right.grasp") << name;
+  }
 }
 
 /// An unwritten component keeps its digest, so a component that is written and not marked would be seen here.
@@ -110,9 +125,9 @@ TEST_F(StateTest, IncrementalDigestHashesWhatIsMarked) {
   state.organ[1].position[3][1] += 1e-9;
   EXPECT_EQ(incremental.update(state, none), first) << "nothing marked, nothing hashed";
   std::vector<bool> ball = none;
-  ball[State::tissueFrom + 1] = true;
+  ball[state.tissueFrom() + 1] = true;
   EXPECT_EQ(incremental.update(state, ball), digestOf(state));
-  state.hand[0].jaw += 0.1;
+  state.hand[0].instrument.jaw += 0.1;
   incremental.reset();
   EXPECT_EQ(incremental.update(state, none), digestOf(state)) << "after a reset all is hashed";
 }
@@ -151,10 +166,10 @@ TEST_F(StateTest, RefusesBytesThatAreNoStateOfThisModel) {
     state.organ[1].rotation[2][3][5] = bad;
     refuses(saveState(state), "rotation");
     state = *state_;
-    state.hand[1].realOrientation.x() = bad;
+    state.hand[1].input.orientation.x() = bad;
     refuses(saveState(state), "orientation");
     state = *state_;
-    state.hand[0].contactForce[0][1] = bad;
+    state.hand[0].touches.force[0][1] = bad;
     refuses(saveState(state), "contact force");
   }
   State state = *state_;
@@ -164,26 +179,36 @@ TEST_F(StateTest, RefusesBytesThatAreNoStateOfThisModel) {
   state.organ[0].rotation.emplace_back();
   refuses(saveState(state), "a group of elements more");
   state = *state_;
-  state.hand[0].touchingSince.push_back(0);
+  state.hand[0].touches.since.push_back(0);
   refuses(saveState(state), "an organ more");
   state = *state_;
-  state.hand[0].contactForce.emplace_back(Vec3::Zero());
+  state.hand[0].touches.force.emplace_back(Vec3::Zero());
   refuses(saveState(state), "a force without a place");
+  state = *state_;
+  state.hand[0].touches.dimple.emplace_back(Vec3::Zero());
+  refuses(saveState(state), "a dimple without a place");
+  state = *state_;
+  state.hand[0].touches.dimpleKey.push_back(2U << 8U);
+  state.hand[0].touches.dimple.emplace_back(Vec3::Zero());
+  refuses(saveState(state), "a dimple of no organ");
+  state = *state_;
+  state.hand[0].burn.tissue = smokeOfConnective;
+  refuses(saveState(state), "a burn of tissue that there is not");
   state = *state_;
   state.tissue.force.push_back(0.0);
   refuses(saveState(state), "a force among organs without a place");
   state = *state_;
-  state.hand[1].grasped = 0;
+  state.hand[1].grasp.structure = 0;
   refuses(saveState(state), "a hold of nothing");
   state = *state_;
   const auto hold = [&](std::uint32_t organ, std::uint32_t corner) {
     state = *state_;
-    HandState& hand = state.hand[1];
-    hand.grasped = organ;
-    hand.graspNode = {{0, 1, corner}};
-    hand.graspWeight = {Vec3(0.2, 0.3, 0.5)};
-    hand.graspPlace = {Vec3::Zero()};
-    hand.graspForce = {Vec3::Zero()};
+    GraspState& grasp = state.hand[1].grasp;
+    grasp.structure = organ;
+    grasp.node = {{0, 1, corner}};
+    grasp.weight = {Vec3(0.2, 0.3, 0.5)};
+    grasp.place = {Vec3::Zero()};
+    grasp.force = {Vec3::Zero()};
   };
   const auto corners = static_cast<std::uint32_t>(model_->organs()[0].skin.size());
   hold(0, corners - 1);
@@ -196,7 +221,7 @@ TEST_F(StateTest, RefusesBytesThatAreNoStateOfThisModel) {
   hold(noStructure, 0);
   refuses(saveState(state), "a held place of no organ");
   hold(0, 0);
-  state.hand[1].graspForce.clear();
+  state.hand[1].grasp.force.clear();
   refuses(saveState(state), "a held place without a force");
   state = *state_;
   state.organ.pop_back();

@@ -168,7 +168,7 @@ TEST_F(FatScene, TheDuctIsLaidBare) {
 TEST_F(FatScene, HeldFatFollowsAndIsLetGoWhereItIsBurned) {
   go({Vec3(0.0, 0.005, fatTop - 0.001), 0.8, InstrumentKind::grasper, button::lock}, 60);
   go({Vec3(0.0, 0.005, fatTop - 0.001), 0.0, InstrumentKind::grasper, button::lock}, 40);
-  ASSERT_EQ(rig_->state.hand[0].grasped, fatStructure);
+  ASSERT_EQ(rig_->state.hand[0].grasp.structure, fatStructure);
   const StepResult& lifted = go({Vec3(0.0, 0.005, fatTop + 0.004), 0.0, InstrumentKind::grasper, button::lock}, 60);
   EXPECT_EQ(lifted.hand[0].grasping, 1U << fatStructure);
   EXPECT_GT(lifted.hand[0].graspForce, 0.001);

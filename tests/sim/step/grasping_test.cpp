@@ -54,7 +54,7 @@ class Grasping : public testing::Test {
     for (int i = 1; i <= 20; ++i) step(hold_, 0.6 * (1.0 - i / 20.0), buttons);
     for (int i = 0; i < 30; ++i) step(hold_, 0.0, buttons);
     ASSERT_EQ(count(EventKind::graspBegin), 1);
-    ASSERT_EQ(rig_->state.hand[0].grasped, 0U);
+    ASSERT_EQ(rig_->state.hand[0].grasp.structure, 0U);
   }
   /// Height of the held skin (m).
   [[nodiscard]] double heldHeight() const {
@@ -62,7 +62,7 @@ class Grasping : public testing::Test {
     std::vector<Vec3> skin;
     model_->organs()[0].embedding.map(rig_->state.organ[0].position, skin);
     Vec3 p = Vec3::Zero();
-    for (std::size_t c = 0; c < 3; ++c) p += hand.graspWeight[0][static_cast<int>(c)] * skin[hand.graspNode[0][c]];
+    for (std::size_t c = 0; c < 3; ++c) p += hand.grasp.weight[0][static_cast<int>(c)] * skin[hand.grasp.node[0][c]];
     return p[2];
   }
 
@@ -84,7 +84,7 @@ TEST_F(Grasping, HeldTissueFollowsAndPullsBack) {
     previous = result.hand[0].graspForce;
     // The tissue goes as far as the simulated tip does, the coupling's stretch less than the hand.
     const double risen = heldHeight() - before;
-    EXPECT_NEAR(risen, rig_->state.hand[0].simulatedPosition[2] - hold_[2], 3e-4);
+    EXPECT_NEAR(risen, rig_->state.hand[0].instrument.position[2] - hold_[2], 3e-4);
     EXPECT_GT(risen, 0.35 * pull);
     EXPECT_LT(result.hand[0].contactForce[2], 0.0) << "it pulls the instrument down";
   }
@@ -93,7 +93,7 @@ TEST_F(Grasping, HeldTissueFollowsAndPullsBack) {
   for (int i = 0; i < 150; ++i) step(hold_ + Vec3(0.0, 0.0, 0.02), 0.6);
   EXPECT_EQ(count(EventKind::graspEnd), 1);
   EXPECT_EQ(count(EventKind::tissueTear), 0);
-  EXPECT_EQ(rig_->state.hand[0].grasped, noStructure);
+  EXPECT_EQ(rig_->state.hand[0].grasp.structure, noStructure);
   EXPECT_LT(rig_->state.organ[0].maxDisplacement, 2e-4);
 }
 
@@ -101,7 +101,7 @@ TEST_F(Grasping, SlipsOverTheStatedForce) {
   grasp();
   const double limit = model_->scene().hands[0].slipForce;
   double strongest = 0.0;
-  for (int i = 0; i < 250 && rig_->state.hand[0].grasped != noStructure; ++i) {
+  for (int i = 0; i < 250 && rig_->state.hand[0].grasp.structure != noStructure; ++i) {
     strongest = std::max(strongest, step(hold_ + Vec3(0.0, 0.0, 2e-4 * i), 0.0).hand[0].graspForce);
     if (count(EventKind::graspSlip) == 0) {
       EXPECT_LT(strongest, limit * 1.001) << "below the stated force nothing slips";
@@ -112,7 +112,7 @@ TEST_F(Grasping, SlipsOverTheStatedForce) {
   EXPECT_GT(strongest, 0.9 * limit);
   EXPECT_EQ(count(EventKind::tissueTear), 0);
   EXPECT_EQ(count(EventKind::graspEnd), 1) << "pulled on, the tissue leaves the jaws";
-  EXPECT_EQ(rig_->state.hand[0].grasped, noStructure);
+  EXPECT_EQ(rig_->state.hand[0].grasp.structure, noStructure);
 }
 
 TEST_F(Grasping, TearsOverTheStatedForceWhenLocked) {
@@ -130,7 +130,7 @@ TEST_F(Grasping, TearsOverTheStatedForceWhenLocked) {
   const auto tear =
       std::find_if(events_.begin(), events_.end(), [](const Event& e) { return e.kind == EventKind::tissueTear; });
   EXPECT_GT(tear->value, limit);
-  EXPECT_EQ(rig_->state.hand[0].grasped, noStructure);
+  EXPECT_EQ(rig_->state.hand[0].grasp.structure, noStructure);
   // Closed jaws do not take hold again.
   for (int i = 0; i < 50; ++i) step(hold_, 0.0, button::lock);
   EXPECT_EQ(count(EventKind::graspBegin), 1);
@@ -158,8 +158,8 @@ TEST_F(Grasping, ARestoredHoldGoesOnWithTheSameBits) {
       ASSERT_EQ(digestOf(rig_->state).component, digestOf(other.state).component) << "step " << i;
     }
   }
-  EXPECT_EQ(rig_->state.hand[0].grasped, noStructure);
-  EXPECT_EQ(other.state.hand[0].grasped, 0U) << "its jaws stayed closed";
+  EXPECT_EQ(rig_->state.hand[0].grasp.structure, noStructure);
+  EXPECT_EQ(other.state.hand[0].grasp.structure, 0U) << "its jaws stayed closed";
 }
 
 }  // namespace

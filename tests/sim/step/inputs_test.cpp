@@ -57,7 +57,7 @@ TEST_F(InputsTest, WhatIsNoMeasurementHoldsThePose) {
     const Vec3 pressing(-0.005, 0.002, test::blockTop - 0.001);
     for (int i = 0; i < 20; ++i) rig.step(pressing);
     const HandState before = rig.state.hand[0];
-    ASSERT_NE(before.touching, 0U);
+    ASSERT_NE(before.touches.structures, 0U);
     std::vector<TickSamples> bad = ticks(Vec3(0.02, 0.02, 0.03));
     for (TickSamples& tick : bad) c.spoil(tick.hand[0]);
     for (int i = 0; i < 7; ++i) {
@@ -67,13 +67,13 @@ TEST_F(InputsTest, WhatIsNoMeasurementHoldsThePose) {
       if (i == 0) {
         EXPECT_EQ(invalid[0].hand, 0);
         EXPECT_EQ(invalid[0].step, 20U);
-        EXPECT_EQ(invalid[0].position, before.realPosition);
+        EXPECT_EQ(invalid[0].position, before.input.position);
       }
-      EXPECT_EQ(rig.state.hand[0].realPosition, before.realPosition);
-      EXPECT_EQ(rig.state.hand[0].realOrientation.coeffs(), before.realOrientation.coeffs());
-      EXPECT_FALSE(rig.state.hand[0].valid);
-      EXPECT_TRUE(rig.state.hand[1].valid) << "the other hand goes on";
-      EXPECT_NE(rig.state.hand[0].touching, 0U) << "and so does the contact";
+      EXPECT_EQ(rig.state.hand[0].input.position, before.input.position);
+      EXPECT_EQ(rig.state.hand[0].input.orientation.coeffs(), before.input.orientation.coeffs());
+      EXPECT_FALSE(rig.state.hand[0].input.valid);
+      EXPECT_TRUE(rig.state.hand[1].input.valid) << "the other hand goes on";
+      EXPECT_NE(rig.state.hand[0].touches.structures, 0U) << "and so does the contact";
       ASSERT_TRUE(test::allFinite(rig.state));
       ASSERT_TRUE(test::allFinite(result));
     }
@@ -82,7 +82,7 @@ TEST_F(InputsTest, WhatIsNoMeasurementHoldsThePose) {
     ASSERT_EQ(valid.size(), 1U);
     EXPECT_EQ(valid[0].hand, 0);
     EXPECT_NEAR(valid[0].value, 0.07, 1e-12) << "seven steps without measurements";
-    EXPECT_TRUE(rig.state.hand[0].valid);
+    EXPECT_TRUE(rig.state.hand[0].input.valid);
   }
 }
 
@@ -92,7 +92,7 @@ TEST_F(InputsTest, TheNewestMeasurementOfTheStepCounts) {
   mixed[6].hand[0].position = Vec3(-0.01, 0.004, 0.038);
   for (std::size_t i = 7; i < mixed.size(); ++i) mixed[i].hand[0].valid = false;
   const StepResult& result = rig.stepper.step(rig.state, mixed);
-  EXPECT_EQ(rig.state.hand[0].realPosition, Vec3(-0.01, 0.004, 0.038));
+  EXPECT_EQ(rig.state.hand[0].input.position, Vec3(-0.01, 0.004, 0.038));
   EXPECT_EQ(eventsOf(result, EventKind::sampleInvalid).size(), 1U) << "the step ended without measurements";
 }
 
@@ -106,8 +106,8 @@ TEST_F(InputsTest, OutOfTheWorkspaceIsClampedWithOneEvent) {
       EXPECT_EQ(out[0].hand, 0);
       EXPECT_NEAR(out[0].value, 0.05, 1e-12) << "distance outside";
     }
-    EXPECT_LT((rig.state.hand[0].realPosition - Vec3(0.15, -0.03, 0.05)).norm(), 1e-15);
-    EXPECT_TRUE(rig.state.hand[0].valid) << "a sample outside is a measurement all the same";
+    EXPECT_LT((rig.state.hand[0].input.position - Vec3(0.15, -0.03, 0.05)).norm(), 1e-15);
+    EXPECT_TRUE(rig.state.hand[0].input.valid) << "a sample outside is a measurement all the same";
   }
   EXPECT_TRUE(eventsOf(rig.step(Vec3(0.1, -0.03, 0.05)), EventKind::outOfWorkspace).empty());
   EXPECT_EQ(eventsOf(rig.step(Vec3(0.2, -0.03, 0.05)), EventKind::outOfWorkspace).size(), 1U) << "left a second time";
@@ -141,11 +141,11 @@ TEST_F(InputsTest, ExtremeMeasurementsStayFinite) {
       const StepResult& result = rig.stepper.step(rig.state, samples);
       ASSERT_TRUE(test::allFinite(rig.state)) << "round " << round << " sample " << k;
       ASSERT_TRUE(test::allFinite(result)) << "round " << round << " sample " << k;
-      ASSERT_GE(rig.state.hand[0].jaw, 0.0);
-      ASSERT_LE(rig.state.hand[0].jaw, 1.6);
+      ASSERT_GE(rig.state.hand[0].instrument.jaw, 0.0);
+      ASSERT_LE(rig.state.hand[0].instrument.jaw, 1.6);
       for (const HandState& hand : rig.state.hand) {
-        ASSERT_NEAR(hand.realOrientation.norm(), 1.0, 1e-12);
-        ASSERT_NEAR(hand.simulatedOrientation.norm(), 1.0, 1e-12);
+        ASSERT_NEAR(hand.input.orientation.norm(), 1.0, 1e-12);
+        ASSERT_NEAR(hand.instrument.orientation.norm(), 1.0, 1e-12);
       }
     }
   }

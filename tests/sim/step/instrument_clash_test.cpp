@@ -32,8 +32,7 @@ Vec3 tipAt(double y) { return {0.03, y, 0.05}; }
 
 PlacedInstrument placedHand(const Model& model, const State& state, std::size_t hand) {
   PlacedInstrument instrument;
-  const HandState& h = state.hand[hand];
-  instrument.place(model.scene().hands[hand], h.instrument, simulatedPose(h), h.jaw);
+  instrument.place(model.scene().hands[hand], state.hand[hand].instrument);
   return instrument;
 }
 
@@ -136,7 +135,7 @@ TEST(InstrumentClash, PushesTheSamePointWhereverThatIs) {
   // Torque about the port divided by the lever of the normal gives the force at the point, from either hand.
   std::array<double, 2> force{};
   for (std::size_t h = 0; h < handCount; ++h) {
-    const Vec3 lever = rig.state.hand[h].simulatedPosition - scene.hands[h].port;
+    const Vec3 lever = rig.state.hand[h].instrument.position - scene.hands[h].port;
     const Vec3 arm = (h == 0 ? points[0].onA : points[0].onB) - scene.hands[h].port;
     const Vec3 moment = arm.cross(points[0].normal);
     force[h] = lever.cross(result->hand[h].contactForce).dot(moment) / moment.squaredNorm();
@@ -158,8 +157,8 @@ TEST(InstrumentClash, AMillimetreApartThereIsNothing) {
     for (std::size_t h = 0; h < handCount; ++h) {
       const Pose pose = throughPort(model->scene().hands[h].port, h == 0 ? tipAt(y) : turned(tipAt(y)),
                                     Quat::Identity(), Vec3(0.0, 0.0, -1.0));
-      state.hand[h].simulatedPosition = pose.position;
-      state.hand[h].simulatedOrientation = pose.orientation;
+      state.hand[h].instrument.position = pose.position;
+      state.hand[h].instrument.orientation = pose.orientation;
     }
     (apart(*model, state).gap < 1e-3 ? lower : upper) = y;
   }

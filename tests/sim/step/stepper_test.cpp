@@ -78,8 +78,8 @@ TEST_F(StepperTest, TheRunTouchesWithBothHandsAndLeaves) {
   EXPECT_GT(left, 30);
   EXPECT_GT(right, 30);
   EXPECT_GT(both, 15);
-  EXPECT_EQ(rig.state.hand[0].touching, 0U);
-  EXPECT_EQ(rig.state.hand[1].touching, 0U);
+  EXPECT_EQ(rig.state.hand[0].touches.structures, 0U);
+  EXPECT_EQ(rig.state.hand[1].touches.structures, 0U);
   EXPECT_FALSE(ballMoved);
 }
 
@@ -149,7 +149,7 @@ TEST_F(StepperTest, FlushToZeroOfTheHostChangesNothing) {
 TEST_F(StepperTest, AnUntouchedOrganSleepsBitForBit) {
   test::Rig rig(*model_);
   const SolidState before = rig.state.organ[1];
-  const std::size_t component = State::tissueFrom + 1;
+  const std::size_t component = rig.state.tissueFrom() + 1;
   const std::uint64_t digest = digestOf(rig.state).component[component];
   for (int i = 0; i < runLength; ++i) {
     const test::TipPair tips = test::contactRun(i);

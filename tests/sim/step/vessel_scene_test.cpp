@@ -168,7 +168,7 @@ TEST_F(VesselScene, GivesWayAndComesBack) {
 TEST_F(VesselScene, HeldAndLiftedUntilItTears) {
   go({Vec3(-0.01, 0.0, height - 0.002), 0.8, InstrumentKind::grasper, button::lock}, 60);
   go({Vec3(-0.01, 0.0, height - 0.002), 0.05, InstrumentKind::grasper, button::lock}, 40);
-  ASSERT_EQ(rig_->state.hand[0].grasped, duct);
+  ASSERT_EQ(rig_->state.hand[0].grasp.structure, duct);
   const StepResult& lifted = go({Vec3(-0.01, 0.0, height + 0.013), 0.05, InstrumentKind::grasper, button::lock}, 200);
   ASSERT_EQ(lifted.hand[0].grasping, 1U << duct);
   for (int i = 0; i < 200; ++i) step(act_);
@@ -193,7 +193,7 @@ TEST_F(VesselScene, AClipCloses) {
   EXPECT_EQ(last(EventKind::clipSet)->subject, duct);
   EXPECT_NEAR(last(EventKind::clipSet)->position[0], -0.015, 0.0015);
   EXPECT_EQ(count(EventKind::clipHalfOn) + count(EventKind::clipDropped) + count(EventKind::clipOnClip), 0);
-  EXPECT_EQ(rig_->state.hand[0].clips, model_->scene().hands[0].clips - 1);
+  EXPECT_EQ(rig_->state.hand[0].instrument.clips, model_->scene().hands[0].clips - 1);
   ASSERT_EQ(vessels().clips(), 1U);
   EXPECT_TRUE(closes(vessels(), 0));
   EXPECT_EQ(step(act_).vessel[0].clips, 1U);
@@ -231,14 +231,14 @@ TEST_F(VesselScene, BadClipsAreTold) {
   EXPECT_EQ(count(EventKind::clipTooNear), 1) << "the branch is there";
   closeAt(InstrumentKind::clipApplier, -0.03, -0.02);
   EXPECT_EQ(count(EventKind::clipDropped), 1);
-  EXPECT_EQ(rig_->state.hand[0].clips, model_->scene().hands[0].clips - 5);
+  EXPECT_EQ(rig_->state.hand[0].instrument.clips, model_->scene().hands[0].clips - 5);
 }
 
 TEST_F(VesselScene, AnEmptyApplierSetsNothing) {
-  rig_->state.hand[0].clips = 0;
+  rig_->state.hand[0].instrument.clips = 0;
   closeAt(InstrumentKind::clipApplier, -0.015, 0.0042);
   EXPECT_EQ(count(EventKind::clipSet) + count(EventKind::clipDropped), 0);
-  EXPECT_EQ(rig_->state.hand[0].clips, 0U);
+  EXPECT_EQ(rig_->state.hand[0].instrument.clips, 0U);
 }
 
 TEST_F(VesselScene, ACutWithoutClipsOpensBothSides) {

@@ -66,7 +66,7 @@ class Bench {
     sets_.push_back(rig_.stepper.contactSet(hand));
   }
 
-  [[nodiscard]] bool grasping() const { return rig_.state.hand[hand].grasped < model_.organs().size(); }
+  [[nodiscard]] bool grasping() const { return rig_.state.hand[hand].grasp.structure < model_.organs().size(); }
 
   ClosedLoop loop;
   double maxRendered = 0.0;

@@ -10,6 +10,7 @@
 #include "sim/geometry/surface_distance.h"
 #include "sim/instruments/instrument_shape.h"
 #include "sim/step/contact_block.h"
+#include "sim/step/placed_instrument.h"
 #include "sim/step/stepper.h"
 
 namespace calot::test {
@@ -17,9 +18,9 @@ namespace calot::test {
 inline Vec3 tipAxis(const Pose& pose) { return pose.orientation * Vec3::UnitZ(); }
 
 /// The deepest dimple that a hand presses (m).
-inline double deepestDimple(const HandState& hand) {
+inline double deepestDimple(const TouchState& touches) {
   double deepest = 0.0;
-  for (const Vec3& dimple : hand.dimple) deepest = std::max(deepest, dimple.norm());
+  for (const Vec3& dimple : touches.dimple) deepest = std::max(deepest, dimple.norm());
   return deepest;
 }
 
@@ -28,9 +29,10 @@ inline double deepestDimple(const HandState& hand) {
 inline double instrumentDepth(const Model& model, const State& state, std::size_t hand) {
   const HandState& h = state.hand[hand];
   const HandDescription& description = model.scene().hands[hand];
-  const Pose pose{h.simulatedPosition, h.simulatedOrientation};
-  const InstrumentShape shape = placed(
-      instrumentShape(h.instrument, h.jaw, description.shaftRadius, (pose.position - description.port).norm()), pose);
+  const Pose pose = simulatedPose(h.instrument);
+  const InstrumentShape shape = placed(instrumentShape(h.instrument.kind, h.instrument.jaw, description.shaftRadius,
+                                                       (pose.position - description.port).norm()),
+                                       pose);
   double deepest = 0.0;
   for (std::size_t o = 0; o < model.organs().size(); ++o) {
     const OrganModel& organ = model.organs()[o];
@@ -42,10 +44,10 @@ inline double instrumentDepth(const Model& model, const State& state, std::size_
     std::vector<std::pair<Vec3, double>> point;
     for (const Capsule& c : shape.capsules()) {
       const bool jaw = c.part == Capsule::Part::upperJaw || c.part == Capsule::Part::lowerJaw;
-      if (jaw && h.grasped == o) continue;
+      if (jaw && h.grasp.structure == o) continue;
       const int pieces = 1 + static_cast<int>((c.p1 - c.p0).norm() / 0.001);
       for (int k = 0; k <= pieces; ++k) {
-        const Vec3 p = c.p0 + (static_cast<double>(k) / pieces) * (c.p1 - c.p0) + dimpleOf(h, o, c.piece);
+        const Vec3 p = c.p0 + (static_cast<double>(k) / pieces) * (c.p1 - c.p0) + dimpleOf(h.touches, o, c.piece);
         const Vec3 out = (bounds.lower - p).cwiseMax(p - bounds.upper);
         if (out.maxCoeff() < c.radius) point.emplace_back(p, c.radius);
       }
@@ -68,8 +70,8 @@ inline bool shaftPierces(const Model& model, const State& state, std::size_t han
   std::vector<Vec3> skin;
   model.organs()[o].embedding.map(state.organ[o].position, skin);
   const Vec3 from = model.scene().hands[hand].port;
-  const Vec3 way = state.hand[hand].simulatedPosition -
-                   1e-3 * tipAxis({state.hand[hand].simulatedPosition, state.hand[hand].simulatedOrientation}) - from;
+  const Pose pose = simulatedPose(state.hand[hand].instrument);
+  const Vec3 way = pose.position - 1e-3 * tipAxis(pose) - from;
   for (const Index3& t : model.organs()[o].surface.triangles()) {
     const Vec3& a = skin[static_cast<std::size_t>(t[0])];
     const Vec3 e = skin[static_cast<std::size_t>(t[1])] - a;
