@@ -14,7 +14,7 @@
 namespace calot {
 namespace {
 
-constexpr double height = test::blockTop + 0.006;
+constexpr double padHeight = test::blockTop + 0.006;
 constexpr double padFrom = -0.005, padTo = 0.007;  // of the fat along the duct (m)
 
 /// A duct comes from a place that is fixed and is grown to the block; fat ties it to the block on the way.
@@ -23,7 +23,7 @@ SceneDescription tiedDuct() {
   scene.name = "tied duct";
   VesselDescription duct;
   duct.name = "duct";
-  duct.path = {Vec3(-0.045, 0.0, height), Vec3(0.02, 0.0, height), Vec3(0.024, 0.0, test::blockTop)};
+  duct.path = {Vec3(-0.045, 0.0, padHeight), Vec3(0.02, 0.0, padHeight), Vec3(0.024, 0.0, test::blockTop)};
   duct.radius = 0.0015;
   duct.material = {2e5, 0.45, 1050.0, 5.0, 0.01};
   duct.start.kind = VesselEndDescription::Kind::fixed;
@@ -33,8 +33,8 @@ SceneDescription tiedDuct() {
   FatDescription fat;
   fat.name = "pad";
   fat.appearance = "fat";
-  fat.surface =
-      test::boxSurface(Vec3(padFrom, -0.005, test::blockTop + 0.0002), Vec3(padTo, 0.005, height + 0.003), {6, 5, 4});
+  fat.surface = test::boxSurface(Vec3(padFrom, -0.005, test::blockTop + 0.0002), Vec3(padTo, 0.005, padHeight + 0.003),
+                                 {6, 5, 4});
   fat.cellSize = 0.001;
   fat.attachments = {{"block", 0.0015, 2e7, 2e5}, {"duct", 0.001, 2e7, 2e5}};
   scene.fat.push_back(fat);
@@ -72,8 +72,8 @@ class Holding : public testing::Test {
   }
   void cutAt(double x) {
     constexpr double below = 0.006;
-    for (int i = 0; i <= 40; ++i) step(Vec3(x, 0.0, 0.06 + (height - below - 0.06) * i / 40.0), 0.9);
-    for (int i = 0; i <= 20; ++i) step(Vec3(x, 0.0, height - below), 0.9 - 0.04 * i);
+    for (int i = 0; i <= 40; ++i) step(Vec3(x, 0.0, 0.06 + (padHeight - below - 0.06) * i / 40.0), 0.9);
+    for (int i = 0; i <= 20; ++i) step(Vec3(x, 0.0, padHeight - below), 0.9 - 0.04 * i);
     ASSERT_EQ(result_.vessel[0].partings, 1U);
   }
 
