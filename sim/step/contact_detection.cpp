@@ -27,16 +27,16 @@ constexpr double leastDepth = 0.1;
 constexpr double crossedRadius = 0.02;
 
 /// Radius of a round end whose area is that of a capsule's side, as long as what touches of it: pressed in by `depth`,
-/// an axis at the angle theta to the skin touches over some 2 depth / tan(theta), but not beyond its ends, nor where a
-/// round organ has turned away from it.
+/// an axis at the angle theta to the skin touches over some 2 depth (cot(theta) - 1) beside its end, but not beyond the
+/// other, nor where a round organ has turned away from it.
 double pressedSize(const Capsule& capsule, const Vec3& normal, double depth) {
   const Vec3 axis = capsule.p1 - capsule.p0;
   const double length = axis.norm();
   const double up = std::abs(axis.dot(normal));
   const double flat = std::sqrt(notNegative(length * length - up * up));
-  if (!(flat > 0.0)) return capsule.radius;
+  if (!(flat > up)) return capsule.radius;
   const double in = std::max(depth, leastDepth * capsule.radius);
-  const double ofEnds = flat * 2.0 * in / (2.0 * in + up);
+  const double ofEnds = (flat - up) * 2.0 * in / (2.0 * in + up);
   const double touching = std::min(ofEnds, std::sqrt(8.0 * in * crossedRadius));
   return std::sqrt(capsule.radius * (capsule.radius + 2.0 / std::numbers::pi * touching));
 }

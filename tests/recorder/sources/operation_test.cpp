@@ -236,7 +236,7 @@ TEST(Operation, SearchesForAVesselCostWayAndFat) {
   EXPECT_LT(fat[1], fat[0] - 0.02);
 }
 
-/// A plane nearer to the liver spares the gallbladder.
+/// A plane nearer to the liver spares the gallbladder; not in every attempt, but in three together.
 TEST(Operation, SweepsOfTheBedKeepToTheirPlane) {
   const std::unique_ptr<const Model> model = modelOf("dissect-bed");
   ASSERT_TRUE(model);
@@ -248,7 +248,10 @@ TEST(Operation, SweepsOfTheBedKeepToTheirPlane) {
   const auto charred = [&](double plane) {
     PerformerProfile profile = profileOf("skilled");
     profile.operation.plane = plane;
-    return perform(*model, profile, 1, 12.0).last.organ[gallbladder].charredArea;
+    double sum = 0.0;
+    for (const std::uint64_t seed : {1U, 2U, 3U})
+      sum += perform(*model, profile, seed, 12.0).last.organ[gallbladder].charredArea;
+    return sum;
   };
   EXPECT_LT(charred(0.6), 0.8 * charred(0.4));
 }
