@@ -206,8 +206,10 @@ struct RunDigests final : recorder::Observer {
   explicit RunDigests(const DigestLayout& of) : layout(of) {}
   void onStep(const recorder::StepRecord& record) override {
     std::vector<std::byte> given, made;
-    for (std::size_t f = 0; f < layout.fields.size(); ++f)
-      if (layout.fields[f].name.ends_with("/inputs")) recorder::appendValue(given, record.digest.field[f]);
+    for (std::size_t f = 0; f < layout.fields.size(); ++f) {
+      const std::string& name = layout.fields[f].name;
+      if (name.ends_with("/samples") || name.ends_with("/inputs")) recorder::appendValue(given, record.digest.field[f]);
+    }
     for (const std::uint64_t component : record.digest.component) recorder::appendValue(made, component);
     recorder::appendValue(made, recorder::forceDigest(record.ticks));
     for (const Event& event : record.result.events) recorder::appendRow(event, made);
