@@ -87,7 +87,7 @@ class Changed(program.ProgramTest):
             self.well("state", source, "--step", 123, "-o", self.path(name + ".h5"))
         answer = calot("diff", self.path("a.h5"), self.path("b.h5"))
         self.assertEqual(answer.code, 3, answer)
-        self.assertRegex(answer.out, r"^hand\.right/\w+ index \d+: \S+ and \S+\n$")
+        self.assertRegex(answer.out, r"^hand\.right\.\w+/\w+ index \d+: \S+ and \S+\n$")
 
 
 class Damaged(program.ProgramTest):
