@@ -111,7 +111,7 @@ std::vector<ContactProblemStage::Part> ContactProblemStage::partsOf(Bodies& bodi
                                                                     const State& state, const ContactSystem& contact) {
   std::vector<Part> parts;
   std::array<Mat3, SolidSolver::Impulse::maxNodes> rotation;
-  std::vector<TieCoupling>& couplings = bodies.couplings();
+  const std::vector<GrownVessels*>& couplings = bodies.joined().grown();
   std::vector<bool> stiffened(couplings.size(), false);
   rotations_.clear();
   for (std::size_t b = 0; b < contact.blocks.size(); ++b) {
@@ -126,12 +126,12 @@ std::vector<ContactProblemStage::Part> ContactProblemStage::partsOf(Bodies& bodi
         rotations_.push_back(columnsOf(rotation[k]));
       }
       for (std::size_t c = 0; c < couplings.size(); ++c) {
-        if (!couplings[c].joins(which)) continue;
-        if (!stiffened[c]) couplings[c].stiffen(state, bodies.all());
+        if (!couplings[c]->joins(which)) continue;
+        if (!stiffened[c]) couplings[c]->stiffen(state);
         stiffened[c] = true;
         parts.back().coupling = c;
-        couplings[c].responses(bodies[which], which, place, rotation, parts.back().responses);
-        couplings[c].tieImpulses(parts.back().responses, parts.back().impulses);
+        couplings[c]->responses(bodies[which], which, place, rotation, parts.back().responses);
+        couplings[c]->tieImpulses(parts.back().responses, parts.back().impulses);
         break;
       }
     };
@@ -160,7 +160,7 @@ void ContactProblemStage::assembleTissue(Bodies& bodies, const std::vector<Part>
         c = sumOfRotated({rotations_.data() + a.rotations, a.place->count}, nodeBlocks_,
                          {rotations_.data() + b.rotations, b.place->count});
       }
-      if (coupled) c -= bodies.couplings()[*a.coupling].schurComplement(a.responses, b.impulses);
+      if (coupled) c -= bodies.joined().grown()[*a.coupling]->schurComplement(a.responses, b.impulses);
       c *= h2 * a.sign * b.sign;
       const ContactBlock& one = contact.blocks[a.block];
       const ContactBlock& two = contact.blocks[b.block];

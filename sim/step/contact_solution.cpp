@@ -23,10 +23,7 @@ constexpr double minShare = 1e-3;  ///< tissue that responds by less than this s
 void ContactSolution::gatherImpulses(Bodies& bodies, const ContactSystem& contact, std::size_t which) {
   nodal_.clear();
   addNodalForces(contact.blocks, which, bodies[which].nodes(), change_, bodies.step(), nodal_);
-  for (TieCoupling& c : bodies.couplings()) {
-    if (c.organ() == which) c.passOn(bodies[which].freeVelocity(), bodies.vessels(), nodal_);
-  }
-  if (which >= bodies.firstFat()) bodies.joined().passOn(which, nodal_);
+  bodies.joined().passOn(which, nodal_);
 }
 
 void ContactSolution::applyToGroup(Bodies& bodies, const Activity& activity, const ContactSystem& contact,
@@ -40,7 +37,7 @@ void ContactSolution::applyToGroup(Bodies& bodies, const Activity& activity, con
     bodies.joined().solid(b).solver().takeImpulses(nodal_);
   }
   if (!pushed && !bodies.joined().isOpen(group)) return;
-  const SolveReport report = bodies.joined().applyImpulses(group, bodies.couplings(), loose_);
+  const SolveReport report = bodies.joined().applyImpulses(group, loose_);
   if (!log.hasMissed(miss::solver)) reportMiss(bodies, members[0], report, log);
 }
 

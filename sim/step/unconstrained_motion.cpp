@@ -64,13 +64,9 @@ void UnconstrainedMotion::gatherLoads(Bodies& bodies, const ContactSystem& conta
   attachments_.clear();
   joints_.clear();
   gatherTies(bodies, activity, state, which);
-  if (which >= bodies.organs()) return;  // strands, retractions and grown vessels are organs' alone
-  bodies.joined().addAttachments(which, attachments_);
-  gatherRetractions(bodies, state, which);
-  for (TieCoupling& c : bodies.couplings()) {
-    if (c.organ() != which) continue;
-    joints_.push_back(c.joint());
-  }
+  if (which >= bodies.organs() && which < bodies.firstFat()) return;  // vessels, which move first
+  bodies.joined().addLoads(which, attachments_, joints_);
+  if (which < bodies.organs()) gatherRetractions(bodies, state, which);
 }
 
 void reportMiss(const Bodies& bodies, std::size_t which, const SolveReport& report, StepLog& log) {
@@ -100,7 +96,7 @@ void UnconstrainedMotion::solveGroup(Bodies& bodies, const ContactSystem& contac
       gatherLoads(bodies, contact, activity, state, b);
       bodies.joined().solid(b).load(state, model_.scene().gravity, nodal_, tieLoads_, {attachments_, {}, joints_});
     }
-    report = bodies.joined().solveUnconstrained(group, bodies.couplings(), contact.rows > 0);
+    report = bodies.joined().solveUnconstrained(group, contact.rows > 0);
     reportMiss(bodies, members[0], report, log);
   }
   for (const std::size_t b : members) {
@@ -124,10 +120,7 @@ void UnconstrainedMotion::run(Bodies& bodies, const ContactSystem& contact, cons
   for (std::size_t tree = 0; tree < bodies.vessels().size(); ++tree) {
     solveVessels(bodies, contact, activity, tree, state, log);
   }
-  for (TieCoupling& c : bodies.couplings()) {
-    if (activity.awake[c.organ()]) c.begin(state, bodies.all(), bodies.vessels());
-  }
-  bodies.joined().linearise(state, activity.awake, bodies.couplings());
+  bodies.joined().linearise(state, activity.awake);
   for (std::size_t group = 0; group < bodies.joined().groups().size(); ++group) {
     solveGroup(bodies, contact, activity, group, state, result, log);
   }

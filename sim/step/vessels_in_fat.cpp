@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim/math/no_fused_pairs.h"  // first
 
-#include "sim/step/bodies.h"
+#include "sim/step/coupling.h"
 
 #include <algorithm>
 #include <array>
@@ -29,47 +29,52 @@ Vec3 vectorOf(const FourFloats& v) {
 
 }  // namespace
 
-VesselReaction::VesselReaction(const Model& model, std::size_t fat, std::size_t tree)
-    : model_(model), fat_(fat), tree_(tree) {
+VesselsInFat::VesselsInFat(const Model& model, std::size_t body, std::size_t fat, std::size_t tree, double step,
+                           FatMotion& fatBody, VesselBody& vessel, GrownVessels* grown)
+    : Coupling(grown != nullptr ? grown->organ() : body, body),
+      model_(model),
+      vesselBody_(model.organs().size() + tree),
+      step_(step),
+      fat_(fatBody),
+      vessel_(vessel),
+      grown_(grown) {
   for (std::size_t t = 0; t < model.ties().size(); ++t) {
     const Tie& tie = model.ties()[t];
-    if (tie.fat == fat && tie.body[0] == model.organs().size() + tree) tie_.push_back(t);
+    if (tie.fat == fat && tie.body[0] == vesselBody_) tie_.push_back(t);
   }
   weight_.assign(tie_.size(), 0.0);
   fatSeen_.assign(tie_.size(), Vec3::Zero());
 }
 
-std::size_t VesselReaction::nodeOf(std::size_t i) const {
+std::size_t VesselsInFat::nodeOf(std::size_t i) const {
   return static_cast<std::size_t>(model_.ties()[tie_[i]].place[0].node[0]);
 }
 
-const MaterialPoint& VesselReaction::placeOf(std::size_t i) const { return model_.ties()[tie_[i]].place[1]; }
+const MaterialPoint& VesselsInFat::placeOf(std::size_t i) const { return model_.ties()[tie_[i]].place[1]; }
 
-void VesselReaction::linearise(const State& state, bool awake, const FatMotion& fat, double step) {
-  holds_ = false;
-  if (!awake) return;
+bool VesselsInFat::takeState(const State& state) {
+  bool holds = false;
   for (std::size_t i = 0; i < tie_.size(); ++i) {
     const Tie& tie = model_.ties()[tie_[i]];
-    weight_[i] = step * (fat.fat().tieShare(tie.fatTie) * (step * tie.stiffness + tie.damping));
+    weight_[i] = step_ * (fat_.fat().tieShare(tie.fatTie) * (step_ * tie.stiffness + tie.damping));
     if (!(weight_[i] > 0.0)) continue;
-    holds_ = true;
-    fatSeen_[i] = placeOf(i).of(fat.velocity(state));
+    holds = true;
+    fatSeen_[i] = placeOf(i).of(fat_.velocity(state));
   }
+  return holds;
 }
 
-void VesselReaction::assemble(FatMotion& fat, VesselBody& vessel, TieCoupling* grown, const SolidSystem* organ) {
-  grown_ = grown;
-  organ_ = organ;
-  if (version_ != fat.solver().systemVersion() || summed_ != weight_) {
-    sumShares(fat.solver().system(), grown);
-    version_ = fat.solver().systemVersion();
+void VesselsInFat::assemble() {
+  if (version_ != fat_.solver().systemVersion() || summed_ != weight_) {
+    sumShares(fat_.solver().system());
+    version_ = fat_.solver().systemVersion();
     summed_ = weight_;
   }
-  response_.precompute(vessel.solver().matrix(), vessel.model().parents(), touched_);
-  if (grown_ != nullptr) findReach(vessel);
+  response_.precompute(vessel_.solver().matrix(), vessel_.model().parents(), touched_);
+  if (grown_ != nullptr) findReach();
 }
 
-void VesselReaction::sumShares(const SolidSystem& fat, const TieCoupling* grown) {
+void VesselsInFat::sumShares(const SolidSystem& fat) {
   std::vector<Share> share;
   touched_.clear();
   for (std::size_t i = 0; i < tie_.size(); ++i) {
@@ -83,8 +88,8 @@ void VesselReaction::sumShares(const SolidSystem& fat, const TieCoupling* grown)
       touched_.push_back(share.back().node);
     }
   }
-  for (std::size_t i = 0; grown != nullptr && i < grown->size(); ++i) {
-    const int node = grown->nodeOf(i, model_.organs().size() + tree_);
+  for (std::size_t i = 0; grown_ != nullptr && i < grown_->size(); ++i) {
+    const int node = grown_->nodeOf(i, vesselBody_);
     if (node >= 0) touched_.push_back(static_cast<std::uint32_t>(node));
   }
   std::sort(touched_.begin(), touched_.end());
@@ -112,21 +117,21 @@ void VesselReaction::sumShares(const SolidSystem& fat, const TieCoupling* grown)
 }
 
 /// How the nodes answer to impulses where the vessels are grown to an organ.
-void VesselReaction::findReach(const VesselBody& vessel) {
+void VesselsInFat::findReach() {
   held_.assign(grown_->size(), none);
   reach_.clear();
   for (std::size_t i = 0; i < grown_->size(); ++i) {
-    const int node = grown_->nodeOf(i, model_.organs().size() + tree_);
+    const int node = grown_->nodeOf(i, vesselBody_);
     if (node < 0) continue;
     held_[i] = numberOf(touched_, static_cast<std::uint32_t>(node));
     for (const std::uint32_t n : touched_) {
-      const Mat3 block = vessel.block(static_cast<int>(n), node);
+      const Mat3 block = vessel_.block(static_cast<int>(n), node);
       for (int k = 0; k < 3; ++k) reach_.push_back(fourOf(block.col(k)));
     }
   }
 }
 
-void VesselReaction::addTo(ConjugateGradient& organ, ConjugateGradient& fat) {
+void VesselsInFat::addTo(ConjugateGradient& organ, ConjugateGradient& fat) {
   moved_.assign(touched_.size(), FourFloats{});
   for (std::size_t r = 0; r < row_.size(); ++r) {
     const FourFloats along = fat.directionAt(row_[r]);
@@ -142,12 +147,12 @@ void VesselReaction::addTo(ConjugateGradient& organ, ConjugateGradient& fat) {
 }
 
 /// Contribution of the organ.
-void VesselReaction::addGrown(ConjugateGradient& organ) {
+void VesselsInFat::addGrown(ConjugateGradient& organ) {
   heldResponse_.assign(held_.size(), Vec3::Zero());
   for (std::size_t i = 0; i < held_.size(); ++i) {
     if (held_[i] != none) heldResponse_[i] = vectorOf(moved_[held_[i]]);
   }
-  grown_->react(*organ_, organ, model_.organs().size() + tree_, heldResponse_, heldPush_);
+  grown_->react(organ, vesselBody_, heldResponse_, heldPush_);
   const FourFloats* column = reach_.data();
   for (std::size_t i = 0; i < held_.size(); ++i) {
     if (held_[i] == none) continue;
@@ -159,33 +164,32 @@ void VesselReaction::addGrown(ConjugateGradient& organ) {
   }
 }
 
-void VesselReaction::pull(const FatMotion& fat, VesselBody& vessel) {
-  push_.assign(vessel.nodes(), Vec3::Zero());
+void VesselsInFat::follow() {
+  push_.assign(vessel_.nodes(), Vec3::Zero());
   for (std::size_t i = 0; i < tie_.size(); ++i) {
     if (!(weight_[i] > 0.0)) continue;
-    const Vec3 now = placeOf(i).of(fat.freeVelocity());
+    const Vec3 now = placeOf(i).of(fat_.freeVelocity());
     push_[nodeOf(i)] += weight_[i] * (now - fatSeen_[i]);
     fatSeen_[i] = now;
   }
-  vessel.applyImpulses(push_);
+  vessel_.applyImpulses(push_);
 }
 
-void VesselReaction::see(const VesselBody& vessel) {
-  vesselSeen_.assign(vessel.freeVelocity().begin(), vessel.freeVelocity().end());
-}
+void VesselsInFat::see() { vesselSeen_.assign(vessel_.freeVelocity().begin(), vessel_.freeVelocity().end()); }
 
-void VesselReaction::passOn(const FatMotion& fat, const VesselBody& vessel, std::vector<Vec3>& impulse) {
+void VesselsInFat::passOn(std::size_t body, std::vector<Vec3>& impulse) {
+  if (body != bodies()[1]) return;
   for (std::size_t i = 0; i < tie_.size(); ++i) {
     if (!(weight_[i] > 0.0)) continue;
-    const Vec3 change = weight_[i] * (vessel.freeVelocity()[nodeOf(i)] - vesselSeen_[nodeOf(i)]);
+    const Vec3 change = weight_[i] * (vessel_.freeVelocity()[nodeOf(i)] - vesselSeen_[nodeOf(i)]);
     if (change.isZero(0.0)) continue;
-    if (impulse.empty()) impulse.assign(fat.nodes(), Vec3::Zero());
+    if (impulse.empty()) impulse.assign(fat_.nodes(), Vec3::Zero());
     const MaterialPoint& place = placeOf(i);
     for (std::size_t k = 0; k < place.count; ++k) {
       impulse[static_cast<std::size_t>(place.node[k])] += place.weight[k] * change;
     }
   }
-  see(vessel);
+  see();
 }
 
 }  // namespace calot

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim/math/no_fused_pairs.h"  // first
 
-#include "sim/step/bodies.h"
+#include "sim/step/coupling.h"
 
 #include <algorithm>
 #include <array>
@@ -36,15 +36,17 @@ Mat3 blockOf(std::span<const double> matrix, std::size_t n, std::size_t i, std::
 
 }  // namespace
 
-TieCoupling::TieCoupling(const Model& model, std::size_t organ, std::vector<std::size_t> ties, double step)
-    : model_(model),
-      organ_(organ),
-      organNodes_(model.organs()[organ].solid.nodes()),
+GrownVessels::GrownVessels(const Model& model, std::size_t organ, std::vector<std::size_t> ties, double step,
+                           OrganBody& organBody, std::vector<VesselBody*> vessels)
+    : Coupling(organ, organ),
+      model_(model),
       tie_(std::move(ties)),
-      step_(step) {
+      step_(step),
+      organBody_(organBody),
+      vessel_(std::move(vessels)) {
   for (std::size_t i = 0; i < tie_.size(); ++i) {
     const MaterialPoint& place = tie(i).place[0];
-    assert(tie(i).body[0] == organ_ && tie(i).place[1].count == 1);
+    assert(tie(i).body[0] == organ && tie(i).place[1].count == 1);
     organNode_.insert(organNode_.end(), place.node.begin(),
                       place.node.begin() + static_cast<std::ptrdiff_t>(place.count));
     joint_.point.push_back(place);
@@ -59,25 +61,25 @@ TieCoupling::TieCoupling(const Model& model, std::size_t organ, std::vector<std:
   more_.resize(tie_.size());
 }
 
-bool TieCoupling::joins(std::size_t body) const {
-  if (body == organ_) return true;
+bool GrownVessels::joins(std::size_t body) const {
+  if (body == organ()) return true;
   return std::any_of(tie_.begin(), tie_.end(), [&](std::size_t t) { return model_.ties()[t].body[1] == body; });
 }
 
 /// 1 / d + h C of the vessels.
-void TieCoupling::rigidity(std::span<const std::unique_ptr<Body>> body, std::vector<double>& out) const {
+void GrownVessels::rigidity(std::vector<double>& out) const {
   const std::size_t n = tie_.size();
   out.assign(9 * n * n, 0.0);
   for (std::size_t i = 0; i < n; ++i) {
     addTo(out, n, i, i, (1.0 / (step_ * tie(i).stiffness + tie(i).damping)) * Mat3::Identity());
     for (std::size_t j = 0; j < n; ++j) {
-      if (vesselOf(i) == vesselOf(j)) addTo(out, n, i, j, step_ * body[vesselOf(i)]->block(nodeOf(i), nodeOf(j)));
+      if (vesselOf(i) == vesselOf(j)) addTo(out, n, i, j, step_ * vessel(i).block(nodeOf(i), nodeOf(j)));
     }
   }
 }
 
 /// Row i of D times velocities.
-Vec3 TieCoupling::applied(std::size_t i, std::span<const Vec3> velocity) const {
+Vec3 GrownVessels::applied(std::size_t i, std::span<const Vec3> velocity) const {
   Vec3 sum = Vec3::Zero();
   for (std::size_t j = 0; j < tie_.size(); ++j) {
     if (vesselOf(i) == vesselOf(j)) sum += blockOf(joint_.damper, tie_.size(), i, j) * velocity[j];
@@ -85,32 +87,38 @@ Vec3 TieCoupling::applied(std::size_t i, std::span<const Vec3> velocity) const {
   return sum;
 }
 
-void TieCoupling::begin(const State& state, std::span<const std::unique_ptr<Body>> body,
-                        std::span<VesselBody* const> vessels) {
+/// Gathers the vessels' contact-free velocities, and pulls them as if the organ went on as it did.
+bool GrownVessels::takeState(const State& state) {
   const std::size_t n = tie_.size();
-  for (std::size_t i = 0; i < n; ++i) body[vesselOf(i)]->precomputeCompliance(std::array{nodeOf(i)});
-  rigidity(body, joint_.damper);
+  for (std::size_t i = 0; i < n; ++i) vessel(i).precomputeCompliance(std::array{nodeOf(i)});
+  rigidity(joint_.damper);
   // A sum of 1 / d and what is positive semidefinite.
   if (!invertPositive(joint_.damper, 3 * n)) joint_.damper.assign(9 * n * n, 0.0);
   for (std::size_t i = 0; i < n; ++i) {
-    Vec3 gap = tie(i).place[0].of(body[organ_]->position(state)) -
-               body[vesselOf(i)]->position(state)[static_cast<std::size_t>(nodeOf(i))];
+    Vec3 gap =
+        tie(i).place[0].of(organBody_.position(state)) - vessel(i).position(state)[static_cast<std::size_t>(nodeOf(i))];
     if (!tie(i).offset.isZero(0.0)) {
-      gap += rotationOf(state.organ[organ_].rotation, tie(i).place[0].element) * tie(i).offset;
+      gap += rotationOf(state.organ[organ()].rotation, tie(i).place[0].element) * tie(i).offset;
     }
     ahead_[i] = (tie(i).stiffness / (step_ * tie(i).stiffness + tie(i).damping)) * gap;
-    vesselSeen_[i] = body[vesselOf(i)]->freeVelocity()[static_cast<std::size_t>(nodeOf(i))];
+    vesselSeen_[i] = velocityOf(i);
     change_[i] = vesselSeen_[i] - ahead_[i];
     force_[i].setZero();
   }
   for (std::size_t i = 0; i < n; ++i) joint_.force[i] = applied(i, change_);
-  pull(body[organ_]->velocity(state), vessels);
+  pull(organBody_.velocity(state));
+  return true;
+}
+
+void GrownVessels::load(std::size_t body, std::vector<Attachment>& /*attachments*/,
+                        std::vector<JointAttachment>& joints) const {
+  if (body == organ()) joints.push_back(joint_);
 }
 
 /// Adds the impulses that the vessels have received since to the force on the organ.
-void TieCoupling::gatherImpulses(std::span<VesselBody* const> vessels) {
+void GrownVessels::gatherImpulses() {
   for (std::size_t i = 0; i < tie_.size(); ++i) {
-    const Vec3& now = velocityOf(i, vessels);
+    const Vec3& now = velocityOf(i);
     change_[i] = now - vesselSeen_[i];
     vesselSeen_[i] = now;
   }
@@ -120,12 +128,9 @@ void TieCoupling::gatherImpulses(std::span<VesselBody* const> vessels) {
   }
 }
 
-const Vec3& TieCoupling::velocityOf(std::size_t i, std::span<VesselBody* const> vessels) const {
-  return vessels[vesselOf(i) - model_.organs().size()]->freeVelocity()[static_cast<std::size_t>(nodeOf(i))];
-}
-
-void TieCoupling::pull(std::span<const Vec3> organVelocity, std::span<VesselBody* const> vessels) {
-  gatherImpulses(vessels);
+/// Pulls the vessels, with these velocities of the organ's nodes.
+void GrownVessels::pull(std::span<const Vec3> organVelocity) {
+  gatherImpulses();
   // force = D (V - ...) for the organ's present motion; the vessels get the change.
   for (std::size_t i = 0; i < tie_.size(); ++i) change_[i] = tie(i).place[0].of(organVelocity);
   for (std::size_t i = 0; i < tie_.size(); ++i) {
@@ -135,19 +140,19 @@ void TieCoupling::pull(std::span<const Vec3> organVelocity, std::span<VesselBody
   }
   std::size_t i = 0;
   while (i < tie_.size()) {
-    VesselBody& vessel = *vessels[vesselOf(i) - model_.organs().size()];
     const std::size_t first = i;
-    impulse_.assign(vessel.nodes(), Vec3::Zero());
+    impulse_.assign(vessel(i).nodes(), Vec3::Zero());
     for (; i < tie_.size() && vesselOf(i) == vesselOf(first); ++i) {
       impulse_[static_cast<std::size_t>(nodeOf(i))] += step_ * more_[i];
     }
-    vessel.applyImpulses(impulse_);
-    for (std::size_t k = first; k < i; ++k) vesselSeen_[k] = velocityOf(k, vessels);
+    vessel(first).applyImpulses(impulse_);
+    for (std::size_t k = first; k < i; ++k) vesselSeen_[k] = velocityOf(k);
   }
 }
 
-void TieCoupling::react(const SolidSystem& organ, ConjugateGradient& gradient, std::size_t vessel,
-                        std::span<const Vec3> response, std::vector<Vec3>& push) {
+void GrownVessels::react(ConjugateGradient& gradient, std::size_t vessel, std::span<const Vec3> response,
+                         std::vector<Vec3>& push) {
+  const SolidSystem& organ = organBody_.solver().system();
   push.assign(tie_.size(), Vec3::Zero());
   for (std::size_t i = 0; i < tie_.size(); ++i) {
     more_[i].setZero();
@@ -177,37 +182,37 @@ void TieCoupling::react(const SolidSystem& organ, ConjugateGradient& gradient, s
   }
 }
 
-void TieCoupling::passOn(std::span<const Vec3> organVelocity, std::span<VesselBody* const> vessels,
-                         std::vector<Vec3>& impulse) {
-  gatherImpulses(vessels);
+/// Holds the impulses on the organ's nodes, for a pull with the velocities that they have.
+void GrownVessels::passOn(std::size_t body, std::vector<Vec3>& impulse) {
+  if (body != organ()) return;
+  gatherImpulses();
   for (std::size_t i = 0; i < tie_.size(); ++i) {
     if (more_[i].isZero(0.0)) continue;
     const MaterialPoint& place = tie(i).place[0];
-    if (impulse.empty()) impulse.assign(organNodes_, Vec3::Zero());
+    if (impulse.empty()) impulse.assign(organBody_.nodes(), Vec3::Zero());
     for (std::size_t k = 0; k < place.count; ++k) {
       impulse[static_cast<std::size_t>(place.node[k])] += (step_ * place.weight[k]) * more_[i];
     }
   }
-  pull(organVelocity, vessels);
+  pull(organBody_.freeVelocity());
 }
 
-void TieCoupling::stiffen(const State& state, std::span<const std::unique_ptr<Body>> body) {
+void GrownVessels::stiffen(const State& state) {
   const std::size_t n = tie_.size();
-  Body& organ = *body[organ_];
-  organ.precomputeCompliance(organNode_);
+  organBody_.precomputeCompliance(organNode_);
   rotation_.clear();
-  for (const int node : organNode_) rotation_.push_back(organ.rotation(state, node));
+  for (const int node : organNode_) rotation_.push_back(organBody_.rotation(state, node));
   const std::size_t nodes = organNode_.size();
   std::vector<Mat3> between(nodes * nodes);
   for (std::size_t a = 0; a < nodes; ++a) {
     for (std::size_t b = 0; b < nodes; ++b) {
-      between[a * nodes + b] = rotation_[a] * organ.block(organNode_[a], organNode_[b]) * rotation_[b].transpose();
+      between[a * nodes + b] = rotation_[a] * organBody_.block(organNode_[a], organNode_[b]) * rotation_[b].transpose();
     }
   }
   const auto number = [&](int node) {
     return static_cast<std::size_t>(std::lower_bound(organNode_.begin(), organNode_.end(), node) - organNode_.begin());
   };
-  rigidity(body, tight_);
+  rigidity(tight_);
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t j = 0; j < n; ++j) {
       const MaterialPoint& p = tie(i).place[0];
@@ -227,10 +232,10 @@ void TieCoupling::stiffen(const State& state, std::span<const std::unique_ptr<Bo
   if (!invertPositive(tight_, 3 * n)) tight_.assign(9 * n * n, 0.0);
 }
 
-void TieCoupling::responses(const Body& body, std::size_t which, const SolidSolver::Impulse& place,
-                            std::span<const Mat3> rotation, std::vector<Mat3>& out) const {
+void GrownVessels::responses(const Body& body, std::size_t which, const SolidSolver::Impulse& place,
+                             std::span<const Mat3> rotation, std::vector<Mat3>& out) const {
   out.assign(tie_.size(), Mat3::Zero());
-  if (which != organ_) {
+  if (which != organ()) {
     for (std::size_t i = 0; i < tie_.size(); ++i) {
       if (vesselOf(i) != which) continue;
       for (std::size_t k = 0; k < place.count; ++k) {
@@ -255,14 +260,14 @@ void TieCoupling::responses(const Body& body, std::size_t which, const SolidSolv
   }
 }
 
-void TieCoupling::tieImpulses(std::span<const Mat3> responses, std::vector<Mat3>& out) const {
+void GrownVessels::tieImpulses(std::span<const Mat3> responses, std::vector<Mat3>& out) const {
   out.assign(tie_.size(), Mat3::Zero());
   for (std::size_t i = 0; i < tie_.size(); ++i) {
     for (std::size_t j = 0; j < tie_.size(); ++j) out[i] += blockOf(tight_, tie_.size(), i, j) * responses[j];
   }
 }
 
-Mat3 TieCoupling::schurComplement(std::span<const Mat3> responses, std::span<const Mat3> tieImpulses) const {
+Mat3 GrownVessels::schurComplement(std::span<const Mat3> responses, std::span<const Mat3> tieImpulses) const {
   Mat3 sum = Mat3::Zero();
   for (std::size_t i = 0; i < tie_.size(); ++i) sum += responses[i].transpose() * tieImpulses[i];
   return step_ * sum;
