@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What holds bodies together. Internal to this folder.
+// Couplings of bodies. Internal to this folder.
 //
 // Organs and fat that hold together are solved as one linear system: strands and ties add to each one's own matrix on
 // the diagonal and couple them beside it (PointCoupling); vessels are eliminated, those in fat (VesselsInFat) and those
@@ -24,7 +24,7 @@
 
 namespace calot {
 
-/// What holds two bodies together that conjugate gradients solve, or one of them and vessels. In every step
+/// Holds two bodies together that conjugate gradients solve, or one of them and vessels. In every step
 /// linearise(), load() of both, assemble(); then, for each solve, passOn() of both if it is one of impulses, the
 /// solve with system(), follow(), see().
 class Coupling {
