@@ -14,10 +14,10 @@ if [[ $# -gt 0 ]]; then stages=("$@"); fi
 
 # Targets of the fast tests, so that a sanitizer's tree holds nothing else: what reads files of others, and what manages memory or threads.
 # The simulation runs under sanitizers in the stage matrix. Threads run only in the recorder's rooms.
-fastTests=(test_formats test_recording test_recorder conformance_reader fuzz_corpus)
-# Of numbers, and of what reads our own files: heavy.sh has them under sanitizers, too.
+fastTests=(test_formats test_recording test_recorder conformance_reader)
+# Of numbers, of devices and cohorts, and the fuzzer's corpora: heavy.sh has them under sanitizers, too.
 if [[ -n ${CALOT_CHECKS_ALL:-} ]]; then
-  fastTests+=(test_sources test_analytics test_checkpoints test_math test_geometry test_vessel test_carving test_fat test_connective test_sim test_statistics test_design test_report)
+  fastTests+=(fuzz_corpus test_sources test_analytics test_checkpoints test_math test_geometry test_vessel test_carving test_fat test_connective test_sim test_statistics test_design test_report)
 fi
 threadTests=(test_recording test_recorder conformance_reader)
 
