@@ -15,9 +15,11 @@ if [[ $# -gt 0 ]]; then stages=("$@"); fi
 # Targets of the fast tests, so that a sanitizer's tree holds nothing else: what reads files of others, and what manages memory or threads.
 # The simulation runs under sanitizers in the stage matrix. Threads run only in the recorder's rooms.
 fastTests=(test_formats test_recording test_recorder conformance_reader)
+fastLabels='unit|recording|statistics'
 # Of numbers, of devices and cohorts, and the fuzzer's corpora: heavy.sh has them under sanitizers, too.
 if [[ -n ${CALOT_CHECKS_ALL:-} ]]; then
   fastTests+=(fuzz_corpus test_sources test_analytics test_checkpoints test_math test_geometry test_vessel test_carving test_fat test_connective test_sim test_statistics test_design test_report)
+  fastLabels+='|fuzz'
 fi
 threadTests=(test_recording test_recorder conformance_reader)
 
@@ -99,7 +101,7 @@ for stage in "${stages[@]}"; do
       ;;
     asan-ubsan)
       export ASAN_OPTIONS=detect_leaks=1:strict_string_checks=1 UBSAN_OPTIONS=print_stacktrace=1
-      fast asan-ubsan 'unit|recording|statistics|fuzz' "${fastTests[@]}"
+      fast asan-ubsan "$fastLabels" "${fastTests[@]}"
       ;;
     tsan)
       export TSAN_OPTIONS=second_deadlock_stack=1:halt_on_error=1
