@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What fat still holds. Internal to this folder.
+// Fat that still holds the specimen. Internal to this folder.
 #pragma once
 
 #include <cstddef>
