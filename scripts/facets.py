@@ -79,7 +79,7 @@ class Study:
                 "seed": seed, "seconds": self.options.seconds}
 
     def read(self, discretisation, profile, seed):
-        """The attempt's file, or None where there is none that is whole and of this study."""
+        """The attempt's file if it is whole and of this study, else None."""
         try:
             found = json.loads((self.attempts / f"{self.name(discretisation, profile, seed)}.json").read_text(encoding="utf-8"))
             sound = found["format"] == FORMAT and found["of"] == self.identity(discretisation, profile, seed) and found["figures"]

@@ -107,7 +107,7 @@ ValueTree shareTree(const VarianceShare& share) {
           {"interval", treeOf(share.interval, [](const Interval& interval) { return ValueTree(interval); })}};
 }
 
-/// Shares of people nested in groups, with intervals; or the reason why there are none.
+/// Shares of people nested in groups, with intervals; or the reason for their absence.
 ValueTree sharesTree(const DesignFigure& figure, const std::string& facet, std::span<const RatingTable> groups,
                      const BootstrapOptions& bootstrap) {
   ValueTree row{{"figure", figure.name}, {"unit", figure.unit}, {"facet", facet}, {"seed", bootstrap.seed}};

@@ -48,7 +48,7 @@ using ValueGroups = std::vector<std::vector<double>>;
 using SeveralOfGroups = std::function<Expected<std::vector<double>>(const ValueGroups&)>;
 
 /// Several statistics of any number of groups, of the same resamples; one answer each. `groups` may hold places of
-/// people in a table. No answer at all when there is none of the groups themselves. @pre as bootstrap(); no group is
+/// people in a table. Refuses where the statistic refuses the groups themselves. @pre as bootstrap(); no group is
 /// empty; the statistic has always as many values.
 Expected<std::vector<Expected<Bootstrap>>> bootstrapSeveral(const ValueGroups& groups, const SeveralOfGroups& statistic,
                                                             const BootstrapOptions& options = {});

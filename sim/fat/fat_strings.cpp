@@ -116,7 +116,7 @@ double FatBody::section(int cube, int axis) const {
   return lattice.cell() * lattice.cell() * static_cast<double>(least);
 }
 
-/// The string that is stretched most and too much; -1: there is none.
+/// Cube of the string that is stretched most, beyond what it bears; -1: no string is.
 int FatBody::overstretched(const FatState& state) const {
   const SolidModel& solid = model_.solid();
   const double edge = model_.cellsPerCube() * model_.lattice().cell();

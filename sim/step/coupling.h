@@ -47,7 +47,7 @@ class Coupling {
                     std::vector<JointAttachment>& /*joints*/) const {}
   /// Works out system(). @pre holds(); the systems of both are those of this step
   virtual void assemble() {}
-  /// Its part of the system of both; null: there is none beside the loads. @pre assemble()
+  /// Its part of the system of both; null: the loads are all of it. @pre assemble()
   [[nodiscard]] virtual SystemCoupling* system() { return nullptr; }
   /// Adds the impulses on a body's nodes by which it feels what its vessels were pushed since (N s).
   virtual void passOn(std::size_t /*body*/, std::vector<Vec3>& /*impulse*/) {}

@@ -17,8 +17,8 @@ namespace calot {
 /// Of two sides the first is the specimen and every piece of a vessel that is grown to it alone. The other is what
 /// stays: all other organs, and every piece of a vessel that is grown to one of them or fixed. Whole vessels and
 /// strands that join both sides are other facts of the step's result. A body of fat holds the specimen if connected fat
-/// leads from one side to the other, by ties of which anything is left; a loose piece of vessel leads on from one part
-/// of the fat to another. Fat that hangs on one side alone holds nothing.
+/// leads from one side to the other, by ties that are not wholly carved away; a loose piece of vessel leads on from one
+/// part of the fat to another. Fat that hangs on one side alone holds nothing.
 ///
 /// Asked again only after a step that carved, tore or parted something. Without a specimen nothing holds it.
 class SpecimenHold {
