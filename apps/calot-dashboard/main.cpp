@@ -92,7 +92,7 @@ int run(const Options& o, int argc, char** argv) {
   recorder::useEngines(recorder::userEnginePlaces(files.programs(), assets));
   gui::DashboardWindow window(assessProgram(), assets);
   if (document) window.setDocument(document);
-  if (!asked.isNull()) window.resize(asked);
+  if (asked.isValid()) window.resize(asked);
   window.show();
   if (older) window.openDatabase(QString::fromStdString(*o.file));
   if (recording && window.createDatabase(QString::fromStdString(openedCohort().string())))

@@ -280,7 +280,7 @@ int run(const Options& o, int argc, char** argv) {
   }
   gui::TrainerWindow window(std::move(setup));
   if (o.aloud) window.setAloud(true);
-  if (!asked.isNull()) window.resize(asked);
+  if (asked.isValid()) window.resize(asked);
   window.show();
   if (!o.pictures.empty()) {
     takePictures(window, std::move(scene), o.pictures);

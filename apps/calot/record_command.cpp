@@ -227,6 +227,7 @@ void branch(const BranchOptions& o) {
   }
   file.publish();
 
+  if (auto* const device = source->device(); device != nullptr) device->setOutFrom(pose.last);
   if (auto* const scope = source->scope(); scope != nullptr) scope->setOutFrom(pose.last.camera);
   recorder::BlendedSource blended(*source, pose.last);
   recorder::RunSettings run{.live = o.live, .stop = &stopRequested()};

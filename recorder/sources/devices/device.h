@@ -65,6 +65,12 @@ struct DeviceInfo {
   DeviceCapabilities capabilities;
 };
 
+/// How a hand was left where an attempt goes on (a branch).
+struct HandStart {
+  double jaw = 0.0;     ///< rad
+  bool locked = false;  ///< ratchet of the grasper
+};
+
 /// Force on the operator's hand, in D.
 struct Wrench {
   Vec3 force = Vec3::Zero();   ///< N
@@ -105,6 +111,10 @@ class Device {
 
   /// Has its motion ended (scripts)?
   [[nodiscard]] virtual bool ended() const { return false; }
+
+  /// The hand sets out from here. A device that moves a jaw of its own, or that keeps a lock, goes on from this one; a
+  /// device that senses them ignores it.
+  virtual void setOut(Hand, const HandStart&) {}
 
   /// Sets the force on the hand. The device clamps it to its limits and releases it if no call arrives for 50 ms. A
   /// device without motors ignores it.

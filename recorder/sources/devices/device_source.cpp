@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <cmath>
 #include <thread>
 #include <utility>
 
@@ -29,7 +30,7 @@ void DevicePump::run() {
   DeviceInput input;
   Command command;
   while (!stop_) {
-    while (commands_.pop(command)) device_.setWrench(command.hand, command.wrench);
+    while (commands_.pop(command)) obey(command);
     device_.poll(wait, input);
     for (DeviceEvent& event : input.events) events_.push(std::move(event));
     for (const DeviceSample& sample : input.samples) samples_.push(sample);
@@ -53,11 +54,18 @@ void DevicePump::drain(DeviceInput& out) {
   while (samples_.pop(sample)) out.samples.push_back(sample);
 }
 
-void DevicePump::setWrench(Hand hand, const Wrench& wrench) {
+void DevicePump::command(const Command& command) {
   if (thread_.joinable())
-    commands_.push({hand, wrench});
+    commands_.push(command);
   else
-    device_.setWrench(hand, wrench);
+    obey(command);
+}
+
+void DevicePump::obey(const Command& command) {
+  if (const auto* wrench = std::get_if<Wrench>(&command.what))
+    device_.setWrench(command.hand, *wrench);
+  else
+    device_.setOut(command.hand, std::get<HandStart>(command.what));
 }
 
 namespace {
@@ -66,8 +74,26 @@ constexpr std::int64_t tickNanoseconds = 1'000'000;
 constexpr std::int64_t secondHand = 500'000'000;  // ns that the other hand is waited for
 constexpr std::size_t freshRoom = 1024;
 constexpr std::size_t mostTold = 100;
+constexpr double sameJaw = 1e-3;  // rad
+constexpr std::uint8_t actingButtons =
+    button::cutPedal | button::coagulatePedal | button::fire | button::retractMore | button::retractLess;
 
 }  // namespace
+
+TakeOver::TakeOver(const HandStart& start) : kept_(start), keepsJaw_(true), keepsLock_(true), down_(actingButtons) {}
+
+void TakeOver::apply(InstrumentSample& sample) {
+  down_ = static_cast<std::uint8_t>(down_ & sample.buttons);
+  sample.buttons = static_cast<std::uint8_t>(sample.buttons & ~down_);
+  const bool locked = (sample.buttons & button::lock) != 0;
+  keepsLock_ = keepsLock_ && locked != kept_.locked;
+  if (keepsLock_) sample.buttons = static_cast<std::uint8_t>(sample.buttons ^ button::lock);
+  const double jaw = sample.jaw;
+  const bool passed = jawBefore_ && (*jawBefore_ < kept_.jaw) != (jaw < kept_.jaw);
+  keepsJaw_ = keepsJaw_ && !passed && std::abs(jaw - kept_.jaw) > sameJaw;
+  jawBefore_ = jaw;
+  if (keepsJaw_) sample.jaw = kept_.jaw;
+}
 
 DeviceSource::DeviceSource(std::unique_ptr<Device> device, const SceneDescription& scene, DeviceSourceSettings settings)
     : settings_(std::move(settings)),
@@ -89,7 +115,8 @@ DeviceSource::DeviceSource(std::unique_ptr<Device> device, const SceneDescriptio
       return settings_.calibration && settings_.calibration->hand[which] ? &*settings_.calibration->hand[which]
                                                                          : nullptr;
     };
-    HandState state{DeviceMapping(scene.hands[h], scene.camera, of(h), of(1 - h)), {}, {}, false, false, false, false};
+    HandState state{
+        DeviceMapping(scene.hands[h], scene.camera, of(h), of(1 - h)), {}, {}, false, false, false, {}, false};
     state.held.position = scene.hands[h].home;
     state.held.orientation = pointing(scene.hands[h].port, scene.hands[h].home);
     state.held.instrument = InstrumentKind::none;
@@ -186,7 +213,10 @@ void DeviceSource::fill(HandState& hand, InstrumentSample& out) {
       }
       hand.anchorAgain = false;
       hand.clutched = clutch;
-      if (!clutch) hand.held = hand.mapping.map(sample);
+      if (!clutch) {
+        hand.held = hand.mapping.map(sample);
+        hand.takeOver.apply(hand.held);
+      }
       hand.used = !clutch;
     }
     hand.held.valid = fresh;
@@ -232,7 +262,12 @@ void DeviceSource::setOutFrom(const TickSamples& start) {
     if (from.instrument == InstrumentKind::none) continue;
     hand_[h].held.position = from.position;
     hand_[h].held.orientation = from.orientation;
+    hand_[h].held.jaw = from.jaw;
+    hand_[h].held.buttons = from.buttons & button::lock;
     hand_[h].placed = true;
+    const HandStart kept{from.jaw, (from.buttons & button::lock) != 0};
+    hand_[h].takeOver = TakeOver(kept);
+    pump_.setOut(static_cast<Hand>(h), kept);
   }
 }
 

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <thread>
+#include <variant>
 #include <vector>
 
 #include "recorder/base/queues.h"
@@ -31,16 +32,19 @@ class DevicePump {
 
   /// Replaces `out` by what came in since the last call. One thread.
   void drain(DeviceInput& out);
-  /// For the device's motors. The same thread.
-  void setWrench(Hand hand, const Wrench& wrench);
+  /// For the device's motors, and for what it holds. The same thread.
+  void setWrench(Hand hand, const Wrench& wrench) { command({hand, wrench}); }
+  void setOut(Hand hand, const HandStart& start) { command({hand, start}); }
   [[nodiscard]] bool ended() const { return ended_.load(std::memory_order_acquire); }
 
  private:
   struct Command {
     Hand hand = Hand::right;
-    Wrench wrench;
+    std::variant<Wrench, HandStart> what;
   };
   void run();
+  void command(const Command& command);
+  void obey(const Command& command);
 
   Device& device_;
   SpscQueue<DeviceSample> samples_;
@@ -94,6 +98,23 @@ struct DeviceSourceSettings {
   std::shared_ptr<TickClock> tickClock;
 };
 
+/// What an attempt that goes on from an earlier moment keeps until the hand takes over, so that nothing acts by itself:
+/// the jaw, until the device's stands so or passes there; the lock, until the device's is the same; and a pedal or
+/// trigger that is down counts only after it was let go.
+class TakeOver {
+ public:
+  TakeOver() = default;
+  explicit TakeOver(const HandStart& start);
+  /// @param sample of the device in; of the hand out
+  void apply(InstrumentSample& sample);
+
+ private:
+  HandStart kept_;
+  bool keepsJaw_ = false, keepsLock_ = false;
+  std::optional<double> jawBefore_;  ///< the device's
+  std::uint8_t down_ = 0;            ///< buttons that have not been let go
+};
+
 struct DeviceCounts {
   std::uint64_t samples = 0;
   std::uint64_t invalid = 0;
@@ -120,8 +141,8 @@ class DeviceSource final : public SampleSource {
   /// and why.
   void waitForFirst(double seconds, const std::atomic<bool>* stop = nullptr);
 
-  /// Before the first tick: the hands set out from these poses instead of the scene's home (a branch). A hand that has
-  /// no instrument there begins at home.
+  /// Before the first tick: the hands set out from here instead of the scene's home (a branch), with jaw and lock as
+  /// they were until each takes over (TakeOver). A hand that has no instrument there begins at home.
   void setOutFrom(const TickSamples& start);
 
   [[nodiscard]] const Provenance& provenance() const override { return provenance_; }
@@ -151,7 +172,8 @@ class DeviceSource final : public SampleSource {
     bool anchorAgain = false;
     bool clutched = false;
     bool placed = false;  ///< setOutFrom(): held says where it begins
-    bool used = false;    ///< the tick's pose was made from the newest
+    TakeOver takeOver;
+    bool used = false;  ///< the tick's pose was made from the newest
   };
   void gather();
   void beginAttempt();

@@ -63,6 +63,11 @@ std::string MouseDevice::readControls() {
   return {};
 }
 
+void MouseDevice::setOut(Hand hand, const HandStart& start) {
+  PointerDevice::setOut(hand, start);
+  input_->setLock(hand, start.locked);
+}
+
 void MouseDevice::move(Pointer& p, double seconds) {
   const auto either = [&](MouseControl more, MouseControl less) {
     return between(wish_.holds(more), wish_.holds(less));

@@ -28,8 +28,10 @@ class MouseDevice final : public PointerDevice {
   explicit MouseDevice(std::shared_ptr<MouseInput> input, DeviceClock clock = monotonicNanoseconds);
 
   [[nodiscard]] bool connected() const override { return there_; }
+  void setOut(Hand hand, const HandStart& start) override;
 
  private:
+  Pointer* pointerOf(Hand hand) override { return &pointer_[static_cast<std::size_t>(hand)]; }
   /// Motion asked for and not yet done (m).
   struct Asked {
     double right = 0.0, down = 0.0, in = 0.0, away = 0.0;
@@ -68,6 +70,7 @@ class EvdevMouse final : public PointerDevice {
   [[nodiscard]] bool connected() const override { return descriptor_.valid(); }
 
  private:
+  Pointer* pointerOf(Hand hand) override { return hand == hand_ ? &pointer_ : nullptr; }
   std::string find() override;
   std::string readControls() override;
   void advance(double seconds, std::int64_t now, DeviceInput& out) override;

@@ -259,6 +259,10 @@ bool CombinedDevice::connected() const { return device_[0].device->connected() &
 
 bool CombinedDevice::ended() const { return device_[0].device->ended() && device_[1].device->ended(); }
 
+void CombinedDevice::setOut(Hand hand, const HandStart& start) {
+  device_[static_cast<std::size_t>(hand)].device->setOut(hand, start);
+}
+
 void CombinedDevice::setWrench(Hand hand, const Wrench& wrench) {
   device_[static_cast<std::size_t>(hand)].device->setWrench(hand, wrench);
 }

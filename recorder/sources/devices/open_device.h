@@ -66,6 +66,7 @@ class CombinedDevice final : public Device {
   void poll(std::chrono::nanoseconds wait, DeviceInput& out) override;
   [[nodiscard]] bool connected() const override;
   [[nodiscard]] bool ended() const override;
+  void setOut(Hand hand, const HandStart& start) override;
   void setWrench(Hand hand, const Wrench& wrench) override;
   void close() override;
   [[nodiscard]] std::array<ForceStatistics, handCount> forceStatistics() const override;

@@ -44,6 +44,11 @@ std::string nameFrom(const char* text);
 
 /// A device whose controls are read 250 times a second.
 class PointerDevice : public ReopeningDevice {
+ public:
+  void setOut(Hand hand, const HandStart& start) override {
+    if (Pointer* const pointer = pointerOf(hand); pointer != nullptr) pointer->jaw = start.jaw;
+  }
+
  protected:
   static constexpr std::int64_t period = 4'000'000;  ///< ns from sample to sample
 
@@ -51,6 +56,8 @@ class PointerDevice : public ReopeningDevice {
   PointerDevice(DeviceClock clock, const char* name, double reach);
   std::string connect() final;
   void read(std::chrono::nanoseconds wait, DeviceInput& out) final;
+  /// The pointer of a hand, or null.
+  virtual Pointer* pointerOf(Hand hand) = 0;
   /// Finds the device. @returns why it cannot be used, or an empty text
   virtual std::string find() = 0;
   /// Reads the controls. @returns why the device is lost, or an empty text
@@ -81,6 +88,7 @@ class SpaceMouse final : public PointerDevice {
   void close() override;
 
  private:
+  Pointer* pointerOf(Hand hand) override { return hand == hand_ ? &pointer_ : nullptr; }
   std::string find() override;
   std::string readControls() override;
   void advance(double seconds, std::int64_t now, DeviceInput& out) override;
@@ -116,6 +124,7 @@ class GamepadDevice final : public PointerDevice {
 
  private:
   struct Sdl;
+  Pointer* pointerOf(Hand hand) override { return &pointer_[static_cast<std::size_t>(hand)]; }
   std::string find() override;
   std::string readControls() override;
   void advance(double seconds, std::int64_t now, DeviceInput& out) override;

@@ -69,6 +69,10 @@ class MouseInput {
       locked = !locked;
     });
   }
+  /// An attempt goes on with this hand's grasper locked, or not.
+  void setLock(Hand hand, bool locked) {
+    change([&](Wish& wish) { wish.locked[static_cast<std::size_t>(hand)] = locked; });
+  }
   /// Passes mouse and keyboard to the other hand. The one that is left stays where and as it is, its lock
   /// too, but without pedals.
   void switchHand() {

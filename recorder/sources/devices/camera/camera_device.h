@@ -57,6 +57,7 @@ class CameraDevice final : public Device {
   void poll(std::chrono::nanoseconds wait, DeviceInput& out) override;
   [[nodiscard]] bool connected() const override { return connected_; }
   [[nodiscard]] bool ended() const override { return ended_; }
+  void setOut(Hand hand, const HandStart& start) override { jaw_[static_cast<std::size_t>(hand)] = start.jaw; }
   void close() override { open_ = false; }
 
  private:

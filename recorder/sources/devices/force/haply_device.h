@@ -53,6 +53,9 @@ class HaplyDevice final : public ForceFeedbackDevice {
   ~HaplyDevice() override { close(); }
 
   [[nodiscard]] bool connected() const override { return stream_.open(); }
+  void setOut(Hand hand, const HandStart& start) override {
+    if (auto& handle = handle_[static_cast<std::size_t>(hand)]) handle->jaw = start.jaw;
+  }
 
  private:
   struct Handle {

@@ -10,6 +10,7 @@
 
 #include "recorder/sources/devices/device_script.h"
 #include "recorder/sources/devices/device_source.h"
+#include "recorder/sources/devices/mouse_device.h"
 #include "tests/recorder/sources/devices/support/device_support.h"
 #include "tests/support/fault.h"
 
@@ -50,6 +51,19 @@ TEST(CombinedDevice, EachDrivesItsOwnHandAndBothMustBeThere) {
   EXPECT_EQ(kinds, (std::vector<Kind>{Kind::status, Kind::connected, Kind::disconnected, Kind::connected}));
   EXPECT_TRUE(input.events[2].text.starts_with("left: "));
   EXPECT_TRUE(device.ended());
+}
+
+TEST(CombinedDevice, BothSetOutFromWhereTheyWere) {
+  const SceneDescription scene = devicetest::emptyScene();
+  std::array<OpenedDevice, handCount> mice;
+  for (std::size_t h = 0; h < handCount; ++h) {
+    auto ticks = std::make_shared<TickClock>();
+    mice[h] = {std::make_unique<MouseDevice>(std::make_shared<MouseInput>(), [ticks] { return ticks->now; }), ticks};
+  }
+  DeviceSourceSettings settings;
+  settings.tickClock = std::make_shared<TickClock>();
+  DeviceSource source(std::make_unique<CombinedDevice>(std::move(mice), settings.tickClock), scene, settings);
+  devicetest::expectNothingActs(source, scene);
 }
 
 TEST(CombinedDevice, IsAskedForByName) {

@@ -13,7 +13,9 @@
 #include <memory>
 #include <string>
 
+#include "recorder/sources/devices/device_source.h"
 #include "recorder/sources/devices/open_device.h"
+#include "tests/recorder/sources/devices/support/device_support.h"
 #include "tests/support/fault.h"
 
 namespace calot::recorder {
@@ -127,6 +129,20 @@ TEST_F(PipedMouse, IsAskedForByName) {
     expectFault(ErrorKind::failure, "", {"\"" + which + "\""}, [&] { openDevice("mouse:" + which, {}); },
                 {Remedy::listDevices});
   }
+}
+
+TEST_F(PipedMouse, ABranchActsOnlyWhenTheHandDoes) {
+  const SceneDescription scene = devicetest::emptyScene();
+  auto clock = std::make_shared<TickClock>();
+  DeviceSourceSettings settings;
+  settings.tickClock = clock;
+  DeviceSource source(std::make_unique<EvdevMouse>(path_.string(), Hand::left, [clock] { return clock->now; }), scene,
+                      settings);
+  devicetest::expectNothingActs(source, scene);
+  tell(EV_KEY, BTN_RIGHT, 1);
+  TickSamples now;
+  for (std::uint64_t tick = 5000; tick < 5100; ++tick) ASSERT_TRUE(source.next(tick, now));
+  EXPECT_NEAR(now.hand[0].jaw, 0.1 + 0.18, 0.01);
 }
 
 }  // namespace

@@ -100,6 +100,21 @@ TEST(Gamepad, OnePointerDrivesOneHandAndIsPassedOn) {
   EXPECT_NEAR((tick.hand[1].position - right).norm(), 0.0, 5e-4);
 }
 
+TEST(Gamepad, ABranchActsOnlyWhenTheHandDoes) {
+  const SceneDescription scene = devicetest::emptyScene();
+  auto clock = std::make_shared<TickClock>();
+  VirtualPad pad;
+  pad.press(SDL_CONTROLLER_BUTTON_A, true);
+  DeviceSourceSettings settings;
+  settings.tickClock = clock;
+  DeviceSource source(std::make_unique<GamepadDevice>("Calot test", [clock] { return clock->now; }), scene, settings);
+  devicetest::expectNothingActs(source, scene);
+  pad.press(SDL_CONTROLLER_BUTTON_DPAD_DOWN, true);
+  TickSamples now;
+  for (std::uint64_t tick = 5000; tick < 5100; ++tick) ASSERT_TRUE(source.next(tick, now));
+  EXPECT_NEAR(now.hand[1].jaw, 0.75 - 0.12, 0.01);
+}
+
 TEST(Gamepad, PulledOutPausesAndComesBack) {
   auto clock = std::make_shared<TickClock>();
   VirtualPad pad;

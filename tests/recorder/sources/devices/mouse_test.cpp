@@ -226,6 +226,26 @@ TEST(Mouse, ABranchSetsOutFromWhereTheHandsWere) {
   for (std::size_t h = 0; h < handCount; ++h) EXPECT_EQ(rig.now.hand[h].position, start.hand[h].position);
 }
 
+TEST(Mouse, ABranchActsOnlyWhenTheHandDoes) {
+  SourceRig rig;
+  rig.mouse->hold(MouseControl::fire, true);
+  devicetest::expectNothingActs(*rig.source, rig.scene);
+  rig.tick = 5000;
+  rig.mouse->hold(MouseControl::fire, false);
+  rig.mouse->hold(MouseControl::closeJaw, true);
+  rig.run(*rig.source, 100);
+  rig.mouse->hold(MouseControl::closeJaw, false);
+  EXPECT_NEAR(rig.now.hand[1].jaw, 0.75 - 0.18, 0.01) << "from where it was, not from the mouse's own zero";
+  EXPECT_EQ(rig.now.hand[1].buttons, 0U);
+  rig.mouse->hold(MouseControl::fire, true);
+  rig.run(*rig.source, 10);
+  EXPECT_EQ(rig.now.hand[1].buttons, button::fire) << "pressed anew";
+  rig.mouse->switchHand();
+  rig.mouse->toggleLock();
+  rig.run(*rig.source, 20);
+  EXPECT_EQ(rig.now.hand[0].buttons & button::lock, 0U) << "one press lets go";
+}
+
 TEST(ControlledSource, HoldsExchangesAndEnds) {
   SourceRig rig;
   rig.source->waitForFirst(1.0);

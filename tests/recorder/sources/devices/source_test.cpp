@@ -278,5 +278,52 @@ TEST_P(DeviceRecording, UnpluggedInMidRunLosesNothing) {
 INSTANTIATE_TEST_SUITE_P(Modes, DeviceRecording, ::testing::Values(Mode::practice, Mode::assessment),
                          [](const auto& which) { return which.param == Mode::practice ? "practice" : "assessment"; });
 
+/// What a handle senses, from a moment at which the jaws were open by 0.6 rad and locked.
+std::vector<InstrumentSample> takenOver(const std::vector<std::pair<double, std::uint8_t>>& sensed) {
+  TakeOver takeOver({0.6, true});
+  std::vector<InstrumentSample> out;
+  for (const auto& [jaw, buttons] : sensed) {
+    InstrumentSample& sample = out.emplace_back();
+    sample.jaw = jaw;
+    sample.buttons = buttons;
+    takeOver.apply(sample);
+  }
+  return out;
+}
+
+TEST(TakeOver, ASensedJawTakesOverWhereItPassesTheOneThatIsKept) {
+  const std::vector<InstrumentSample> opened = takenOver({{0.0, 0}, {0.3, 0}, {0.59, 0}, {0.61, 0}, {0.4, 0}});
+  const double wanted[]{0.6, 0.6, 0.6, 0.61, 0.4};
+  for (std::size_t i = 0; i < opened.size(); ++i) EXPECT_EQ(opened[i].jaw, wanted[i]) << i;
+  const std::vector<InstrumentSample> closed = takenOver({{1.1, 0}, {0.9, 0}, {0.5, 0}, {0.7, 0}});
+  const double wantedClosed[]{0.6, 0.6, 0.5, 0.7};
+  for (std::size_t i = 0; i < closed.size(); ++i) EXPECT_EQ(closed[i].jaw, wantedClosed[i]) << i;
+}
+
+TEST(TakeOver, ALockIsKeptUntilTheDevicesIsTheSame) {
+  const std::vector<InstrumentSample> out = takenOver({{0.0, 0}, {0.0, 0}, {0.0, button::lock}, {0.0, 0}});
+  const bool wanted[]{true, true, true, false};
+  for (std::size_t i = 0; i < out.size(); ++i) EXPECT_EQ((out[i].buttons & button::lock) != 0, wanted[i]) << i;
+}
+
+TEST(TakeOver, WhatIsDownCountsOnceItWasLetGo) {
+  constexpr std::uint8_t down = button::cutPedal | button::fire | button::retractMore;
+  const std::vector<InstrumentSample> out =
+      takenOver({{0.0, down}, {0.0, down}, {0.0, button::fire}, {0.0, down}, {0.0, 0}, {0.0, button::fire}});
+  const unsigned wanted[]{0, 0, 0, button::cutPedal | button::retractMore, 0, button::fire};
+  for (std::size_t i = 0; i < out.size(); ++i) EXPECT_EQ(out[i].buttons & ~button::lock, wanted[i]) << i;
+}
+
+TEST(DeviceSource, ABranchActsOnlyWhenTheHandDoes) {
+  const SceneDescription scene = emptyScene();
+  DeviceScript still = movingScript(10'000, 1, {Hand::left, Hand::right});
+  for (DeviceSample& s : still.samples) {
+    s.position.setZero();
+    s.buttons = button::coagulatePedal;
+  }
+  Rig rig(still, scene);
+  devicetest::expectNothingActs(*rig.source, scene);
+}
+
 }  // namespace
 }  // namespace calot::recorder::source_test

@@ -14,7 +14,9 @@
 #include <string>
 #include <thread>
 
+#include "recorder/sources/devices/device_source.h"
 #include "recorder/sources/devices/open_device.h"
+#include "tests/recorder/sources/devices/support/device_support.h"
 #include "tests/support/fault.h"
 
 namespace calot::recorder {
@@ -92,6 +94,21 @@ TEST(SpaceMouse, DeflectionsAreSpeedsAndALossIsTold) {
   run(20);
   EXPECT_FALSE(mouse.connected());
   EXPECT_EQ(input.events.back().kind, DeviceEvent::Kind::disconnected);
+}
+
+TEST(SpaceMouse, ABranchActsOnlyWhenTheHandDoes) {
+  FakeDaemon daemon;
+  const SceneDescription scene = devicetest::emptyScene();
+  auto clock = std::make_shared<TickClock>();
+  DeviceSourceSettings settings;
+  settings.tickClock = clock;
+  DeviceSource source(std::make_unique<SpaceMouse>(Hand::left, [clock] { return clock->now; }), scene, settings);
+  daemon.accept();
+  devicetest::expectNothingActs(source, scene);
+  daemon.tell({1, 1, 0, 0, 0, 0, 0, 0});
+  TickSamples now;
+  for (std::uint64_t tick = 5000; tick < 5100; ++tick) ASSERT_TRUE(source.next(tick, now));
+  EXPECT_NEAR(now.hand[0].jaw, 0.1 + 0.12, 0.01);
 }
 
 TEST(SpaceMouse, WithoutADaemonThatIsSaid) {

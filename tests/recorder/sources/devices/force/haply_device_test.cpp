@@ -80,6 +80,19 @@ TEST(HaplyDevice, ButtonsOpenCloseCutAndClutch) {
   EXPECT_EQ(input.samples.back().hand, Hand::left);
 }
 
+TEST(HaplyDevice, SetsOutWithTheJawThatTheHandHad) {
+  HaplyService service({"left"});
+  HaplyDevice device(serviceAt(service.port()));
+  DeviceInput input;
+  device.setOut(Hand::left, {0.7, false});
+  ASSERT_TRUE(pollUntil(device, input, [&] { return input.samples.size() >= 20; }));
+  for (const DeviceSample& s : input.samples) EXPECT_EQ(s.gripper, 0.7);
+  service.press("a", true);
+  const std::size_t before = input.samples.size();
+  ASSERT_TRUE(pollUntil(device, input, [&] { return input.samples.size() >= before + 200; }));
+  EXPECT_LT(input.samples.back().gripper, 0.65);
+}
+
 TEST(HaplyDevice, TwoDevicesDriveTwoHandsAndALossIsTold) {
   auto service = std::make_unique<HaplyService>(std::vector<std::string>{"left", "right"});
   const int port = service->port();

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <cstring>
 #include <string>
 #include <vector>
 
 #include "recorder/sources/devices/device_script.h"
+#include "recorder/sources/devices/device_source.h"
 #include "sim/scene/description.h"
 
 namespace calot::recorder::devicetest {
@@ -51,6 +54,43 @@ inline DeviceScript movingScript(std::int64_t length, std::int64_t every, const 
     }
   }
   return script;
+}
+
+/// Where an attempt goes on: tips in the scene, jaws about a duct, the left grasper locked, pedals down.
+inline TickSamples leftInMidAction(const SceneDescription& scene) {
+  TickSamples start;
+  for (std::size_t h = 0; h < handCount; ++h) {
+    InstrumentSample& hand = start.hand[h];
+    hand.position = scene.hands[h].home + Vec3(0.01, 0.002, -0.003);
+    hand.orientation = Quat(0.5, 0.5, 0.5, 0.5);
+    hand.jaw = h == 0 ? 0.1 : 0.75;
+    hand.instrument = h == 0 ? InstrumentKind::grasper : InstrumentKind::scissors;
+    hand.buttons = button::cutPedal | button::fire;
+  }
+  start.hand[0].buttons |= button::lock;
+  return roundedToGrid(start);
+}
+
+/// Goes on from leftInMidAction() and asks nothing of the device for five seconds: tips, jaws and locks stay, and no
+/// pedal acts, for each hand that the device measures. @pre before the first tick; on the tick clock
+inline void expectNothingActs(DeviceSource& source, const SceneDescription& scene) {
+  const TickSamples start = leftInMidAction(scene);
+  source.waitForFirst(1.0);
+  source.setOutFrom(start);
+  TickSamples now;
+  int measured = 0;
+  for (std::uint64_t tick = 0; tick < 5000; ++tick) {
+    ASSERT_TRUE(source.next(tick, now));
+    for (std::size_t h = 0; h < handCount; ++h) {
+      const InstrumentSample& hand = now.hand[h];
+      if (!hand.valid) continue;
+      ++measured;
+      ASSERT_EQ(hand.position, start.hand[h].position) << "tick " << tick;
+      ASSERT_EQ(hand.jaw, start.hand[h].jaw) << "tick " << tick;
+      ASSERT_EQ(hand.buttons, start.hand[h].buttons & button::lock) << "tick " << tick;
+    }
+  }
+  EXPECT_GE(measured, 4900);
 }
 
 }  // namespace calot::recorder::devicetest
