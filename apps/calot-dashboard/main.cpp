@@ -80,7 +80,7 @@ int run(const Options& o, int argc, char** argv) {
   }
   if (recording && !o.pictures.empty())
     throw Error(ErrorKind::invalid, "--pictures: needs a cohort database, not a recording");
-  const QSize asked = windowSize(o.look);
+  const std::optional<QSize> asked = windowSize(o.look);
   if (!o.pictures.empty()) requireFolder(o.pictures, "pictures");
   const std::unique_ptr<QApplication> application = openScreen(argc, argv);
   useGraphics(o.graphics);
@@ -92,7 +92,7 @@ int run(const Options& o, int argc, char** argv) {
   recorder::useEngines(recorder::userEnginePlaces(files.programs(), assets));
   gui::DashboardWindow window(assessProgram(), assets);
   if (document) window.setDocument(document);
-  if (asked.isValid()) window.resize(asked);
+  if (asked) window.resize(*asked);
   window.show();
   if (older) window.openDatabase(QString::fromStdString(*o.file));
   if (recording && window.createDatabase(QString::fromStdString(openedCohort().string())))

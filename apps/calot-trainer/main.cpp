@@ -269,7 +269,7 @@ int run(const Options& o, int argc, char** argv) {
   for (const std::string& fault : faults) fmt::print(stderr, "calot-trainer: {}\n", fault);
   if (!scene && setup.scenes.empty())
     throw Error(ErrorKind::invalid, "no scenes were found; set CALOT_ASSETS to the folder that holds \"scenes\"");
-  const QSize asked = windowSize(o.look);
+  const std::optional<QSize> asked = windowSize(o.look);
   const std::unique_ptr<QApplication> application = openScreen(argc, argv);
   useGraphics(o.graphics);
   gui::theme::apply(gui::theme::choiceOf(QString::fromStdString(o.look.colours)),
@@ -280,7 +280,7 @@ int run(const Options& o, int argc, char** argv) {
   }
   gui::TrainerWindow window(std::move(setup));
   if (o.aloud) window.setAloud(true);
-  if (asked.isValid()) window.resize(asked);
+  if (asked) window.resize(*asked);
   window.show();
   if (!o.pictures.empty()) {
     takePictures(window, std::move(scene), o.pictures);

@@ -28,14 +28,14 @@ void addLook(CLI::App& options, LookOptions& look, const std::string& usual) {
   options.add_option("--size", look.size, "WIDTHxHEIGHT of the window in pixels; default: most of the screen");
 }
 
-QSize windowSize(const LookOptions& look) {
-  if (look.size.empty()) return {};
+std::optional<QSize> windowSize(const LookOptions& look) {
+  if (look.size.empty()) return std::nullopt;
   constexpr int least = 640, most = 8192;
   const std::optional<gui::PictureSize> size = gui::readSize(look.size);
   if (!size || std::min(size->width, size->height) < least || std::max(size->width, size->height) > most)
     throw Error(ErrorKind::invalid,
                 "--size " + recorder::shown(look.size) + ": WIDTHxHEIGHT is expected, of 640 to 8192 pixels");
-  return {size->width, size->height};
+  return QSize(size->width, size->height);
 }
 
 void requireFolder(const std::string& folder, const std::string& what) {

@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <optional>
 #include <QApplication>
 #include <QSize>
 #include <string>
@@ -20,8 +21,8 @@ struct LookOptions {
 /// Adds --colours, --type and --size. @param usual what holds where one of the first two is not given
 void addLook(CLI::App& options, LookOptions& look, const std::string& usual);
 
-/// The size that was asked for; none: null. @throws calot::Error (invalid)
-QSize windowSize(const LookOptions& look);
+/// The size that was asked for, if any. @throws calot::Error (invalid)
+std::optional<QSize> windowSize(const LookOptions& look);
 
 /// @param what is written there: "recordings"
 /// @throws Error (invalid) where there is no such folder, (failure) where nothing can be written in it

@@ -9,6 +9,7 @@
 #include <QEvent>
 #include <QLabel>
 #include <QMenuBar>
+#include <QScreen>
 #include <QStackedWidget>
 #include <utility>
 
@@ -47,7 +48,7 @@ TrainerWindow::TrainerWindow(TrainerSetup setup)
   centre->setLayout(parts::column({problem_, {stack_, 1}}));
   setCentralWidget(centre);
   buildMenus();
-  resize(sizeHint());  // not what a small screen would make of it: the picture has 1280 by 720
+  resize(sizeHint().boundedTo(screen()->availableSize()));
   scenes_->setScenes(setup_.scenes);
   connectPages();
   connect(&timer_, &QTimer::timeout, this, &TrainerWindow::refresh);

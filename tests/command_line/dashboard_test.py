@@ -5,6 +5,7 @@
 import contextlib
 import os
 import sqlite3
+import struct
 import subprocess
 import time
 
@@ -61,6 +62,9 @@ class Dashboard(ProgramTest):
         answer = program.calot(old, "--pictures", pictures, program=DASHBOARD, environment={"QT_QPA_PLATFORM": "offscreen"})
         self.assertEqual(answer.code, 0, answer)
         self.assertTrue((self.folder / "old.db.schema-1.bak").exists())
+        # The screen of the test's platform has 800 by 800 pixels.
+        sizes = [struct.unpack(">II", file.read_bytes()[16:24]) for file in pictures.glob("*.png")]
+        self.assertTrue(sizes and all(height >= 700 for _, height in sizes), sizes)
         with contextlib.closing(sqlite3.connect(old)) as database:
             self.assertGreater(database.execute("PRAGMA user_version").fetchone()[0], 1)
 

@@ -199,7 +199,16 @@ void DeviceSource::waitForFirst(double seconds, const std::atomic<bool>* stop) {
   }
 }
 
-void DeviceSource::fill(HandState& hand, InstrumentSample& out) {
+/// Jaw and lock stay as they are held until the device takes over.
+void DeviceSource::keepHeld(std::size_t hand) {
+  const InstrumentSample& held = hand_[hand].held;
+  const HandStart kept{held.jaw, (held.buttons & button::lock) != 0};
+  hand_[hand].takeOver = TakeOver(kept);
+  pump_.setOut(static_cast<Hand>(hand), kept);
+}
+
+void DeviceSource::fill(std::size_t h, InstrumentSample& out) {
+  HandState& hand = hand_[h];
   hand.used = false;
   if (hand.newest) {
     const DeviceSample& sample = *hand.newest;
@@ -211,6 +220,7 @@ void DeviceSource::fill(HandState& hand, InstrumentSample& out) {
       } else if (!hand.mapping.anchored() || hand.anchorAgain || (hand.clutched && !clutch)) {
         hand.mapping.anchor(sample, hand.held.position, hand.held.orientation);
       }
+      if (hand.anchorAgain) keepHeld(h);
       hand.anchorAgain = false;
       hand.clutched = clutch;
       if (!clutch) {
@@ -232,7 +242,7 @@ bool DeviceSource::next(std::uint64_t tick, TickSamples& out) {
     beginAttempt();
   if (ended_ && input_.samples.empty()) return false;
   TickSamples samples;
-  for (std::size_t h = 0; h < handCount; ++h) fill(hand_[h], samples.hand[h]);
+  for (std::size_t h = 0; h < handCount; ++h) fill(h, samples.hand[h]);
   keepRaw(tick);
   samples.camera = camera_;
   out = roundedToGrid(samples);
@@ -265,9 +275,7 @@ void DeviceSource::setOutFrom(const TickSamples& start) {
     hand_[h].held.jaw = from.jaw;
     hand_[h].held.buttons = from.buttons & button::lock;
     hand_[h].placed = true;
-    const HandStart kept{from.jaw, (from.buttons & button::lock) != 0};
-    hand_[h].takeOver = TakeOver(kept);
-    pump_.setOut(static_cast<Hand>(h), kept);
+    keepHeld(h);
   }
 }
 

@@ -98,9 +98,9 @@ struct DeviceSourceSettings {
   std::shared_ptr<TickClock> tickClock;
 };
 
-/// What an attempt that goes on from an earlier moment keeps until the hand takes over, so that nothing acts by itself:
-/// the jaw, until the device's stands so or passes there; the lock, until the device's is the same; and a pedal or
-/// trigger that is down counts only after it was let go.
+/// What an attempt keeps that goes on from an earlier moment, after a pause or after a loss, until the hand takes over,
+/// so that nothing acts by itself: the jaw, until the device's stands so or passes there; the lock, until the device's
+/// is the same; and a pedal or trigger that is down counts only after it was let go.
 class TakeOver {
  public:
   TakeOver() = default;
@@ -148,7 +148,7 @@ class DeviceSource final : public SampleSource {
   [[nodiscard]] const Provenance& provenance() const override { return provenance_; }
   bool next(std::uint64_t tick, TickSamples& out) override;
   SourceStatus status() override;
-  /// Discards the device's samples meanwhile; each hand is anchored again when the run goes on.
+  /// Discards the device's samples meanwhile; each hand is anchored again, and takes over, when the run goes on.
   void rest() override;
   [[nodiscard]] std::string statusText() const override { return lost_; }
   [[nodiscard]] DeviceSource* device() override { return this; }
@@ -179,7 +179,8 @@ class DeviceSource final : public SampleSource {
   void beginAttempt();
   void keepRaw(std::uint64_t tick);
   [[nodiscard]] std::int64_t now() const;
-  void fill(HandState& hand, InstrumentSample& out);
+  void keepHeld(std::size_t hand);
+  void fill(std::size_t hand, InstrumentSample& out);
 
   DeviceSourceSettings settings_;
   Provenance provenance_;

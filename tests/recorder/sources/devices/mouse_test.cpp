@@ -256,14 +256,20 @@ TEST(ControlledSource, HoldsExchangesAndEnds) {
   controlled.hold(true);
   EXPECT_EQ(controlled.status(), SourceStatus::paused);
   rig.mouse->move(400.0, 0.0);  // while the run is held
+  rig.mouse->hold(MouseControl::openJaw, true);
+  rig.mouse->hold(MouseControl::cut, true);
   for (int i = 0; i < 200; ++i) {
     rig.clock->now += 2'000'000;
     EXPECT_EQ(controlled.status(), SourceStatus::paused);
   }
+  rig.mouse->hold(MouseControl::openJaw, false);
   controlled.hold(false);
   EXPECT_EQ(controlled.status(), SourceStatus::ok);
   rig.run(controlled, 20);
   EXPECT_EQ(rig.now.hand[1].position, before.hand[1].position) << "what was done in the pause moved the hand";
+  EXPECT_EQ(rig.now.hand[1].jaw, before.hand[1].jaw) << "what was done in the pause opened the jaw";
+  EXPECT_EQ(rig.now.hand[1].buttons, 0U) << "a pedal that went down in the pause counts once it was let go";
+  rig.mouse->hold(MouseControl::cut, false);
   rig.mouse->move(10.0, 0.0);
   rig.run(controlled, 20);
   EXPECT_NEAR((rig.now.hand[1].position - before.hand[1].position).norm(), 0.0015, 2e-6);
