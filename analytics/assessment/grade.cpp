@@ -9,6 +9,7 @@
 
 #include "analytics/assessment/norm.h"
 #include "analytics/checkpoints/checkpoint.h"
+#include "recorder/base/counted.h"
 #include "recorder/base/errors.h"
 
 namespace calot::analytics {
@@ -159,7 +160,8 @@ void addHistory(GradedFigure& figure, const std::vector<const AttemptRow*>& past
 
 Expected<double> percentile(const std::vector<double>& members, double value, Direction direction) {
   const std::size_t n = members.size();
-  if (n < leastForPercentile) return NoResult{fmt::format("{} members, {} wanted", n, leastForPercentile)};
+  if (n < leastForPercentile)
+    return NoResult{fmt::format("{}, {} wanted", recorder::counted(n, "member"), leastForPercentile)};
   std::size_t worse = 0, equal = 0;
   for (const double m : members) {
     worse += (direction == Direction::lower ? m > value : m < value) ? 1 : 0;

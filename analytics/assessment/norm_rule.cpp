@@ -11,6 +11,7 @@
 #include "analytics/checkpoints/checkpoint.h"
 #include "analytics/cohort/cohort_database.h"
 #include "analytics/report/table_study.h"
+#include "recorder/base/counted.h"
 #include "recorder/base/errors.h"
 #include "recorder/base/text_words.h"
 
@@ -175,8 +176,9 @@ Norm createNorm(const std::string& database, NormRequest request, const std::vec
 }
 
 std::vector<std::string> normSummary(const Norm& norm) {
-  return {fmt::format("Norm {} version {}, made on {} by {}: {} members, judged by {}; {}", norm.name, norm.version,
-                      norm.createdUtc, norm.by, norm.members.size(), norm.judgedBy, norm.comparabilityKey),
+  return {fmt::format("Norm {} version {}, made on {} by {}: {}, judged by {}; {}", norm.name, norm.version,
+                      norm.createdUtc, norm.by, recorder::counted(norm.members.size(), "member"), norm.judgedBy,
+                      norm.comparabilityKey),
           "Rule: " + ruleText(norm), useOf(norm)};
 }
 

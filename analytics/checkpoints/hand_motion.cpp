@@ -11,6 +11,7 @@
 #include "analytics/checkpoints/figures/rows.h"
 #include "analytics/checkpoints/phases.h"
 #include "analytics/statistics/descriptive.h"
+#include "recorder/base/counted.h"
 
 namespace calot::analytics {
 namespace {
@@ -40,7 +41,7 @@ Measured withSampling(Measured measured, const MotionCoverage& coverage, const M
   const std::size_t leftOut = &one == &other ? one.leftOut : one.leftOut + other.leftOut;
   if (measured.value && leftOut > 0)
     measured.note +=
-        fmt::format("{}{} sample{} left out", measured.note.empty() ? "" : "; ", leftOut, leftOut == 1 ? "" : "s");
+        fmt::format("{}{} left out", measured.note.empty() ? "" : "; ", recorder::counted(leftOut, "sample"));
   return measured;
 }
 

@@ -14,6 +14,7 @@
 
 #include "analytics/cohort/embedded.h"
 #include "analytics/cohort/tables.h"
+#include "recorder/base/counted.h"
 #include "recorder/base/text_words.h"
 
 namespace calot::analytics {
@@ -106,7 +107,7 @@ Imported CohortDatabase::storeAttempt(const AttemptRecord& attempt, const std::v
 void CohortDatabase::storeValues(const std::string& attempt, const std::vector<CheckpointValue>& values) {
   connection_->change([&](SQLite::Database& db) {
     if (replaceValues(db, knownAttempt(db, path(), attempt), values))
-      audit(db, "attempt-values", attempt, fmt::format("{} values", values.size()));
+      audit(db, "attempt-values", attempt, recorder::counted(values.size(), "value"));
   });
 }
 
@@ -121,7 +122,7 @@ Imported CohortDatabase::storeExternal(const std::string& attempt, const std::ve
   return connection_->change([&](SQLite::Database& db) {
     const std::size_t added = writeExternalValues(db, path(), knownAttempt(db, path(), attempt), values);
     if (added == 0) return Imported::unchanged;
-    audit(db, "attempt-external", attempt, fmt::format("{} values", added));
+    audit(db, "attempt-external", attempt, recorder::counted(added, "value"));
     return Imported::added;
   });
 }
@@ -319,8 +320,8 @@ void refuseUnsound(const std::string& path) {
   const CohortCheck check = checkCohort(path);
   if (check.faults.empty()) return;
   throw Error(ErrorKind::damaged, Where{path},
-              fmt::format("{} faults, the first: {}; restore a copy, or assess the recordings into a new one",
-                          check.faults.size(), check.faults.front()));
+              fmt::format("{}, the first: {}; restore a copy, or assess the recordings into a new one",
+                          recorder::counted(check.faults.size(), "fault"), check.faults.front()));
 }
 
 }  // namespace calot::analytics

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "analytics/cohort/embedded.h"
+#include "recorder/base/counted.h"
 #include "recorder/base/dates.h"
 #include "recorder/base/files.h"
 
@@ -331,7 +332,9 @@ std::vector<std::string> valueFaults(SQLite::Database& db) {
       if (std::string_view(c.type).substr(0, 4) != "REAL") continue;
       const auto count = firstNumber(
           db, fmt::format("SELECT count(*) FROM {} WHERE abs({}) > 1.7976931348623157e308", table->name, c.name));
-      if (count > 0) faults.push_back(fmt::format("{} numbers of {}.{} are not finite", count, table->name, c.name));
+      if (count > 0)
+        faults.push_back(
+            fmt::format("{}.{} has {} not finite", table->name, c.name, recorder::counted(count, "number")));
     }
   }
   db.exec("CREATE TEMP TABLE figure (name TEXT PRIMARY KEY, version, unit, negative, broken)");

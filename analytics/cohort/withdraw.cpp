@@ -10,6 +10,7 @@
 #include <system_error>
 
 #include "analytics/cohort/tables.h"
+#include "recorder/base/counted.h"
 #include "recorder/loop.h"
 
 namespace calot::analytics {
@@ -206,7 +207,7 @@ std::string withdraw(const std::string& path, const Withdrawal& w) {
     id = leaveTombstone(db, w);
     removeRows(db, w, id);
     audit(db, "participant-withdraw", w.scope == WithdrawalScope::all ? "withdrawn " + id : w.pseudonym,
-          fmt::format("scope {}, {} attempts", nameOf(w.scope), w.attempts.size()));
+          fmt::format("scope {}, {}", nameOf(w.scope), recorder::counted(w.attempts.size(), "attempt")));
   });
   cohort.read([&](SQLite::Database& db) { rebuild(db, path); });
   removeBackups(path);

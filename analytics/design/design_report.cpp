@@ -10,6 +10,7 @@
 
 #include "analytics/report/study_people.h"
 #include "analytics/statistics/rank_tests.h"
+#include "recorder/base/counted.h"
 #include "recorder/base/errors.h"
 #include "recorder/loop.h"
 
@@ -25,7 +26,7 @@ constexpr std::array<Analyse, 9> analyses{nullptr,           analyseSeveralGroup
 
 /// "expert (8 participants), novice (9)", or how many participants there are.
 std::string populationOf(const DesignData& data) {
-  if (data.groups.empty()) return fmt::format("{} participants", data.people.size());
+  if (data.groups.empty()) return recorder::counted(data.people.size(), "participant");
   std::string text;
   for (std::size_t g = 0; g < data.groups.size(); ++g) {
     std::size_t count = 0;

@@ -12,6 +12,7 @@
 #include "analytics/cohort/embedded.h"
 #include "analytics/cohort/registers.h"
 #include "analytics/report/study_protocol.h"
+#include "recorder/base/counted.h"
 #include "recorder/base/errors.h"
 #include "recorder/base/text_words.h"
 
@@ -167,8 +168,8 @@ AttemptsOfUnits attemptsOfUnits(const std::vector<const AttemptRow*>& taken, std
   if (several > 0 && !reduction.rule) {
     throw Error(
         ErrorKind::refused, Where{name},
-        fmt::format("participant {} attempts{} ({} participant{} with several), which are not independent", whose,
-                    reduction.byDevice ? ", of a device more than one" : "", several, several == 1 ? "" : "s"),
+        fmt::format("participant {} attempts{} ({} with several), which are not independent", whose,
+                    reduction.byDevice ? ", of a device more than one" : "", recorder::counted(several, "participant")),
         {Remedy::chooseAttemptRule});
   }
   result.rule = !reduction.oneEach                     ? "all attempts of each"

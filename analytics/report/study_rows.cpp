@@ -14,6 +14,7 @@
 #include "analytics/report/study_protocol.h"
 #include "analytics/statistics/descriptive.h"
 #include "analytics/statistics/rank_tests.h"
+#include "recorder/base/counted.h"
 #include "recorder/base/errors.h"
 
 namespace calot::analytics {
@@ -154,7 +155,7 @@ void adjustFamily(Study& study, const StudyChoices& choices) {
       },
       [](StudyRow& r, double p) { r.adjusted->holm = p; });
   study.family =
-      fmt::format("Holm: adjusted over the {} rank test{} of {}", tests, tests == 1 ? "" : "s",
+      fmt::format("Holm: adjusted over the {} of {}", recorder::counted(tests, "rank test"),
                   choices.family.empty() ? "this study" : fmt::format("{}", fmt::join(choices.family, ", ")));
   if (analyses > 0) study.family += fmt::format("; the {} with the baseline are a family of their own", analyses);
   study.family += ".";

@@ -13,6 +13,7 @@
 #include "analytics/report/study_population.h"
 #include "analytics/report/study_protocol.h"
 #include "analytics/report/study_rows.h"
+#include "recorder/base/counted.h"
 #include "recorder/base/errors.h"
 #include "recorder/base/text_words.h"
 
@@ -42,11 +43,12 @@ std::uint64_t applyRule(std::array<Rows, 2>& rows, const CsvTable& table, const 
   }
   several = several || repeated > 0;
   if (example == nullptr) return later;
-  throw Error(ErrorKind::refused, Where{table.path, fmt::format("line {}", (*example)[1]->line)},
-              fmt::format("participant \"{}\" has {} rows{} ({} participant{} with several), which are not independent",
-                          shown((*example)[0]->participant), example->size(),
-                          options.occasion.empty() ? "" : " at one occasion", repeated, repeated == 1 ? "" : "s"),
-              {Remedy::chooseOccasion, Remedy::chooseAttemptRule});
+  throw Error(
+      ErrorKind::refused, Where{table.path, fmt::format("line {}", (*example)[1]->line)},
+      fmt::format("participant \"{}\" has {} rows{} ({} with several), which are not independent",
+                  shown((*example)[0]->participant), example->size(),
+                  options.occasion.empty() ? "" : " at one occasion", recorder::counted(repeated, "participant")),
+      {Remedy::chooseOccasion, Remedy::chooseAttemptRule});
 }
 
 void nameAbsent(Study& study, const std::map<std::string, std::string>& groupOf,

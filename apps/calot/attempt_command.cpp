@@ -5,6 +5,7 @@
 
 #include "apps/calot/command.h"
 #include "apps/calot/replay_report.h"
+#include "recorder/base/counted.h"
 
 namespace calot::apps {
 namespace {
@@ -59,7 +60,7 @@ void listAttempts(const AttemptFilter& o) {
     synthetic += a.synthetic ? 1 : 0;
   }
   if (synthetic > 0) notes += fmt::format("{} of them by performers (synthetic)\n", synthetic);
-  notes += fmt::format("{}: {} attempts", o.cohort, list.size());
+  notes += fmt::format("{}: {}", o.cohort, recorder::counted(list.size(), "attempt"));
   if (const std::size_t left = rows.size() - list.size(); left > 0)
     notes += fmt::format(", {} not listed{}", left, o.all ? "" : " (--all: excluded, too)");
   printResult(o.json, "attempt-list", {{"attempts", list}}, [&](std::ostream& out) {

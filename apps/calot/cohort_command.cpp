@@ -8,6 +8,7 @@
 #include "analytics/interchange/export_tables.h"
 #include "apps/calot/command.h"
 #include "apps/calot/replay_report.h"
+#include "recorder/base/counted.h"
 #include "recorder/base/files.h"
 
 namespace calot::apps {
@@ -24,7 +25,7 @@ void exportTables(const CohortExport& o) {
   std::string text;
   for (const analytics::ExportedTable& t : analytics::exportCohort(o.cohort, o.folder, o.force)) {
     list.push_back({{"table", t.name}, {"rows", t.rows}});
-    text += fmt::format("{:<24}{} rows\n", t.name, t.rows);
+    text += fmt::format("{:<24}{}\n", t.name, recorder::counted(t.rows, "row"));
   }
   printResult(o.json, "cohort-export", {{"tables", list}}, text);
 }
@@ -32,11 +33,12 @@ void exportTables(const CohortExport& o) {
 void handOut(const CohortExport& o) {
   const analytics::Bundle b = analytics::writeBundle(o.cohort, o.folder, o.bundle, o.force);
   Json left = Json::array(), files = Json::array();
-  std::string text = fmt::format("{}: {} of {} attempts, of {} participants, {} values\n", o.folder, b.attempts,
-                                 b.recruited, b.participants, b.values);
+  std::string text =
+      fmt::format("{}: {} of {}, of {}, {}\n", o.folder, b.attempts, recorder::counted(b.recruited, "attempt"),
+                  recorder::counted(b.participants, "participant"), recorder::counted(b.values, "value"));
   for (const auto& row : b.leftOut) {
     left.push_back({{"reason", row.reason}, {"attempts", row.attempts}});
-    text += fmt::format("{} attempts left out: {}\n", row.attempts, row.reason);
+    text += fmt::format("{} left out: {}\n", recorder::counted(row.attempts, "attempt"), row.reason);
   }
   if (b.participants > 0)
     text += fmt::format(
@@ -58,8 +60,9 @@ void handOut(const CohortExport& o) {
 Json mergeOne(const std::string& into, const std::string& from, bool json) {
   const analytics::CohortMerge m = analytics::mergeCohorts(into, from);
   if (!json && m.conflicts.empty()) {
-    fmt::print("{}: {}: {} participants, {} attempts, {} extended, {} other rows, {} entries filled{}\n", into,
-               m.changed() ? "merged" : "nothing new", m.participants, m.attempts, m.extended, m.rows, m.filled,
+    fmt::print("{}: {}: {}, {}, {} extended, {}, {} filled{}\n", into, m.changed() ? "merged" : "nothing new",
+               recorder::counted(m.participants, "participant"), recorder::counted(m.attempts, "attempt"), m.extended,
+               recorder::counted(m.rows, "other row"), recorder::counted(m.filled, "entry", "entries"),
                m.withdrawn > 0 ? fmt::format("; {} withdrawn attempts stay out", m.withdrawn) : "");
   }
   for (const std::string& conflict : m.conflicts) fmt::print(stderr, "calot: conflict: {}\n", conflict);
@@ -105,13 +108,15 @@ void checkDatabase(const CohortOptions& o) {
   const Json all{{"sound", c.faults.empty()}, {"database_schema", c.schema}, {"participants", c.participants},
                  {"attempts", c.attempts},    {"values", c.values},          {"faults", c.faults}};
   printResult(o.json, "cohort-check", all,
-              c.faults.empty() ? fmt::format("{}: sound; schema {}, {} participants, {} attempts, {} values\n",
-                                             o.cohort, c.schema, c.participants, c.attempts, c.values)
-                               : fmt::format("{}\n", fmt::join(c.faults, "\n")));
+              c.faults.empty()
+                  ? fmt::format("{}: sound; schema {}, {}, {}, {}\n", o.cohort, c.schema,
+                                recorder::counted(c.participants, "participant"),
+                                recorder::counted(c.attempts, "attempt"), recorder::counted(c.values, "value"))
+                  : fmt::format("{}\n", fmt::join(c.faults, "\n")));
   if (c.faults.empty()) return;
   throw Error(ErrorKind::damaged,
-              fmt::format("{}: {} faults, the first: {}; restore a copy, or assess the recordings into a new one",
-                          o.cohort, c.faults.size(), c.faults.front()));
+              fmt::format("{}: {}, the first: {}; restore a copy, or assess the recordings into a new one", o.cohort,
+                          recorder::counted(c.faults.size(), "fault"), c.faults.front()));
 }
 
 void scrub(const CohortOptions& o) {

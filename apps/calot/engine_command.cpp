@@ -8,6 +8,7 @@
 
 #include "analytics/checkpoints/replay_words.h"
 #include "apps/calot/command.h"
+#include "recorder/base/counted.h"
 #include "recorder/base/files.h"
 #include "recorder/kept/kept_engine.h"
 #include "recorder/kept/transcript.h"
@@ -124,7 +125,8 @@ void transcribe(const TranscriptOptions& o) {
   recorder::probe(o.recording);
   recorder::Recording recording(o.recording);
   if (o.steps < 2 || o.steps > recording.stepCount())
-    throw Error(ErrorKind::invalid, fmt::format("{}: has {} steps", o.recording, recording.stepCount()));
+    throw Error(ErrorKind::invalid,
+                fmt::format("{}: has {}", o.recording, recorder::counted(recording.stepCount(), "step")));
   const std::vector<std::byte> bytes =
       bytesOf(recorder::makeTranscript(recorder::commandOf(o.engine), recording, o.steps));
   recorder::writeText(o.output, {reinterpret_cast<const char*>(bytes.data()), bytes.size()}, o.force);

@@ -11,6 +11,7 @@
 #include "apps/calot/command.h"
 #include "apps/calot/replay_report.h"
 #include "gui/words/attempt_summary.h"
+#include "recorder/base/counted.h"
 #include "recorder/base/errors.h"
 #include "recorder/sources/column_map.h"
 
@@ -200,8 +201,8 @@ ExitCode importFiles(const ImportOptions& o) {
     Progress::erase();
     if (!result.error.empty()) fmt::print(stderr, "calot: {}\n", result.error);
     if (!o.json && result.error.empty()) {
-      fmt::print("{}: {}, {:.2f} s, {} rows\n", file, o.cohort.empty() ? "shown" : result.how,
-                 result.motion->time.back(), result.motion->time.size());
+      fmt::print("{}: {}, {:.2f} s, {}\n", file, o.cohort.empty() ? "shown" : result.how, result.motion->time.back(),
+                 recorder::counted(result.motion->time.size(), "row"));
       for (const std::string& note : result.motion->notes) fmt::print("  {}\n", note);
       if (o.files.size() == 1 || o.cohort.empty()) {
         gui::printValues(result.values, {}, std::cout);
@@ -230,8 +231,9 @@ std::string summaryOf(const analytics::MotionManifest& manifest, const std::map<
                       std::size_t practice) {
   std::string how;
   for (const auto& [word, files] : counts) how += fmt::format("{}{} {}", how.empty() ? "" : ", ", files, word);
-  std::string text = fmt::format("{}: {} files: {}; {} participants{}\n", manifest.path, manifest.rows.size(), how,
-                                 manifest.participants.size(), groupsOf(manifest));
+  std::string text =
+      fmt::format("{}: {}: {}; {}{}\n", manifest.path, recorder::counted(manifest.rows.size(), "file"), how,
+                  recorder::counted(manifest.participants.size(), "participant"), groupsOf(manifest));
   if (practice > 0)
     text += fmt::format(
         "{} in practice mode: studies leave these out (a column \"mode\", or --mode assessment, says otherwise)\n",

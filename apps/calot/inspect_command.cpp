@@ -6,6 +6,7 @@
 
 #include "analytics/checkpoints/replay_words.h"
 #include "apps/calot/command.h"
+#include "recorder/base/counted.h"
 #include "recorder/base/files.h"
 #include "recorder/recording/layout.h"
 #include "recorder/recording/probe.h"
@@ -209,8 +210,8 @@ struct RecoverOptions {
 
 void recoverRecording(const RecoverOptions& o) {
   const recorder::Recovered saved = recorder::recover(o.in, o.out, o.force);
-  fmt::print("{}: {} steps, {} ticks saved, {}\n", o.out, saved.steps, saved.ticks,
-             saved.complete ? "complete" : "incomplete");
+  fmt::print("{}: {}, {} saved, {}\n", o.out, recorder::counted(saved.steps, "step"),
+             recorder::counted(saved.ticks, "tick"), saved.complete ? "complete" : "incomplete");
   if (!saved.lost.empty()) fmt::print("the rest is lost: {}\n", saved.lost);
 }
 

@@ -8,6 +8,7 @@
 
 #include "apps/calot/command.h"
 #include "apps/calot/mesh_report.h"
+#include "recorder/base/counted.h"
 #include "recorder/base/files.h"
 #include "recorder/formats/mesh_file.h"
 #include "sim/geometry/isosurface_stuffing.h"
@@ -117,8 +118,8 @@ std::string openFault(const MeshOptions& o, const MeshReport& report, const Surf
       if (++left <= 3) holes += (holes.empty() ? ": " : "; ") + wordsFor(hole);
     }
     if (left > 3) holes += "; ...";
-    return fmt::format("the surface is open: {} edges, {} holes{}{}", now.openEdges, left, holes,
-                       o.repair ? "" : "; --repair fills holes");
+    return fmt::format("the surface is open: {}, {}{}{}", recorder::counted(now.openEdges, "edge"),
+                       recorder::counted(left, "hole"), holes, o.repair ? "" : "; --repair fills holes");
   }
   if (now.nonManifoldEdges > 0)
     return fmt::format("{} edges have more than two triangles: what is inside there is not defined",

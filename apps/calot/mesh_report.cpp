@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "recorder/base/counted.h"
 #include "recorder/formats/scene_assets.h"
 
 namespace calot::apps {
@@ -159,8 +160,8 @@ std::string meshReportText(const MeshReport& report) {
   std::string text;
   const auto out = std::back_inserter(text);
   const Vec3 size = 1000.0 * (in.box.upper - in.box.lower);
-  fmt::format_to(out, "surface            {}: {} vertices, {} triangles, {} component{}, {:.1f} x {:.1f} x {:.1f} mm\n",
-                 report.input, in.vertices, in.triangles, in.components, in.components == 1 ? "" : "s", size[0],
+  fmt::format_to(out, "surface            {}: {} vertices, {} triangles, {}, {:.1f} x {:.1f} x {:.1f} mm\n",
+                 report.input, in.vertices, in.triangles, recorder::counted(in.components, "component"), size[0],
                  size[1], size[2]);
   if (in.closedManifold()) {
     fmt::format_to(out, "                   closed and consistently outward\n");

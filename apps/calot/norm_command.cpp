@@ -11,6 +11,7 @@
 #include "analytics/report/value_tree.h"
 #include "apps/calot/command.h"
 #include "apps/calot/environment.h"
+#include "recorder/base/counted.h"
 #include "recorder/base/errors.h"
 #include "recorder/base/files.h"
 #include "recorder/base/text_words.h"
@@ -173,9 +174,9 @@ void listNorms(NormOptions& o) {
   for (const analytics::Norm& norm : analytics::CohortDatabase(o.database, Access::read).norms()) {
     rows.push_back(normJson(norm));
     const analytics::PassRate own = analytics::passRates(norm).first;
-    text += fmt::format("{} version {}, {}: {} members, judged by {}{}{}{}\n", norm.name, norm.version, norm.createdUtc,
-                        norm.members.size(), norm.judgedBy, norm.evidence.empty() ? ", formative" : "",
-                        norm.synthetic ? ", SYNTHETIC" : "",
+    text += fmt::format("{} version {}, {}: {}, judged by {}{}{}{}\n", norm.name, norm.version, norm.createdUtc,
+                        recorder::counted(norm.members.size(), "member"), norm.judgedBy,
+                        norm.evidence.empty() ? ", formative" : "", norm.synthetic ? ", SYNTHETIC" : "",
                         own.passed == own.members ? ""
                                                   : fmt::format(", FAILED by {} of its {} competent members",
                                                                 own.members - own.passed, own.members));

@@ -7,6 +7,7 @@
 #include "analytics/cohort_files.h"
 #include "apps/calot/command.h"
 #include "apps/calot/replay_report.h"
+#include "recorder/base/counted.h"
 
 namespace calot::apps {
 namespace {
@@ -115,11 +116,12 @@ void withdraw(const WithdrawOptions& o) {
   for (const fs::path& file : files.remove) removeFile(file);
   if (w.known) {
     const std::string tombstone = analytics::withdraw(o.cohort, w);
-    fmt::print("{}: {} attempts and {} files removed; tombstone {}\n", o.cohort, w.attempts.size(), files.remove.size(),
-               tombstone);
+    fmt::print("{}: {} and {} removed; tombstone {}\n", o.cohort, recorder::counted(w.attempts.size(), "attempt"),
+               recorder::counted(files.remove.size(), "file"), tombstone);
   } else {
     analytics::scrub(o.cohort);
-    fmt::print("{}: {} files removed; the participant was not in the database\n", o.cohort, files.remove.size());
+    fmt::print("{}: {} removed; the participant was not in the database\n", o.cohort,
+               recorder::counted(files.remove.size(), "file"));
   }
 }
 
@@ -205,7 +207,7 @@ void listParticipants(const ParticipantFilter& o) {
   }
   printResult(o.json, "participant-list", {{"participants", list}}, [&](std::ostream& out) {
     if (!list.empty()) table.print(out, terminalColumns());
-    out << fmt::format("{}: {} participants\n", o.cohort, list.size());
+    out << fmt::format("{}: {}\n", o.cohort, recorder::counted(list.size(), "participant"));
   });
 }
 

@@ -12,6 +12,7 @@
 #include "analytics/statistics/two_groups.h"
 #include "apps/calot/command.h"
 #include "apps/calot/study_command.h"
+#include "recorder/base/counted.h"
 #include "recorder/formats/scene_file.h"
 
 namespace calot::apps {
@@ -110,8 +111,8 @@ void withdrawProtocol(const ProtocolOptions& o) {
     const std::size_t data = analytics::attemptsUnder(p, database.listAttempts());
     why = !r.withdrawnUtc.empty()                             ? "was withdrawn on " + r.withdrawnUtc
           : analytics::readAnalysisLock(o.database, r.sha256) ? "has an analysis that is locked"
-          : data > 0                                          ? fmt::format("has data, {} attempts of its groups", data)
-                                                              : "";
+          : data > 0 ? fmt::format("has data, {} of its groups", recorder::counted(data, "attempt"))
+                     : "";
     if (!why.empty()) break;
     database.withdrawProtocol(r.sha256, o.reason, o.by);
     fmt::print("{}: protocol {} withdrawn; a new one has a higher version or another name\n", o.database, name);

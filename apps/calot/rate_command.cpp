@@ -19,6 +19,7 @@
 #include "apps/calot/replay_report.h"
 #include "gui/film/film.h"
 #include "gui/film/film_writer.h"
+#include "recorder/base/counted.h"
 #include "recorder/base/files.h"
 #include "recorder/base/json_reader.h"
 #include "recorder/base/text_words.h"
@@ -161,9 +162,10 @@ ExitCode storeRatingManifest(const RateOptions& o) {
                  {"added", stored.added},
                  {"unchanged", stored.unchanged},
                  {"replaced", stored.replaced}};
-  printResult(o.json, "rate-manifest", row,
-              fmt::format("{}: {} ratings: {} added, {} unchanged, {} replaced\n", o.manifest, read.rows.size(),
-                          stored.added, stored.unchanged, stored.replaced));
+  printResult(
+      o.json, "rate-manifest", row,
+      fmt::format("{}: {}: {} added, {} unchanged, {} replaced\n", o.manifest,
+                  recorder::counted(read.rows.size(), "rating"), stored.added, stored.unchanged, stored.replaced));
   return ExitCode::yes;
 }
 
@@ -171,8 +173,8 @@ void takePackAnswers(const RateOptions& o) {
   const analytics::PackAnswers answers = analytics::readPackAnswers(
       o.taken, [&](const std::string& id) { return analytics::readRatingPack(o.database, id); });
   analytics::storePackAnswers(o.database, answers.pack, answers.rater, answers.ratings, o.force);
-  fmt::print("{}: {} ratings by {} with {} version {} stored", o.taken, answers.ratings.size(), answers.rater,
-             answers.form.name, answers.form.version);
+  fmt::print("{}: {} by {} with {} version {} stored", o.taken, recorder::counted(answers.ratings.size(), "rating"),
+             answers.rater, answers.form.name, answers.form.version);
   if (answers.notJudged > 0) fmt::print(", {} films could not be judged", answers.notJudged);
   if (answers.withdrawn > 0) fmt::print(", {} films of withdrawn attempts left out", answers.withdrawn);
   std::cout << '\n';

@@ -8,6 +8,7 @@
 #include "analytics/regrade.h"
 #include "apps/calot/command.h"
 #include "apps/calot/replay_report.h"
+#include "recorder/base/counted.h"
 
 namespace calot::apps {
 namespace {
@@ -117,10 +118,11 @@ void printRegrade(const analytics::Regrade& regrade) {
     table.print(std::cout);
     std::cout << '\n';
     for (const std::string& title : order)
-      fmt::print("{}: changed in {} of {} attempts\n", title, attemptsOf[title], regrade.attempts.size());
+      fmt::print("{}: changed in {} of {}\n", title, attemptsOf[title],
+                 recorder::counted(regrade.attempts.size(), "attempt"));
   }
-  fmt::print("{} attempts: {} changed, {} unchanged", regrade.attempts.size(), counts[Regraded::changed],
-             counts[Regraded::unchanged]);
+  fmt::print("{}: {} changed, {} unchanged", recorder::counted(regrade.attempts.size(), "attempt"),
+             counts[Regraded::changed], counts[Regraded::unchanged]);
   for (const Regraded how : {Regraded::missing, Regraded::motion, Regraded::unreadable, Regraded::conflict}) {
     if (counts[how] > 0) fmt::print(", {} {}", counts[how], regradedName(how));
   }

@@ -10,6 +10,7 @@
 #include "analytics/uncertainty/uncertainty.h"
 #include "apps/calot/command.h"
 #include "apps/calot/environment.h"
+#include "recorder/base/counted.h"
 #include "recorder/base/errors.h"
 #include "recorder/base/files.h"
 #include "recorder/formats/mesh_file.h"
@@ -148,8 +149,9 @@ void checkScene(const SceneCheckOptions& o) {
     if (!check.costs.empty()) printCosts(check, out);
   });
   if (!check.faults.empty())
-    throw Error(ErrorKind::damaged, fmt::format("{}: {} faults", file.string(), check.faults.size()));
-  if (!o.json) fmt::print("{}: sound, {} notes\n", file.string(), check.notes.size());
+    throw Error(ErrorKind::damaged,
+                fmt::format("{}: {}", file.string(), recorder::counted(check.faults.size(), "fault")));
+  if (!o.json) fmt::print("{}: sound, {}\n", file.string(), recorder::counted(check.notes.size(), "note"));
 }
 
 struct SceneTemplate {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "apps/calot/environment.h"
+#include "recorder/base/counted.h"
 #include "recorder/base/dates.h"
 #include "recorder/base/errors.h"
 #include "recorder/sources/devices/open_device.h"
@@ -55,8 +56,8 @@ void printDevice(recorder::SampleSource& source) {
   const auto* device = source.device();
   if (device == nullptr) return;
   const recorder::DeviceCounts& counts = device->counts();
-  fmt::print("{}: {} samples, {} invalid, gone {} times\n", device->provenance().device, counts.samples, counts.invalid,
-             counts.losses);
+  fmt::print("{}: {}, {} invalid, gone {}\n", device->provenance().device, recorder::counted(counts.samples, "sample"),
+             counts.invalid, recorder::counted(counts.losses, "time"));
   for (const std::string& line : counts.told) fmt::print("  {}\n", line);
   const std::array<recorder::ForceStatistics, handCount> forces = device->forceStatistics();
   for (std::size_t h = 0; h < handCount; ++h) {

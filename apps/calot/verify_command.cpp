@@ -7,6 +7,7 @@
 #include "analytics/intake/intake.h"
 #include "apps/calot/command.h"
 #include "apps/calot/replay_report.h"
+#include "recorder/base/counted.h"
 #include "recorder/kept/kept_engine.h"
 
 namespace calot::apps {
@@ -74,7 +75,7 @@ milliseconds fromSeconds(double seconds) { return milliseconds(static_cast<std::
 /// Nothing is left to wait for but what is still being written.
 ExitCode endOnce(const analytics::IntakeRest& rest, std::vector<ExitCode> codes) {
   if (rest.growing > 0)
-    fmt::print(stderr, "calot: warning: {} recordings are not finished and were left\n", rest.growing);
+    fmt::print(stderr, "calot: warning: left, not finished yet: {}\n", recorder::counted(rest.growing, "recording"));
   if (rest.retries > 0) codes.push_back(ExitCode::failure);
   return worstOf(codes);
 }

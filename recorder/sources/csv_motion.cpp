@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "recorder/base/counted.h"
 #include "recorder/base/errors.h"
 #include "recorder/base/files.h"
 #include "recorder/base/text_words.h"
@@ -109,10 +110,6 @@ class HandReader {
   const HandColumns& columns_;
   HandPlaces places_;
 };
-
-std::string counted(std::size_t count, const char* what) {
-  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
-}
 
 }  // namespace
 

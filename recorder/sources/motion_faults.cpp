@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "recorder/base/counted.h"
 #include "recorder/base/errors.h"
 #include "recorder/sources/tracked_motion.h"
 
@@ -161,7 +162,7 @@ class HandSamples {
   double difference_ = 0.0;    ///< ten medians of second differences (m)
 };
 
-std::string rowsText(std::size_t rows) { return fmt::format("{} row{}", rows, rows == 1 ? "" : "s"); }
+std::string rowsText(std::size_t rows) { return counted(rows, "row"); }
 
 /// 95th percentile of the speeds over at least 0.1 s (m/s).
 double fastSpeedOf(const std::vector<double>& time, const TrackedHand& hand) {
@@ -200,10 +201,10 @@ void markInvalidSamples(TrackedMotion& motion) {
     const std::size_t held = (beyond > 0 ? HandSamples(motion.time, hand) : samples).markHeld(begin);
     note(held, begin, "the same pose held, then left with a jump, as trackers do that have lost it");
     if (!hand.jumps.empty())
-      motion.notes.push_back(fmt::format(
-          "{} hand: {} jump{} that no hand makes, the first at {:.3f} s; the motion is "
-          "divided there",
-          handNames[h], hand.jumps.size(), hand.jumps.size() == 1 ? "" : "s", motion.time[hand.jumps.front()]));
+      motion.notes.push_back(
+          fmt::format("{} hand: {} that no hand makes, the first at {:.3f} s; the motion is "
+                      "divided there",
+                      handNames[h], counted(hand.jumps.size(), "jump"), motion.time[hand.jumps.front()]));
   }
 }
 

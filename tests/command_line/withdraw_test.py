@@ -215,7 +215,7 @@ class Withdraw(program.ProgramTest):
         self.assertEqual(sum(line.startswith("file ") for line in dry), 1)
         self.assertEqual(dry[:-1], wet[:-1], "--dry-run shows the same list")
         self.assertIn("nothing was changed", dry[-1])
-        self.assertIn("1 attempts and 1 files removed", wet[-1])
+        self.assertIn("1 attempt and 1 file removed", wet[-1])
 
     def test_the_same_list_first(self):
         note = self.data / "note.txt"
