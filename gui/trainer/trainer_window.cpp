@@ -48,7 +48,9 @@ TrainerWindow::TrainerWindow(TrainerSetup setup)
   centre->setLayout(parts::column({problem_, {stack_, 1}}));
   setCentralWidget(centre);
   buildMenus();
-  resize(sizeHint().boundedTo(screen()->availableSize()));
+  // The stack's own hint is as high as its texts need, however high the picture is.
+  const QSize around = sizeHint() - stack_->sizeHint();
+  resize((operation_->sizeHint() + around).boundedTo(screen()->availableSize()));
   scenes_->setScenes(setup_.scenes);
   connectPages();
   connect(&timer_, &QTimer::timeout, this, &TrainerWindow::refresh);

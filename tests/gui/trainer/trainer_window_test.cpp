@@ -139,6 +139,13 @@ class Trainer : public ::testing::Test {
   std::unique_ptr<TrainerWindow> window_;
 };
 
+/// The platform's screen has 800 by 800 pixels.
+TEST_F(Trainer, OpensAsHighAsThePictureWants) {
+  const TrainerWindow& window = open();
+  EXPECT_GE(window.height(), 720);
+  EXPECT_LE(window.width(), 800);
+}
+
 TEST_F(Trainer, GreetsAndBeginsByKeyboard) {
   TrainerWindow& window = open();
   window.chooseScene();
