@@ -98,6 +98,7 @@ void TakeOver::apply(InstrumentSample& sample) {
 DeviceSource::DeviceSource(std::unique_ptr<Device> device, const SceneDescription& scene, DeviceSourceSettings settings)
     : settings_(std::move(settings)),
       camera_(scene.camera),
+      ticksPerStep_(scene.ticksPerStep),
       device_(std::move(device)),
       pump_(*device_, !settings_.tickClock) {
   const DeviceInfo& info = device_->info();
@@ -115,8 +116,16 @@ DeviceSource::DeviceSource(std::unique_ptr<Device> device, const SceneDescriptio
       return settings_.calibration && settings_.calibration->hand[which] ? &*settings_.calibration->hand[which]
                                                                          : nullptr;
     };
-    HandState state{
-        DeviceMapping(scene.hands[h], scene.camera, of(h), of(1 - h)), {}, {}, false, false, false, {}, false};
+    HandState state{DeviceMapping(scene.hands[h], scene.camera, of(h), of(1 - h)),
+                    {},
+                    {},
+                    false,
+                    false,
+                    false,
+                    {},
+                    false,
+                    false,
+                    0};
     state.held.position = scene.hands[h].home;
     state.held.orientation = pointing(scene.hands[h].port, scene.hands[h].home);
     state.held.instrument = InstrumentKind::none;
@@ -232,6 +241,18 @@ void DeviceSource::fill(std::size_t h, InstrumentSample& out) {
     hand.held.valid = fresh;
   }
   out = hand.held;
+  pullTrigger(hand, out);
+}
+
+/// Jaws that stand open would else close a clip in every step: of the ticks that a press lasts, one step sees these.
+void DeviceSource::pullTrigger(HandState& hand, InstrumentSample& out) const {
+  const bool down = (out.buttons & button::fire) != 0;
+  if (down && !hand.trigger) hand.triggered = ticksPerStep_;
+  hand.trigger = down;
+  out.buttons = static_cast<std::uint8_t>(out.buttons & ~button::fire);
+  if (hand.triggered == 0) return;
+  --hand.triggered;
+  out.buttons |= button::fire;
 }
 
 bool DeviceSource::next(std::uint64_t tick, TickSamples& out) {

@@ -127,6 +127,8 @@ struct DeviceCounts {
 /// `staleAfter`, or the device is gone. Each hand is anchored when the attempt begins, so that its instrument starts at
 /// the scene's home; when a clutch is released; and after a disconnection, so that nothing jumps.
 ///
+/// A press of the clip applier's trigger counts for one step, however short or long it is: one press, one clip.
+///
 /// A hand that the device has not driven yet has no instrument: checkpoints of it, and of both
 /// hands, are not applicable.
 ///
@@ -173,7 +175,9 @@ class DeviceSource final : public SampleSource {
     bool clutched = false;
     bool placed = false;  ///< setOutFrom(): held says where it begins
     TakeOver takeOver;
-    bool used = false;  ///< the tick's pose was made from the newest
+    bool used = false;            ///< the tick's pose was made from the newest
+    bool trigger = false;         ///< of the clip applier: down
+    std::uint32_t triggered = 0;  ///< ticks for which its last press still counts
   };
   void gather();
   void beginAttempt();
@@ -181,10 +185,12 @@ class DeviceSource final : public SampleSource {
   [[nodiscard]] std::int64_t now() const;
   void keepHeld(std::size_t hand);
   void fill(std::size_t hand, InstrumentSample& out);
+  void pullTrigger(HandState& hand, InstrumentSample& out) const;
 
   DeviceSourceSettings settings_;
   Provenance provenance_;
   CameraSample camera_;
+  std::uint32_t ticksPerStep_;
   std::vector<HandState> hand_;
   std::unique_ptr<Device> device_;
   DevicePump pump_;                  ///< after the device: it ends first

@@ -278,6 +278,34 @@ TEST_P(DeviceRecording, UnpluggedInMidRunLosesNothing) {
 INSTANTIATE_TEST_SUITE_P(Modes, DeviceRecording, ::testing::Values(Mode::practice, Mode::assessment),
                          [](const auto& which) { return which.param == Mode::practice ? "practice" : "assessment"; });
 
+TEST(DeviceSource, OnePressOfTheTriggerIsOneClip) {
+  SceneDescription scene = emptyScene();
+  for (const std::uint32_t ticksPerStep : {5U, 10U, 20U}) {
+    scene.ticksPerStep = ticksPerStep;
+    DeviceScript script = movingScript(1000, 1, {Hand::left, Hand::right});
+    for (DeviceSample& s : script.samples) {
+      const std::int64_t at = s.hostTime / 1'000'000;
+      const bool shortly = at >= 101 && at < 104;
+      const bool longly = at >= 300 && at < 700;
+      if (s.hand == Hand::right && (shortly || longly)) s.buttons = button::fire | button::cutPedal;
+    }
+    Rig rig(script, scene);
+    rig.source->waitForFirst(1.0);
+    TickSamples tick;
+    std::vector<std::uint64_t> seen, cutting;  // by steps, which take their newest sample
+    for (std::uint64_t t = 0; t < 1000 && rig.source->next(t, tick); ++t) {
+      EXPECT_EQ(tick.hand[0].buttons, 0U);
+      if ((t + 1) % ticksPerStep != 0) continue;
+      if ((tick.hand[1].buttons & button::fire) != 0) seen.push_back(t / ticksPerStep);
+      if ((tick.hand[1].buttons & button::cutPedal) != 0) cutting.push_back(t);
+    }
+    ASSERT_EQ(seen.size(), 2U) << ticksPerStep;
+    EXPECT_NEAR(static_cast<double>(seen[0] * ticksPerStep), 101.0, 2.0 * ticksPerStep);
+    EXPECT_NEAR(static_cast<double>(seen[1] * ticksPerStep), 300.0, 2.0 * ticksPerStep);
+    EXPECT_GE(cutting.size(), 390U / ticksPerStep) << "a pedal lasts as long as it is down";
+  }
+}
+
 /// What a handle senses, from a moment at which the jaws were open by 0.6 rad and locked.
 std::vector<InstrumentSample> takenOver(const std::vector<std::pair<double, std::uint8_t>>& sensed) {
   TakeOver takeOver({0.6, true});
