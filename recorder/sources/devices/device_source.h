@@ -98,9 +98,9 @@ struct DeviceSourceSettings {
   std::shared_ptr<TickClock> tickClock;
 };
 
-/// What an attempt keeps that goes on from an earlier moment, after a pause or after a loss, until the hand takes over,
-/// so that nothing acts by itself: the jaw, until the device's stands so or passes there; the lock, until the device's
-/// is the same; and a pedal or trigger that is down counts only after it was let go.
+/// Jaw, lock and pedals of a hand whose attempt goes on from an earlier moment, after a pause or after a loss, so that
+/// nothing acts before the hand takes over: the jaw stays until the device's stands so or passes there; the lock, until
+/// the device's is the same; a pedal or trigger that is down counts only after it was let go.
 class TakeOver {
  public:
   TakeOver() = default;

