@@ -197,7 +197,7 @@ bool eliminate(std::size_t n, std::vector<double>& a, std::vector<double>& b) {
     for (std::size_t i = k + 1; i < n; ++i) {
       const double f = a[i * n + k] / a[k * n + k];
       if (f == 0.0) continue;
-      for (std::size_t j = k + 1; j < n; ++j) a[i * n + j] -= f * a[k * n + j];
+      addScaled(n - k - 1, -f, a.data() + k * n + k + 1, a.data() + i * n + k + 1);
       b[i] -= f * b[k];
     }
   }

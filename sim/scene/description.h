@@ -103,7 +103,7 @@ struct SolverDescription {
   double responseSpeedTolerance = 3e-6;  ///< as speedTolerance, of those (m/s)
   double contactTolerance = 1e-8;        ///< residual of the contact problem (m)
   std::uint32_t contactPasses = 3;       ///< maximum repetitions with the gaps that its forces left
-  double gapTolerance = 2e-6;            ///< not any more where these are this small (m)
+  double gapTolerance = 1e-5;            ///< not any more where these are this small (m)
   std::uint32_t contactIterations = 25;  ///< sweeps, before Newton's method takes over
   bool sleeping = true;                  ///< untouched organs at rest are not solved
   /// Organs give way within their cells, too (sim/step/contact_block.h). No field: scenes cannot do without; tests of

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "sim/instruments/instrument_shape.h"
 #include "sim/math/fields.h"
@@ -250,6 +251,11 @@ bool fits(const Model& model, const BurnState& burn) {
 
 }  // namespace
 
+bool fits(const ResponseState& state) {
+  const std::size_t points = std::accumulate(state.points.begin(), state.points.end(), std::size_t{0});
+  return state.key.size() == points && state.force.size() == points && state.motion.size() == points;
+}
+
 bool restoreState(const Model& model, std::span<const std::byte> bytes, State& state) {
   State read = initialState(model, 0);
   ByteReader reader(bytes);
@@ -265,7 +271,8 @@ bool restoreState(const Model& model, std::span<const std::byte> bytes, State& s
   for (const HandState& hand : read.hand) {
     if (!fits(model, hand.touches) || !fits(model, read, hand.grasp) || !fits(model, hand.burn)) return false;
   }
-  if (read.tissue.key.size() != read.tissue.force.size() || !fits(model.scene(), read.retraction)) return false;
+  if (read.tissue.key.size() != read.tissue.force.size() || !fits(read.response)) return false;
+  if (!fits(model.scene(), read.retraction)) return false;
   state = std::move(read);
   return true;
 }

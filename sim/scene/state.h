@@ -241,12 +241,33 @@ struct TissueContactState {
   }
 };
 
+/// Changes of contact forces, and the motion of the tissue that followed them: what the contact problem has learned of
+/// the tissue's compliance in the last steps. Contact points of all changes in a row, the oldest change first.
+struct ResponseState {
+  std::vector<std::uint32_t> points;  ///< per change: its contact points
+  std::vector<std::uint64_t> key;     ///< per contact point, besides what its hand or kind is
+  std::vector<Vec3> force;            ///< change of the force there (N)
+  std::vector<Vec3> motion;           ///< of the tissue there, without instruments and dimples (m)
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("points", self.points);
+    visit("key", self.key);
+    visit("force", self.force);
+    visit("motion", self.motion);
+  }
+};
+
+/// As many places, forces and motions as contact points?
+bool fits(const ResponseState& state);
+
 struct State : Tissues::States {
   ClockState clock;
   CameraState camera;
   std::array<HandState, handCount> hand;
   InstrumentTouchState instruments;
   TissueContactState tissue;
+  ResponseState response;
   RetractionState retraction;
 
   /// Calls visit(part) for each component, in the order of DigestLayout::components.
@@ -266,6 +287,7 @@ struct State : Tissues::States {
     HandState::components(self.hand[1], [&](const char* name, auto& part) { visit("hand.right.", name, part); });
     visit("", "instruments", self.instruments);
     visit("", "tissue", self.tissue);
+    visit("", "response", self.response);
     visit("", "retraction", self.retraction);
   }
 

@@ -75,6 +75,10 @@ struct TissueOnTissue {
   double softness = 0.0;  ///< by which tissue sinks into tissue for the force at this point (m/N)
 };
 
+/// The key of an instrument's touch has its structure in the bits from here up to those of the capsule.
+inline constexpr unsigned structureShift = 52;
+static_assert(maxStructures <= std::size_t{1} << (56U - structureShift));
+
 /// One block of the contact problem.
 struct ContactBlock {
   std::variant<ToolOnTissue, Grasped, ToolOnTool, TissueOnTissue> of;
@@ -140,11 +144,13 @@ struct ContactSystem {
   std::vector<double> tissueCompliance;    ///< estimate of the tissue's response, n x n (m/N)
   std::vector<double> couplingCompliance;  ///< of the virtual couplings, n x n (m/N)
   std::vector<double> compliance;          ///< W: both and the dimples', n x n (m/N)
+  std::vector<double> ruler;               ///< the same of the reference configuration, by which errors are measured
   std::vector<Dimple> dimples;
   std::vector<std::size_t> pressed;      ///< blocks that press dimples; m of them
   std::vector<double> sharedDimple;      ///< K of their normals, m x m (m/N)
   std::vector<double> dimpleGap;         ///< by which dimples open the rows, part of `trueGap` (m)
   std::vector<double> dimpleCompliance;  ///< derivative of that of the blocks that press, m x m (m/N)
+  ResponseState learned;                 ///< of this step and those before
 
   /// Numbers the blocks' rows in order; lists kinds and limits.
   void numberRows();

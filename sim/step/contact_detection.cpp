@@ -16,10 +16,6 @@ namespace calot {
 
 namespace {
 
-/// A contact block's key has its structure in the bits from here up to the four of the instrument's part.
-constexpr unsigned structureShift = 52;
-static_assert(maxStructures <= std::size_t{1} << (56U - structureShift));
-
 /// A capsule that only just touches has flattened so far, in its radii. Larger: tilted bars are firmer at first touch.
 /// Assumed.
 constexpr double leastDepth = 0.1;

@@ -215,71 +215,10 @@ double ContactProblemStage::run(Bodies& bodies, const Activity& activity, const 
   assembleTissue(bodies, partsOf(bodies, activity, state, contact), contact);
   assembleCouplings(contact);
   sumCompliances(contact);
+  contact.ruler = contact.compliance;
+  recallResponses(contact);
+  sumCompliances(contact);
   return violation;
-}
-
-namespace {
-
-/// The hand that keeps the force of an instrument's touch.
-std::size_t keeperOf(const ContactBlock& block) {
-  const auto* both = block.as<ToolOnTool>();
-  return both != nullptr ? both->left.hand : block.tool()->hand;
-}
-
-/// The last step's force at a block's contact point (N); zero where there was none.
-Vec3 lastForce(const State& state, const ContactBlock& block) {
-  Vec3 force = Vec3::Zero();
-  if (block.as<TissueOnTissue>() != nullptr) {
-    const std::vector<std::uint64_t>& keys = state.tissue.key;
-    const auto found = std::lower_bound(keys.begin(), keys.end(), block.key);
-    if (found != keys.end() && *found == block.key) {
-      force = state.tissue.force[static_cast<std::size_t>(found - keys.begin())] * block.direction[0];
-    }
-  } else if (const auto* grasp = block.as<Grasped>()) {
-    force = state.hand[grasp->tool.hand].grasp.force[grasp->anchor];
-  } else {
-    const TouchState& touches = state.hand[keeperOf(block)].touches;
-    for (std::size_t k = 0; k < touches.key.size(); ++k) {
-      if (touches.key[k] == block.key) force = touches.force[k];
-    }
-  }
-  return force;
-}
-
-}  // namespace
-
-void loadWarmStart(const State& state, ContactSystem& contact) {
-  contact.numberRows();
-  contact.carried.clear();
-  for (const ContactBlock& block : contact.blocks) {
-    const Vec3 force = lastForce(state, block);
-    for (std::size_t k = 0; k < block.rows(); ++k) contact.carried.push_back(force.dot(block.direction[k]));
-    projectOntoFrictionCone(block.kind, block.limit, std::span(contact.carried).subspan(block.row, block.rows()));
-  }
-  contact.lambda = contact.carried;
-}
-
-void storeWarmStart(const ContactSystem& contact, State& state) {
-  for (HandState& hand : state.hand) {
-    hand.touches.key.clear();
-    hand.touches.force.clear();
-  }
-  state.tissue.key.clear();
-  state.tissue.force.clear();
-  for (const ContactBlock& block : contact.blocks) {
-    Vec3 force = Vec3::Zero();
-    for (std::size_t k = 0; k < block.rows(); ++k) force += contact.lambda[block.row + k] * block.direction[k];
-    if (block.as<TissueOnTissue>() != nullptr) {
-      state.tissue.key.push_back(block.key);
-      state.tissue.force.push_back(contact.lambda[block.row]);
-    } else if (const auto* grasp = block.as<Grasped>()) {
-      state.hand[grasp->tool.hand].grasp.force[grasp->anchor] = force;
-    } else {
-      TouchState& touches = state.hand[keeperOf(block)].touches;
-      touches.key.push_back(block.key);
-      touches.force.push_back(force);
-    }
-  }
 }
 
 }  // namespace calot

@@ -235,14 +235,29 @@ class ContactProblemStage {
   std::vector<double> nodeBlocks_;
 };
 
-// Contact forces from step to step: the warm start of the contact problem. Internal to this folder.
+// What a contact problem knows from the steps before: forces, its warm start, and how tissue answered to them.
 
 /// Numbers the rows and looks up the forces of the last step at the same contact points, projected onto what each block
-/// admits: `carried` and `lambda`.
+/// admits: `carried` and `lambda`. The force of a point that an instrument left goes to where its capsule touches now.
+/// Takes what was learned.
 void loadWarmStart(const State& state, ContactSystem& contact);
 
-/// Stores the forces by contact point for the next step.
+/// Stores the forces by contact point, and what was learned, for the next step.
 void storeWarmStart(const ContactSystem& contact, State& state);
+
+/// Corrects the tissue's compliance W so that it gives the response y to a change s of the forces, and stays symmetric
+/// and positive (BFGS; Nocedal and Wright 2006, 6.19):
+///   W += y y^T / (y.s) - W s s^T W / (s.W s).
+/// @param expected W s @pre y.s and s.W s are positive
+void correctCompliance(std::span<const double> change, std::span<const double> response,
+                       std::span<const double> expected, ContactSystem& contact);
+
+/// Remembers a change of the forces and the tissue's response to it; the oldest are forgotten.
+void learnResponse(std::span<const double> change, std::span<const double> response, ContactSystem& contact);
+
+/// Corrects the tissue's compliance by what is remembered of the contact points that are still there, the oldest first.
+/// Tissue turns and is cut: this is an estimate, and what it leaves is measured (stage 6).
+void recallResponses(ContactSystem& contact);
 
 // Stage 6 of a step: contact forces.
 

@@ -198,6 +198,9 @@ TEST_F(StateTest, RefusesBytesThatAreNoStateOfThisModel) {
   state.tissue.force.push_back(0.0);
   refuses(saveState(state), "a force among organs without a place");
   state = *state_;
+  state.response.points.push_back(1);
+  refuses(saveState(state), "a response without a place");
+  state = *state_;
   state.hand[1].grasp.structure = 0;
   refuses(saveState(state), "a hold of nothing");
   state = *state_;
