@@ -333,8 +333,8 @@ std::vector<std::string> valueFaults(SQLite::Database& db) {
       const auto count = firstNumber(
           db, fmt::format("SELECT count(*) FROM {} WHERE abs({}) > 1.7976931348623157e308", table->name, c.name));
       if (count > 0)
-        faults.push_back(
-            fmt::format("{}.{} has {} not finite", table->name, c.name, recorder::counted(count, "number")));
+        faults.push_back(fmt::format("{} of {}.{} {} not finite", recorder::counted(count, "number"), table->name,
+                                     c.name, count == 1 ? "is" : "are"));
     }
   }
   db.exec("CREATE TEMP TABLE figure (name TEXT PRIMARY KEY, version, unit, negative, broken)");
