@@ -162,8 +162,6 @@ class HandSamples {
   double difference_ = 0.0;    ///< ten medians of second differences (m)
 };
 
-std::string rowsText(std::size_t rows) { return counted(rows, "row"); }
-
 /// 95th percentile of the speeds over at least 0.1 s (m/s).
 double fastSpeedOf(const std::vector<double>& time, const TrackedHand& hand) {
   std::vector<double> speeds;
@@ -193,7 +191,7 @@ void markInvalidSamples(TrackedMotion& motion) {
       if (rows == 0) return;
       hand.leftOut += rows;
       motion.notes.push_back(
-          fmt::format("{} hand: {} left out, from {:.3f} s: {}", handNames[h], rowsText(rows), begin, why));
+          fmt::format("{} hand: {} left out, from {:.3f} s: {}", handNames[h], counted(rows, "row"), begin, why));
     };
     double begin = 0.0;
     const std::size_t beyond = samples.markBeyondJumps(begin);

@@ -112,7 +112,7 @@ class Watched(program.ProgramTest):
         process.wait()
         answer, rows = self.once()
         if not rows:  # it had not rested long enough
-            self.assertIn("1 recording", answer.err)
+            self.assertIn(": 1 recording\n", answer.err)
             time.sleep(2)
             answer, rows = self.once()
         self.assertEqual([(r["result"], r["report"]["complete"]) for r in rows], [("added", False)])

@@ -306,7 +306,7 @@ TEST(DeviceSource, OnePressOfTheTriggerIsOneClip) {
   }
 }
 
-/// What a handle senses, from a moment at which the jaws were open by 0.6 rad and locked.
+/// Samples of a hand whose jaws stood open by 0.6 rad and locked, from what its handle senses.
 std::vector<InstrumentSample> takenOver(const std::vector<std::pair<double, std::uint8_t>>& sensed) {
   TakeOver takeOver({0.6, true});
   std::vector<InstrumentSample> out;
