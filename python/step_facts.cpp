@@ -88,8 +88,8 @@ void FactsObserver::onStep(const recorder::StepRecord& record) {
   facts_.events = recorder::packedEvents(judged.events);
   facts_.phase = static_cast<std::uint8_t>(judged.phase);
   facts_.criticalView = static_cast<std::uint8_t>(judged.criticalView());
-  facts_.errors = judged.errors;
-  facts_.criticalErrors = judged.criticalErrors;
+  facts_.errors = judged.errors();
+  facts_.criticalErrors = judged.errors(Severity::critical);
 }
 
 }  // namespace calot::python

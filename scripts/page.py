@@ -32,9 +32,9 @@ FOREIGN = {**engine.FOREIGN, "GL": "GL", "KHR": "KHR"}
 # What each module consists of: patterns of files, "-" leaves some out.
 MODULES = {
     "proof": ["gui/page/wasm/thrown.cpp", "gui/page/wasm/proof_module.cpp", "recorder/recording/keyframe_code.cpp", "sim/math/fields.cpp"],
-    "judge": ["gui/page/wasm/thrown.cpp", "gui/page/wasm/judge_module.cpp", "gui/words/event_words.cpp", "analytics/checkpoints/phases.cpp",
-              "sim/judgement/judge.cpp", "recorder/engine/wire.cpp", "sim/instruments/*.cpp", "sim/math/*.cpp", "sim/geometry/*.cpp",
-              "sim/scene/description.cpp", "sim/scene/step_result.cpp", "sim/tissue/structure.cpp", "sim/tissue/*/*_tissue.cpp",
+    "judge": ["gui/page/wasm/thrown.cpp", "gui/page/wasm/judge_module.cpp", "gui/words/event_words.cpp",
+              "analytics/checkpoints/error_words.cpp", "analytics/checkpoints/phases.cpp", "sim/judgement/*.cpp", "recorder/engine/wire.cpp",
+              "sim/instruments/*.cpp", "sim/math/*.cpp", "sim/geometry/*.cpp", "sim/scene/description.cpp", "sim/scene/step_result.cpp", "sim/tissue/structure.cpp", "sim/tissue/*/*_tissue.cpp",
               "sim/tissue/connective/connective_kind.cpp",
               *[p for p in source_patterns(ROOT, "module") if "recorder/formats/" in p or "recorder/base/" in p]],
     "picture": ["gui/page/wasm/thrown.cpp", "gui/page/wasm/picture_module.cpp", "gui/render/*.cpp",

@@ -8,6 +8,7 @@
 #include <map>
 
 #include "analytics/assessment/norm.h"
+#include "analytics/assessment/verdict.h"
 #include "analytics/checkpoints/checkpoint.h"
 #include "recorder/base/counted.h"
 #include "recorder/base/errors.h"
@@ -15,7 +16,6 @@
 namespace calot::analytics {
 namespace {
 
-constexpr const char* criticalName = "critical-errors";
 /// Between no error and one.
 constexpr double anyError = 0.5;
 
@@ -60,7 +60,8 @@ void judge(GradedFigure& figure, const AttemptValue* found, const Norm& norm, st
   figure.competent = competent.size();
   figure.rank = percentile(competent, *figure.value, figure.mark.direction);
   if (!figure.mark.cut) {
-    figure.missing = "the norm has no pass mark: " + figure.mark.reason;
+    figure.missing =
+        (figure.mark.checkpoint == criticalErrors ? "" : "the norm has no pass mark: ") + figure.mark.reason;
     return;
   }
   figure.passed = passes(figure.mark, *figure.value);
@@ -97,9 +98,9 @@ void conclude(Grade& grade) {
   if (grade.criticalErrors.value_or(0.0) > 0.0) {
     grade.passed = false;
     grade.certain = !grade.criticalUndecided;
-    grade.verdict =
-        fmt::format("Not passed: {:g} critical error{}, of which one fails an attempt{}.", *grade.criticalErrors,
-                    *grade.criticalErrors == 1.0 ? "" : "s", grade.certain ? "" : "; not decided by this simulation");
+    grade.verdict = fmt::format("Not passed: {}, of which one fails an attempt{}. {}",
+                                recorder::counted(std::llround(*grade.criticalErrors), "critical error"),
+                                grade.certain ? "" : "; not decided by this simulation", grade.safety.front());
     return;
   }
   grade.passed = keepsRule(grade.norm, passed);
@@ -185,11 +186,23 @@ Grade gradeAttempt(const AttemptRow& attempt, const std::vector<AttemptRow>& att
   for (const AttemptValue& v : values) valuesOf[v.attempt].push_back(&v);
   const std::vector<const AttemptValue*>& own = valuesOf[attempt.uuid];
   grade.criticalMissing = "not computed for this attempt";
-  for (const AttemptValue* v : own) {
-    if (v->value.name != criticalName) continue;
-    grade.criticalErrors = v->value.value;
-    grade.criticalMissing = v->value.reason;
-    grade.criticalUndecided = v->interval && v->interval->contains(anyError);
+  for (const auto& [severity, checkpoint] : errorCheckpoints()) {
+    const auto at =
+        std::find_if(own.begin(), own.end(), [&](const AttemptValue* v) { return v->value.name == checkpoint; });
+    grade.safety.push_back(errorSentence(severity, at == own.end() ? nullptr : &(*at)->value));
+    if (severity != Severity::critical || at == own.end()) continue;
+    const AttemptValue& critical = **at;
+    grade.criticalErrors = critical.value.value;
+    grade.criticalMissing = critical.value.reason;
+    grade.criticalNote = critical.value.note;
+    grade.criticalUndecided = critical.interval && critical.interval->contains(anyError);
+    for (const NormCheckpoint& mark : norm.checkpoints) {
+      if (mark.checkpoint == criticalErrors && mark.version != critical.value.version)
+        grade.remarks.push_back(
+            fmt::format("The attempt's errors were judged by version {} of the rules, those of the "
+                        "norm's members by version {}.",
+                        critical.value.version, mark.version));
+    }
   }
   const std::vector<const AttemptRow*> past = pastOf(attempt, attempts);
   const std::vector<std::optional<MarkError>> errors = markErrors(norm, attempts, values);
@@ -232,18 +245,15 @@ Grade gradeAttempt(const AttemptRow& attempt, const std::vector<AttemptRow>& att
 
 std::vector<std::pair<std::string, std::string>> weakFigures(const Grade& grade) {
   std::vector<std::pair<std::string, std::string>> figures;
-  if (grade.criticalErrors.value_or(0.0) > 0.0) figures.emplace_back(criticalName, "");
   for (const GradedFigure& f : grade.figures) {
     if (f.weak()) figures.emplace_back(f.mark.checkpoint, f.mark.subject);
   }
   return figures;
 }
 
-void addMoments(Grade& grade, const std::vector<FigureMoments>& found) {
-  for (const FigureMoments& m : found) {
-    if (m.checkpoint == criticalName) {
-      for (const Moment& moment : m.moments) grade.criticalTimes.push_back(moment.begin);
-    }
+void addMoments(Grade& grade, AttemptMoments found) {
+  grade.errors = std::move(found.errors);
+  for (const FigureMoments& m : found.figures) {
     for (GradedFigure& f : grade.figures) {
       if (f.mark.checkpoint == m.checkpoint && f.mark.subject == m.subject) f.moments = m;
     }

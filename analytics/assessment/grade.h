@@ -55,7 +55,9 @@ struct Grade {
   std::optional<double> criticalErrors;
   std::string criticalMissing;        ///< why they are not known, or empty
   bool criticalUndecided = false;     ///< the simulation's interval holds no error and one
-  std::vector<double> criticalTimes;  ///< begin of the moments at which they happened (s)
+  std::string criticalNote;           ///< what they were and when, as the checkpoint's note
+  std::vector<std::string> safety;    ///< the verdict's sentences, the gravest severity first
+  std::vector<ErrorLine> errors;      ///< of the recording, where it was looked at, the gravest first
   std::vector<GradedFigure> figures;  ///< in the norm's order
   std::size_t inRule = 0, needed = 0, passedCount = 0;
   bool passed = false;
@@ -74,9 +76,9 @@ struct Grade {
 Grade gradeAttempt(const AttemptRow& attempt, const std::vector<AttemptRow>& attempts,
                    const std::vector<AttemptValue>& values, const Norm& norm, bool mixKeys, const std::string& name);
 
-/// Figures whose moments are to be found: weak ones, and critical errors where there are any.
+/// Figures whose moments are to be found: the weak ones.
 std::vector<std::pair<std::string, std::string>> weakFigures(const Grade& grade);
-void addMoments(Grade& grade, const std::vector<FigureMoments>& found);
+void addMoments(Grade& grade, AttemptMoments found);
 
 /// "formative" until evidence is attached to the norm, then what it is.
 std::string useOf(const Norm& norm);

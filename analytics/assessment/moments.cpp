@@ -65,12 +65,13 @@ FigureMoments momentsOf(const std::vector<double>& series, double length, Direct
   return result;
 }
 
-std::vector<FigureMoments> findMoments(recorder::Recording& recording,
-                                       const std::vector<std::pair<std::string, std::string>>& figures,
-                                       const std::function<void(std::uint64_t, std::uint64_t)>& progress) {
+AttemptMoments findMoments(recorder::Recording& recording,
+                           const std::vector<std::pair<std::string, std::string>>& figures,
+                           const std::function<void(std::uint64_t, std::uint64_t)>& progress) {
   const recorder::AttemptHeader& header = recording.header();
   const SceneDescription scene = recorder::sceneFromAssets(header.assets).description;
   CheckpointCollector collector(header, scene, Origin::observables);
+  Judge judge(scene);
   const double stepSeconds = header.tickSeconds * static_cast<double>(header.ticksPerStep);
   const std::uint64_t steps = recording.stepCount();
   const double wanted = std::max(minWindow, static_cast<double>(steps) * stepSeconds / maxWindows);
@@ -81,7 +82,8 @@ std::vector<FigureMoments> findMoments(recorder::Recording& recording,
     if (step.result.organ.size() != scene.organs.size())
       throw Error(ErrorKind::damaged, Where{recording.path().string(), "/observables"},
                   "has other organs than the scene in /scene");
-    collector.onStep({step.step, step.samples, step.ticks, step.result, step.digest, step.lateness, {}, {}});
+    collector.take({step.step, step.samples, step.ticks, step.result, step.digest, step.lateness, {}, {}},
+                   judge.observe(step.result));
     if (n + 1 == steps) collector.onEnd(recording.outcome());
     if ((n + 1) % window != 0 && n + 1 != steps) continue;
     const std::vector<CheckpointValue> values = collector.values();
@@ -93,7 +95,7 @@ std::vector<FigureMoments> findMoments(recorder::Recording& recording,
     }
     if (progress) progress(n + 1, steps);
   }
-  std::vector<FigureMoments> result;
+  AttemptMoments result{{}, linesOf(judge.judgement().errorList, subjectNames(scene), stepSeconds)};
   for (std::size_t f = 0; f < figures.size(); ++f) {
     const CheckpointDefinition* definition = findCheckpoint(figures[f].first);
     FigureMoments moments = momentsOf(series[f], static_cast<double>(window) * stepSeconds,
@@ -105,7 +107,7 @@ std::vector<FigureMoments> findMoments(recorder::Recording& recording,
     moments.checkpoint = figures[f].first;
     moments.subject = figures[f].second;
     for (Moment& m : moments.moments) m.end = std::min(m.end, static_cast<double>(steps) * stepSeconds);
-    result.push_back(std::move(moments));
+    result.figures.push_back(std::move(moments));
   }
   return result;
 }

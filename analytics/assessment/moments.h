@@ -30,12 +30,18 @@ struct FigureMoments {
 /// @param series its value, or none as NaN, at the end of each window; @param length of a window (s)
 FigureMoments momentsOf(const std::vector<double>& series, double length, Direction better);
 
-/// The moments of these figures, from what a recording's steps say of themselves.
+/// What a recording's steps tell of when it went wrong.
+struct AttemptMoments {
+  std::vector<FigureMoments> figures;
+  std::vector<ErrorLine> errors = {};  ///< the gravest first
+};
+
+/// The moments of these figures, and the errors, from what a recording's steps say of themselves.
 /// @param figures checkpoint and subject
 /// @param progress steps done, of all
 /// @throws Error (damaged) as valuesFromObservables().
-std::vector<FigureMoments> findMoments(recorder::Recording& recording,
-                                       const std::vector<std::pair<std::string, std::string>>& figures,
-                                       const std::function<void(std::uint64_t, std::uint64_t)>& progress = {});
+AttemptMoments findMoments(recorder::Recording& recording,
+                           const std::vector<std::pair<std::string, std::string>>& figures,
+                           const std::function<void(std::uint64_t, std::uint64_t)>& progress = {});
 
 }  // namespace calot::analytics

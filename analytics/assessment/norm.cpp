@@ -9,6 +9,7 @@
 #include <set>
 #include <utility>
 
+#include "analytics/assessment/verdict.h"
 #include "analytics/checkpoints/checkpoint.h"
 #include "analytics/report/report_document.h"
 #include "analytics/report/study_rows.h"
@@ -72,12 +73,19 @@ bool isNamed(const std::vector<std::string>& named, const std::string& checkpoin
                      [&](const std::string& wanted) { return isCalled(wanted, checkpoint, subject); });
 }
 
+/// In the place of a pass mark. The norm keeps by which version of the rules its members were judged.
+constexpr const char* criticalMark = "one fails an attempt, whatever its other figures";
+
 NormCheckpoint markOf(const CheckpointDefinition& definition, const NormFigure& figure, const Norm& norm,
                       std::size_t position, const std::map<std::string, double>& ratings,
                       const std::optional<BorderlineMark>& borderline) {
   NormCheckpoint mark{
       definition.name, figure.subject, definition.version, definition.direction, false, false, {}, {}, {}, "",
       figure.metric};
+  if (definition.name == criticalErrors) {
+    mark.reason = criticalMark;
+    return mark;
+  }
   std::vector<double> competent, others, rated, all;
   bool positive = true;
   for (const NormMember& m : norm.members) {
@@ -130,7 +138,7 @@ std::vector<NormFigure> collectValues(Norm& norm, const std::vector<AttemptValue
     const auto whose = member.find(item.attempt);
     const CheckpointDefinition* definition = definitionOf(item.value);
     if (whose == member.end() || definition == nullptr || definition->direction == Direction::none) continue;
-    if (!item.value.value || !std::isfinite(*item.value.value) || definition->name == "critical-errors") continue;
+    if (!item.value.value || !std::isfinite(*item.value.value)) continue;
     if (!isAskedFor(*definition, item.value.subject, request)) continue;
     if (item.value.version != definition->version)
       throw Error(ErrorKind::refused, Where{name},
@@ -344,6 +352,17 @@ std::string ownFailureWarning(const Norm& norm) {
                      competent.members - competent.passed, competent.members);
 }
 
+namespace {
+
+bool hasCriticalError(const Norm& norm, const NormMember& member) {
+  for (std::size_t c = 0; c < norm.checkpoints.size(); ++c) {
+    if (norm.checkpoints[c].checkpoint == criticalErrors) return member.values[c].value_or(0.0) > 0.0;
+  }
+  return false;
+}
+
+}  // namespace
+
 std::pair<PassRate, PassRate> passRates(const Norm& norm) {
   std::pair<PassRate, PassRate> rates;
   for (const NormMember& m : norm.members) {
@@ -352,7 +371,7 @@ std::pair<PassRate, PassRate> passRates(const Norm& norm) {
       passed.push_back(norm.checkpoints[c].cut && m.values[c] && passes(norm.checkpoints[c], *m.values[c]));
     PassRate& rate = m.competent ? rates.first : rates.second;
     ++rate.members;
-    if (keepsRule(norm, passed)) ++rate.passed;
+    if (!hasCriticalError(norm, m) && keepsRule(norm, passed)) ++rate.passed;
   }
   return rates;
 }

@@ -99,7 +99,7 @@ inline constexpr std::size_t minNormMembers = 3;
 
 /// A norm from attempts at hand. A pass mark is the cut of contrasting groups with a bootstrap interval, or the value
 /// at the borderline mark of a regression on the ratings with Student's interval, of times on the log scale where all
-/// are positive; figures that judge nothing, and critical errors, which are asked first, have none.
+/// are positive; figures that judge nothing have none, and critical errors, which are asked first.
 /// @param name of where they are from, for errors
 /// @throws Error (refused) as makeStudy(), where raters judged nobody or all alike, a side has too few members, a
 /// figure of the rule has no cut, the rule wants more than there are, or the protocol takes a mean of attempts; Error

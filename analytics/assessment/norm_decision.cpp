@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analytics/assessment/verdict.h"
 #include "analytics/statistics/distributions.h"
 #include "analytics/statistics/reliability.h"
 
@@ -36,7 +37,7 @@ std::vector<Judged> judgeable(const Norm& norm, const std::vector<AttemptRow>& a
     const auto found = at.find(v.attempt);
     if (found == at.end() || !v.value.value || !std::isfinite(*v.value.value)) continue;
     Judged& j = judged[found->second];
-    if (v.value.name == "critical-errors") j.criticalErrors = *v.value.value;
+    if (v.value.name == criticalErrors) j.criticalErrors = *v.value.value;
     for (std::size_t c = 0; c < norm.checkpoints.size(); ++c) {
       const NormCheckpoint& mark = norm.checkpoints[c];
       if (mark.checkpoint == v.value.name && mark.subject == v.value.subject && mark.version == v.value.version)

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "analytics/checkpoints/definition.h"
+#include "analytics/checkpoints/error_words.h"
 #include "recorder/base/identity.h"
 #include "recorder/engine/observer.h"
 #include "recorder/sources/scope/endoscope.h"
@@ -98,6 +99,8 @@ struct AttemptContext {
   bool procedure = false;               ///< the scene has a procedure
   std::string handedness = "unknown";   ///< as recorded: "right", "left", "unknown"
   SceneFacts scene;
+  SubjectNames subjects = {};                 ///< of events
+  std::vector<std::string> notAssessed = {};  ///< errors that scene and results cannot tell
 
   /// Duration of a number of steps (s).
   [[nodiscard]] double seconds(std::uint64_t steps) const {
@@ -128,6 +131,8 @@ std::string whyTooOld(const AttemptContext& context, std::uint32_t needed);
 
 /// Version of a definition that stands on judgement (phases, critical view, errors): rises with the rules' own.
 constexpr std::uint32_t judgedVersion(std::uint32_t own) { return own + judgementVersion - 1; }
+/// The same of counts of errors: rises with the table of errors, too.
+constexpr std::uint32_t errorVersion(std::uint32_t own) { return judgedVersion(own) + errorRulesVersion; }
 
 /// "at least 90 % of the window", or empty: the figure isn't of samples.
 std::string coverageText(const CheckpointDefinition& definition);

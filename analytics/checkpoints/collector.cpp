@@ -69,8 +69,10 @@ CheckpointCollector::CheckpointCollector(const recorder::AttemptHeader& header, 
       phaseForce_(header.tickSeconds) {
   assert(origin != Origin::samples);
   const bool procedure = !scene.procedure.specimen.empty();
-  const AttemptContext context{header.tickSeconds, header.ticksPerStep, header.structures(), header.stepResultVersion,
-                               procedure,          header.handedness,   sceneFacts(scene)};
+  const AttemptContext context{
+      header.tickSeconds,       header.ticksPerStep, header.structures(),
+      header.stepResultVersion, procedure,           header.handedness,
+      sceneFacts(scene),        subjectNames(scene), notAssessed(scene, header.stepResultVersion)};
   for (const CheckpointEntry& entry : checkpointRegistry()) checkpoint_.push_back(entry.make(context));
 }
 

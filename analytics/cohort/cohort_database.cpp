@@ -186,6 +186,10 @@ void CohortDatabase::eachValue(const std::vector<std::string>& without,
   });
 }
 
+std::map<std::string, CheckpointValue> CohortDatabase::valuesOf(std::string_view checkpoint) const {
+  return connection_->read([&](SQLite::Database& db) { return readValuesOf(db, checkpoint); });
+}
+
 std::vector<GroupCount> CohortDatabase::groups() const {
   return connection_->read([](SQLite::Database& db) {
     std::vector<GroupCount> groups;

@@ -12,6 +12,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -302,6 +303,8 @@ class CohortDatabase {
   /// The same one after the other, for cohorts whose values need not be in memory at once. @param take may throw, which
   /// ends it; what it is given is good until it returns
   void eachValue(const std::vector<std::string>& without, const std::function<void(const AttemptValue&)>& take) const;
+  /// Values of one checkpoint alone, one an attempt, by the attempt's uuid.
+  [[nodiscard]] std::map<std::string, CheckpointValue> valuesOf(std::string_view checkpoint) const;
   [[nodiscard]] std::vector<GroupCount> groups() const;  ///< by name
 
   // Registered protocols, completed forms and norms (schemas/cohort/0004_assessment.sql).

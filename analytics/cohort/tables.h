@@ -260,6 +260,8 @@ bool isWithdrawn(SQLite::Database& db, const std::string& uuid);
 std::vector<CheckpointValue> readValues(SQLite::Database& db, std::int64_t attempt);
 void readAllValues(SQLite::Database& db, const std::vector<std::string>& without,
                    const std::function<void(const AttemptValue&)>& take);
+/// As CohortDatabase::valuesOf().
+std::map<std::string, CheckpointValue> readValuesOf(SQLite::Database& db, std::string_view checkpoint);
 /// SQL: true if the interval (row i of value_interval) is of the value (row c of checkpoint_value), by the present
 /// method.
 std::string intervalIsOfValue();

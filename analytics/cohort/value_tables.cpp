@@ -62,6 +62,18 @@ void readAllValues(SQLite::Database& db, const std::vector<std::string>& without
           });
 }
 
+std::map<std::string, CheckpointValue> readValuesOf(SQLite::Database& db, std::string_view checkpoint) {
+  std::map<std::string, CheckpointValue> values;
+  eachRow(db,
+          fmt::format("SELECT a.uuid, {} FROM checkpoint_value c JOIN attempt a ON a.id = c.attempt WHERE c.name = ?",
+                      memberColumns(checkpointValueTable, "c")),
+          {std::string(checkpoint)}, [&](SQLite::Statement& row) {
+            int c = 1;
+            readMembers(checkpointValueTable, row, c, values[text(row.getColumn(0))]);
+          });
+  return values;
+}
+
 std::string intervalIsOfValue() {
   return fmt::format(
       "i.attempt = c.attempt AND i.name = c.name AND i.subject = c.subject AND i.version = c.version AND "

@@ -51,11 +51,6 @@ ValueTree treeOf(const GradedFigure& f) {
           {"no_curve", f.curve.reason()}};
 }
 
-std::string clock(double seconds) {
-  const auto minutes = static_cast<int>(seconds / 60.0);
-  return fmt::format("{}:{:04.1f}", minutes, seconds - 60.0 * minutes);
-}
-
 std::string title(const Grade& g) {
   return fmt::format("Grade sheet: attempt {} against norm {} {}", g.attempt.uuid.substr(0, 8), g.norm.name,
                      g.norm.version);
@@ -65,8 +60,8 @@ bool synthetic(const Grade& g) { return g.attempt.synthetic || g.norm.synthetic;
 
 std::vector<std::string> opening(const Grade& g) {
   std::vector<std::string> lines{useOf(g.norm), g.verdict};
-  lines.push_back(g.criticalErrors ? fmt::format("Critical errors: {:g}.", *g.criticalErrors)
-                                   : fmt::format("Critical errors: not known ({}).", g.criticalMissing));
+  // Critical errors are in the verdict.
+  lines.insert(lines.end(), g.safety.begin() + (g.criticalErrors.value_or(0.0) > 0.0 ? 1 : 0), g.safety.end());
   lines.push_back(
       fmt::format("Attempt {} of {} on {}: {}, {}, {}.", g.attempt.uuid,
                   g.attempt.participant.empty() ? recorder::wordFor(g.attempt.operatorKind) : g.attempt.participant,
@@ -149,12 +144,26 @@ std::vector<std::string> notes(const Grade& g) {
 }
 
 std::string momentText(const Moment& m) {
-  return fmt::format("{} to {} ({:.0f} % of it)", clock(m.begin), clock(m.end), 100.0 * m.share);
+  return fmt::format("{} to {} ({:.0f} % of it)", timeText(m.begin), timeText(m.end), 100.0 * m.share);
 }
 
-TextSpan span(const std::string& recording, const Moment& m) {
-  if (recording.empty()) return {momentText(m), {}};
-  return {momentText(m), fmt::format("{}#t={:.2f},{:.2f}", recording, m.begin, m.end)};
+/// @param recording its file name; empty: no link
+TextSpan link(const std::string& recording, std::string text, double begin, double end) {
+  if (recording.empty()) return {std::move(text), {}};
+  return {std::move(text), fmt::format("{}#t={:.2f},{:.2f}", recording, begin, end)};
+}
+
+/// Critical and major errors, the gravest first.
+std::vector<ErrorLine> graveErrors(const Grade& g) {
+  std::vector<ErrorLine> grave;
+  for (const ErrorLine& error : g.errors) {
+    if (error.severity != Severity::minor) grave.push_back(error);
+  }
+  return grave;
+}
+
+std::string errorWords(const ErrorLine& error) {
+  return std::string(analytics::nameOf(error.severity)) + ", " + error.counted();
 }
 
 /// The weak figures with their moments, or the reason why the list is empty.
@@ -165,7 +174,7 @@ std::vector<Paragraph> weakFigures(const Grade& g, const std::string& recording)
     Paragraph& item = items.emplace_back(Paragraph{{nameOf(f) + ": ", {}}});
     for (const Moment& m : f.moments.moments) {
       if (item.size() > 1) item.push_back({", ", {}});
-      item.push_back(span(recording, m));
+      item.push_back(link(recording, momentText(m), m.begin, m.end));
     }
     if (item.size() == 1)
       item.push_back({"no moments, " + (g.momentsMissing.empty() ? f.moments.none : g.momentsMissing), {}});
@@ -175,7 +184,7 @@ std::vector<Paragraph> weakFigures(const Grade& g, const std::string& recording)
 
 std::vector<std::string> momentLines(const Grade& g) {
   std::vector<std::string> lines;
-  for (const double t : g.criticalTimes) lines.push_back("critical error at " + clock(t));
+  for (const ErrorLine& error : graveErrors(g)) lines.push_back(errorWords(error) + ": " + timeText(error.time));
   for (const Paragraph& item : weakFigures(g, {})) {
     std::string& line = lines.emplace_back();
     for (const TextSpan& part : item) line += part.text;
@@ -202,10 +211,9 @@ constexpr const char* curveNote =
 void addMomentsTo(ReportDocument& document, const Grade& g, const std::string& recording,
                   const std::string& howToDraw) {
   BulletList list;
-  for (const double t : g.criticalTimes) {
+  for (const ErrorLine& error : graveErrors(g))
     list.items.push_back(
-        {{"critical error: ", {}}, span(recording, {t, t + 1.0, 1.0 / static_cast<double>(g.criticalTimes.size())})});
-  }
+        {{errorWords(error) + ": ", {}}, link(recording, timeText(error.time), error.time, error.time + 1.0)});
   for (Paragraph& item : weakFigures(g, recording)) list.items.push_back(std::move(item));
   if (list.items.empty()) return;
   document.parts.emplace_back(Heading{"Moments"});
@@ -241,7 +249,8 @@ ValueTree gradeTree(const Grade& g) {
                  {"norm", {{"name", g.norm.name}, {"version", g.norm.version}, {"judged_by", g.norm.judgedBy}}},
                  {"critical_errors", g.criticalErrors},
                  {"critical_errors_missing", g.criticalMissing},
-                 {"critical_times", g.criticalTimes},
+                 {"safety", g.safety},
+                 {"errors", ValueTree::array()},
                  {"passed", g.passed},
                  {"certain", g.certain},
                  {"within_standard_error", g.near},
@@ -252,6 +261,9 @@ ValueTree gradeTree(const Grade& g) {
                  {"remarks", g.remarks},
                  {"moments_missing", g.momentsMissing},
                  {"figures", ValueTree::array()}};
+  for (const ErrorLine& e : g.errors)
+    tree["errors"].push_back(
+        {{"severity", analytics::nameOf(e.severity)}, {"error", e.text}, {"count", e.count}, {"worst_at", e.time}});
   for (const GradedFigure& f : g.figures) tree["figures"].push_back(treeOf(f));
   return tree;
 }

@@ -230,7 +230,7 @@ void takePictures(gui::TrainerWindow& window, std::optional<recorder::LoadedScen
   window.begin(std::move(*scene));
   wanted(runs(), "nothing is running");
   save("running");
-  waitFor([&] { return !status().figures.mistakes->empty(); }, 60);
+  waitFor([&] { return !status().figures.errors->empty(); }, 60);
   waitFor([] { return false; }, 1);  // what comes of it
   if (window.session()->pause()) {
     waitFor([] { return false; }, 1);  // the last pictures are still being drawn

@@ -47,8 +47,8 @@ fs::path recordingOf(const analytics::AttemptRow& attempt, const GradeOptions& o
 
 void lookAtRecording(analytics::Grade& grade, const fs::path& file, const GradeOptions& o) {
   const auto figures = analytics::weakFigures(grade);
-  if (figures.empty()) return;
   if (file.empty()) {
+    if (figures.empty() && !(grade.criticalErrors.value_or(0.0) > 0.0)) return;
     grade.momentsMissing =
         fmt::format("the recording {} is not beside the database (--recording)", grade.attempt.fileName);
     return;

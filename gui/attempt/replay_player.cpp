@@ -11,6 +11,7 @@
 #include "gui/view/thread_rank.h"
 #include "gui/words/problem_words.h"
 #include "recorder/base/errors.h"
+#include "recorder/formats/scene_assets.h"
 #include "recorder/kept/kept_engine.h"
 #include "recorder/recorded_results.h"
 #include "sim/scene/version.h"
@@ -308,7 +309,7 @@ AttemptTrack readTrack(recorder::Recording& recording,
   const double stepSeconds = header.tickSeconds * static_cast<double>(header.ticksPerStep);
   const std::uint64_t stepsPerBin = std::max<std::uint64_t>(1, (steps + maxBins - 1) / maxBins);
   track.bin = static_cast<double>(stepsPerBin) * stepSeconds;
-  const SubjectNames names{header.structures(), {}};
+  const SubjectNames names = analytics::subjectNames(recorder::sceneFromAssets(header.assets).description);
   recorder::RecordedJudge judge(header);
   Tracer tracer(track, stepsPerBin, stepSeconds);
   for (std::uint64_t n = 0; n < steps; ++n) {
@@ -320,11 +321,9 @@ AttemptTrack readTrack(recorder::Recording& recording,
     if (track.phases.empty() || track.phases.back().phase != phase)
       track.phases.push_back({phase, static_cast<double>(n) * stepSeconds, end});
     track.phases.back().end = end;
-    for (const Event& event : judgement.events) {
-      const EventWords* const words = wordsOf(event.kind);
-      if (words != nullptr)
-        track.events.push_back({end, event.kind, withHand(textOf(event, names), event), words->fault});
-    }
+    for (const Told& told : tell(judgement, names))
+      track.events.push_back({end, told.title, withHand(told.text, told.event), told.marked(), told.severity});
+    if (judgement.changed) track.errors = analytics::linesOf(judgement.errorList, names, stepSeconds);
     if (progress && (n % 100 == 99 || n + 1 == steps)) progress(n + 1, steps);
   }
   tracer.finishBin();

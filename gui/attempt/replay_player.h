@@ -119,12 +119,13 @@ struct TrackPhase {
   double begin = 0.0, end = 0.0;  ///< s
 };
 
-/// An event that has words (event_words.h).
+/// An event or an error that has words (Told in event_words.h).
 struct TrackEvent {
-  double time = 0.0;  ///< end of its step (s)
-  EventKind kind = EventKind::clipSet;
-  std::string text;    ///< "cystic duct: clip set (right hand)"
-  bool error = false;  ///< EventWords::fault
+  double time = 0.0;                      ///< end of its step (s)
+  std::string title;                      ///< Told::title
+  std::string text;                       ///< "cystic duct: clip set (right hand)"
+  bool error = false;                     ///< Told::marked()
+  std::optional<Severity> severity = {};  ///< of an error
 };
 
 /// One hand's values over bins of equal length.
@@ -139,7 +140,8 @@ struct AttemptTrack {
   std::array<HandTrace, handCount> hand;
   std::vector<TrackPhase> phases;
   std::vector<TrackEvent> events;
-  std::string none;  ///< why there are no phases, events and traces, or empty
+  std::vector<analytics::ErrorLine> errors;  ///< the gravest first
+  std::string none;                          ///< why there are no phases, events and traces, or empty
 };
 
 inline constexpr std::uint64_t maxBins = 1500;  ///< of a trace: more than a screen has columns for it

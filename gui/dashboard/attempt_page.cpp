@@ -46,7 +46,7 @@ struct SheetRequest {
   std::string database;
   analytics::AttemptRow attempt;
   AttemptSummary summary;
-  std::vector<TrackEvent> events;
+  std::vector<analytics::ErrorLine> errors;
   std::vector<WorstMoment> moments;  ///< at most maxWorstMoments
   std::filesystem::path recording;   ///< empty: no pictures
   std::string norm;                  ///< name of the norm that the grade sheet is of
@@ -70,13 +70,14 @@ analytics::ReportDocument attemptDocument(const SheetRequest& request) {
   std::vector<std::string> figures;
   for (const KeyFigure& figure : request.summary.figures) figures.push_back(keyFigureText(figure).toStdString());
   document.addList(figures);
-  analytics::ReportTable table = analytics::tableOf("What went wrong", {"time", "=event"});
+  analytics::ReportTable table = analytics::tableOf("What went wrong", {"time", "=severity", "=error"});
   constexpr std::size_t maxRows = 24;
-  std::size_t errors = 0;
-  for (const TrackEvent& event : request.events) {
-    if (event.error && ++errors <= maxRows) table.rows.push_back({timeText(event.time), event.text});
+  for (const analytics::ErrorLine& error : request.errors) {
+    if (table.rows.size() == maxRows) break;
+    table.rows.push_back({timeText(error.time), analytics::nameOf(error.severity), error.counted()});
   }
-  if (errors > maxRows) table.rows.push_back({"", "and " + std::to_string(errors - maxRows) + " more"});
+  if (request.errors.size() > maxRows)
+    table.rows.push_back({"", "", "and " + std::to_string(request.errors.size() - maxRows) + " more"});
   if (!table.rows.empty()) document.parts.emplace_back(std::move(table));
   document.add("Attempt " + attempt.uuid + ", " + badgeText(attempt.verification.verdict).toStdString() + ". " +
                analytics::comparabilityWords(attempt.comparabilityKey) + ".");
@@ -124,7 +125,7 @@ QString writeGradeSheet(const SheetRequest& request, LongWork::Control& control)
   const auto weak = analytics::weakFigures(grade);
   if (request.recording.empty()) {
     grade.momentsMissing = "the recording " + request.attempt.fileName + " was not found";
-  } else if (!weak.empty()) {
+  } else {
     recorder::Recording recording = openRecording(request.recording, request.attempt.uuid);
     analytics::addMoments(grade, analytics::findMoments(recording, weak, [&](std::uint64_t done, std::uint64_t of) {
                             control.progress(0.1 + 0.8 * static_cast<double>(done) / static_cast<double>(of),
@@ -184,7 +185,7 @@ void AttemptPage::connectParts() {
     find_->setVisible(!recording_->isOpen());
   });
   connect(recording_, &RecordingView::trackRead, this, [this](const AttemptTrack& track) {
-    figures_->setEvents(track.events);
+    figures_->setTrack(track.events, track.errors);
     force_->setTraces(track.seconds, track.bin, tracesOf(track, &HandTrace::force, 1.0));
     speed_->setTraces(track.seconds, track.bin, tracesOf(track, &HandTrace::speed, millimetres));
   });
@@ -256,7 +257,7 @@ void AttemptPage::writeSheet(const std::filesystem::path& file, bool onePage) {
   const SheetRequest request{document_->path(),
                              *attempt_,
                              figures_->summary(),
-                             figures_->events(),
+                             figures_->errors(),
                              figures_->worstMoments(),
                              recording_->isOpen() ? recording_->file() : std::filesystem::path(),
                              norm != nullptr ? norm->name : std::string(),

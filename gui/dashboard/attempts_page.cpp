@@ -47,6 +47,7 @@ QVariant AttemptTableModel::data(const QModelIndex& index, int role) const {
       if (index.column() == verificationColumn) return badgeOf(row).explanation;
       if (index.column() == syntheticColumn && row.synthetic) return "Made by a performer, not by a person.";
       if (index.column() == outcomeColumn && row.excluded) return QString::fromStdString(row.exclusionReason);
+      if (index.column() == safetyColumn) return lines_->cell(index.row(), safetyColumn);
       if (index.column() == tagsColumn) return lines_->cell(index.row(), tagsColumn);
       return {};
     default:
@@ -101,7 +102,7 @@ AttemptsPage::AttemptsPage()
   table_->setSelectionMode(QAbstractItemView::ExtendedSelection);
   table_->setSortingEnabled(true);
   table_->sortByColumn(AttemptTableModel::startColumn, Qt::DescendingOrder);
-  setWidths(*table_, {90, 180, 110, 130, 95, 130, 150, 150, 90});
+  setWidths(*table_, {150, 180, 110, 130, 120, 300, 130, 95, 90, 90, 80});
   setWidths(*details_, {330, 110, 170, 150, 0, 0, 140, 150, 110, 70});
   for (const int column :
        {CheckpointTableModel::intervalColumn, CheckpointTableModel::normColumn, CheckpointTableModel::momentColumn})

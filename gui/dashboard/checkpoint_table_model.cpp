@@ -89,17 +89,6 @@ void paintBand(QPainter& painter, const QRectF& box, const FigureStanding& stand
   }
 }
 
-QList<QStandardItem*> line(const QString& what, const QString& time, const TrackEvent& event) {
-  auto* first = new QStandardItem(what);
-  auto* second = new QStandardItem(time);
-  for (QStandardItem* item : {first, second}) {
-    item->setEditable(false);
-    item->setData(event.time, eventSecondsRole);
-    if (event.error) item->setToolTip("Something that should not happen");
-  }
-  return {first, second};
-}
-
 /// Families in the order of tables, external metrics behind them.
 int rankOf(const analytics::CheckpointValue& value) {
   const auto family = analytics::familyOf(value.name);
@@ -271,13 +260,43 @@ void BandDelegate::paint(QPainter* painter, const QStyleOptionViewItem& option, 
   painter->restore();
 }
 
-void listEvents(QStandardItemModel& tree, const std::vector<TrackEvent>& events) {
+void listEvents(QStandardItemModel& tree, const std::vector<TrackEvent>& events,
+                const std::vector<analytics::ErrorLine>& errors) {
   tree.setHorizontalHeaderLabels({"Event", "Time"});
   tree.removeRows(0, tree.rowCount());
+  const auto rowOf = [](const QString& text, double time, bool marked) {
+    auto* first = new QStandardItem(text);
+    auto* second = new QStandardItem(QString::fromStdString(timeText(time)));
+    for (QStandardItem* item : {first, second}) {
+      item->setEditable(false);
+      item->setData(time, eventSecondsRole);
+      if (marked) item->setToolTip("Something that should not happen");
+    }
+    return QList<QStandardItem*>{first, second};
+  };
+  const auto addGroup = [&](const QString& text, double time, bool marked, const std::vector<const TrackEvent*>& of) {
+    const QList<QStandardItem*> head = rowOf(marked ? QString::fromUtf8("▲ ") + text : text, time, marked);
+    QFont bold = head[0]->font();
+    bold.setBold(true);
+    head[0]->setFont(bold);
+    for (const TrackEvent* event : of)
+      head[0]->appendRow(rowOf(QString::fromStdString(event->text), event->time, marked));
+    tree.appendRow(head);
+  };
+  for (const analytics::ErrorLine& error : errors) {
+    std::vector<const TrackEvent*> occasions;
+    for (const TrackEvent& event : events) {
+      if (error.count > 1 && event.severity && event.title == error.text) occasions.push_back(&event);
+    }
+    QString severity = analytics::nameOf(error.severity);
+    severity[0] = severity[0].toUpper();
+    addGroup(severity + ": " + QString::fromStdString(error.counted()), error.time, true, occasions);
+  }
   std::vector<std::vector<const TrackEvent*>> groups;
   for (const TrackEvent& event : events) {
+    if (event.severity) continue;
     const auto at = std::find_if(groups.begin(), groups.end(),
-                                 [&](const auto& group) { return group.front()->kind == event.kind; });
+                                 [&](const auto& group) { return group.front()->title == event.title; });
     if (at == groups.end())
       groups.push_back({&event});
     else
@@ -286,19 +305,9 @@ void listEvents(QStandardItemModel& tree, const std::vector<TrackEvent>& events)
   std::stable_partition(groups.begin(), groups.end(), [](const auto& group) { return group.front()->error; });
   for (const auto& group : groups) {
     const TrackEvent& first = *group.front();
-    const EventWords* words = wordsOf(first.kind);
-    QString title = words != nullptr ? QString::fromUtf8(words->phrase) : QString::fromStdString(first.text);
+    QString title = QString::fromStdString(first.title);
     title[0] = title[0].toUpper();
-    QList<QStandardItem*> head =
-        line(QString::fromUtf8(first.error ? "▲ %1 (%2)" : "%1 (%2)").arg(title).arg(group.size()),
-             QString::fromStdString(timeText(first.time)), first);
-    QFont bold = head[0]->font();
-    bold.setBold(true);
-    head[0]->setFont(bold);
-    for (const TrackEvent* event : group)
-      head[0]->appendRow(
-          line(QString::fromStdString(event->text), QString::fromStdString(timeText(event->time)), *event));
-    tree.appendRow(head);
+    addGroup(QString("%1 (%2)").arg(title).arg(group.size()), first.time, first.error, group);
   }
 }
 

@@ -84,9 +84,10 @@ class BandDelegate : public QStyledItemDelegate {
   void paint(QPainter* painter, const QStyleOptionViewItem& option, const QModelIndex& index) const override;
 };
 
-/// Puts the events of an attempt into a tree, in groups of what happened, errors first; each says when, to what and by
-/// which hand.
-void listEvents(QStandardItemModel& tree, const std::vector<TrackEvent>& events);
+/// Puts what happened in an attempt into a tree: its errors, the gravest first, at their worst moments, with their
+/// occasions where there are several; then other events in groups. Each says when, to what and by which hand.
+void listEvents(QStandardItemModel& tree, const std::vector<TrackEvent>& events,
+                const std::vector<analytics::ErrorLine>& errors);
 inline constexpr int eventSecondsRole = Qt::UserRole;  ///< double; of a group its first event's
 
 /// The checkpoints of a table, folded by family and sorted within one. Leaves out what the scene has nothing for.

@@ -8,6 +8,7 @@
 #include <set>
 #include <utility>
 
+#include "analytics/assessment/verdict.h"
 #include "gui/attempt/figure_text.h"
 #include "gui/words/problem_words.h"
 
@@ -30,37 +31,49 @@ QString faultOf(const std::function<void()>& call) {
 
 namespace {
 
+using Row = analytics::AttemptRow;
+
 struct ColumnText {
   const char* title;
-  QString (*of)(const analytics::AttemptRow&);
+  QString (*of)(const Row& attempt, const analytics::CheckpointValue* critical);
 };
 
-using Row = analytics::AttemptRow;
+/// The verdict's first sentence; where it has none, that.
+QString safetyText(const analytics::CheckpointValue* critical) {
+  if (critical == nullptr || !critical->value) return "not assessed";
+  return QString::fromStdString(analytics::errorSentence(Severity::critical, critical));
+}
+
 /// In the order of AttemptLines::Column.
+using Critical = const analytics::CheckpointValue*;
 constexpr std::array<ColumnText, AttemptLines::columnTotal> columns{{
-    {"Attempt", [](const Row& a) { return QString::fromStdString(a.uuid).left(8); }},
-    {"Participant or profile", [](const Row& a) { return operatorText(a); }},
-    {"Group", [](const Row& a) { return QString::fromStdString(a.group); }},
-    {"Scene", [](const Row& a) { return QString::fromStdString(a.scene); }},
-    {"Mode", [](const Row& a) { return modeText(a.mode); }},
-    {"Outcome", [](const Row& a) { return outcomeText(a.outcome) + (a.excluded ? ", excluded" : ""); }},
-    {"Start", [](const Row& a) { return startText(a.startUtc); }},
-    {"Verification", [](const Row& a) { return badgeText(a.verification.verdict); }},
-    {"Synthetic", [](const Row& a) { return QString(a.synthetic ? "synthetic" : ""); }},
-    {"Tags", [](const Row& a) { return textsOf(a.tags).join(", "); }},
+    {"Start", [](const Row& a, Critical) { return startText(a.startUtc); }},
+    {"Participant or profile", [](const Row& a, Critical) { return operatorText(a); }},
+    {"Group", [](const Row& a, Critical) { return QString::fromStdString(a.group); }},
+    {"Scene", [](const Row& a, Critical) { return QString::fromStdString(a.scene); }},
+    {"Outcome", [](const Row& a, Critical) { return outcomeText(a.outcome) + (a.excluded ? ", excluded" : ""); }},
+    {"Safety", [](const Row&, Critical critical) { return safetyText(critical); }},
+    {"Verification", [](const Row& a, Critical) { return badgeText(a.verification.verdict); }},
+    {"Mode", [](const Row& a, Critical) { return modeText(a.mode); }},
+    {"Synthetic", [](const Row& a, Critical) { return QString(a.synthetic ? "synthetic" : ""); }},
+    {"Tags", [](const Row& a, Critical) { return textsOf(a.tags).join(", "); }},
+    {"Attempt", [](const Row& a, Critical) { return QString::fromStdString(a.uuid).left(8); }},
 }};
 
 }  // namespace
 
-AttemptLines::AttemptLines(std::vector<analytics::AttemptRow> attempts) : attempts_(std::move(attempts)) {
+AttemptLines::AttemptLines(std::vector<analytics::AttemptRow> attempts,
+                           const std::map<std::string, analytics::CheckpointValue>& critical)
+    : attempts_(std::move(attempts)) {
   lines_.reserve(attempts_.size());
   std::set<std::string> tags;
   for (const analytics::AttemptRow& attempt : attempts_) {
     Line& line = lines_.emplace_back();
+    const auto value = critical.find(attempt.uuid);
     QString text = QString::fromStdString(attempt.uuid) + '\n' + QString::fromStdString(attempt.profile) + '\n' +
                    QString::fromStdString(attempt.fileName);
     for (int column = 0; column < columnTotal; ++column) {
-      line.cells[at(column)] = columns[at(column)].of(attempt);
+      line.cells[at(column)] = columns[at(column)].of(attempt, value == critical.end() ? nullptr : &value->second);
       text += '\n' + line.cells[at(column)];
     }
     line.search = text.toLower();
@@ -108,7 +121,8 @@ FigureValues::FigureValues(const std::function<void(const Take&)>& each) {
 
 CohortDocument::CohortDocument(const std::string& path)
     : database_(path, analytics::CohortDatabase::Access::read),
-      lines_(std::make_shared<const AttemptLines>(database_.listAttempts())) {}
+      lines_(std::make_shared<const AttemptLines>(database_.listAttempts(),
+                                                  database_.valuesOf(analytics::criticalErrors))) {}
 
 const analytics::AttemptRow* CohortDocument::attempt(const std::string& uuid) const {
   const auto at = std::ranges::find(attempts(), uuid, &analytics::AttemptRow::uuid);

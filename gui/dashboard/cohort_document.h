@@ -3,6 +3,7 @@
 
 #include <array>
 #include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -28,21 +29,24 @@ namespace calot::gui {
 class AttemptLines {
  public:
   enum Column {
-    attemptColumn,
+    startColumn,
     operatorColumn,
     groupColumn,
     sceneColumn,
-    modeColumn,
     outcomeColumn,
-    startColumn,
+    safetyColumn,
     verificationColumn,
+    modeColumn,
     syntheticColumn,
     tagsColumn,
+    attemptColumn,
     columnTotal
   };
 
   static QString title(int column);
-  explicit AttemptLines(std::vector<analytics::AttemptRow> attempts);
+  /// @param critical by attempt: its count of critical errors
+  AttemptLines(std::vector<analytics::AttemptRow> attempts,
+               const std::map<std::string, analytics::CheckpointValue>& critical);
 
   [[nodiscard]] const std::vector<analytics::AttemptRow>& attempts() const { return attempts_; }
   [[nodiscard]] const QString& cell(int row, int column) const { return lines_[at(row)].cells[at(column)]; }

@@ -66,9 +66,9 @@ FigurePanel::FigurePanel()
   connect(eventTable_, &QTreeView::activated, this, showEvent);
 }
 
-void FigurePanel::setEvents(const std::vector<TrackEvent>& events) {
-  trackEvents_ = events;
-  listEvents(events_, events);
+void FigurePanel::setTrack(const std::vector<TrackEvent>& events, const std::vector<analytics::ErrorLine>& errors) {
+  errors_ = errors;
+  listEvents(events_, events, errors);
   eventTable_->expandAll();
 }
 
@@ -79,6 +79,10 @@ AttemptSummary FigurePanel::summary() const {
 std::vector<WorstMoment> FigurePanel::worstMoments() const {
   constexpr double apart = 1.0;  // s: two pictures of one moment tell no more than one
   std::vector<WorstMoment> worst;
+  for (const analytics::ErrorLine& error : errors_) {
+    if (error.severity == Severity::minor || worst.size() == maxWorstMoments) break;
+    worst.push_back({error.time, std::string(analytics::nameOf(error.severity)) + ": " + error.counted()});
+  }
   enum class Tier { weak, counts, any };
   for (const Tier tier : {Tier::weak, Tier::counts, Tier::any}) {
     for (int row = 0; row < figures_.rowCount() && worst.size() < maxWorstMoments; ++row) {
@@ -132,7 +136,7 @@ void FigurePanel::clear() {
   values_.clear();
   intervals_.clear();
   figures_.setValues({});
-  setEvents({});
+  setTrack({}, {});
   {
     const QSignalBlocker quiet(norm_);
     norm_->clear();

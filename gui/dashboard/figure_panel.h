@@ -51,7 +51,7 @@ class FigurePanel : public QWidget {
   /// Reads and shows the figures; their moments and the events are still to come. @pre not null
   void setAttempt(std::shared_ptr<const CohortDocument> document, const analytics::AttemptRow& attempt);
   void clear();
-  void setEvents(const std::vector<TrackEvent>& events);
+  void setTrack(const std::vector<TrackEvent>& events, const std::vector<analytics::ErrorLine>& errors);
   /// In place of all moments, as long as there are none: "looking …".
   void setMomentsText(const QString& text) { figures_.setMomentsText(text); }
   void setMoments(const std::vector<analytics::FigureMoments>& moments);
@@ -60,7 +60,7 @@ class FigurePanel : public QWidget {
   [[nodiscard]] AttemptSummary summary() const;  ///< @pre an attempt is shown
   /// Moments worth a picture: of figures that fall short of the norm, then of those that count, apart in time.
   [[nodiscard]] std::vector<WorstMoment> worstMoments() const;
-  [[nodiscard]] const std::vector<TrackEvent>& events() const { return trackEvents_; }
+  [[nodiscard]] const std::vector<analytics::ErrorLine>& errors() const { return errors_; }
   /// Norm used; null if none is selected or the attempt is not judged.
   [[nodiscard]] const analytics::Norm* norm() const;
   [[nodiscard]] const CheckpointTableModel& figures() const { return figures_; }
@@ -91,7 +91,7 @@ class FigurePanel : public QWidget {
   CheckpointTableModel figures_;
   FamilyTreeModel families_{figures_};
   QStandardItemModel events_{0, 2};
-  std::vector<TrackEvent> trackEvents_;
+  std::vector<analytics::ErrorLine> errors_;
   MomentCycle cycle_;
   QComboBox* norm_;
   QLabel* verdict_;

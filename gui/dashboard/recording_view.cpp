@@ -115,7 +115,7 @@ void RecordingView::startMoments() {
       [moments, file = file_, figures = track_->none.empty() ? figures_ : Figures()](LongWork::Control& control) {
         if (figures.empty()) return QString();
         recorder::Recording recording(file);
-        *moments = analytics::findMoments(recording, figures, stepsOf(control));
+        *moments = analytics::findMoments(recording, figures, stepsOf(control)).figures;
         return QString();
       });
 }

@@ -156,7 +156,7 @@ MomentTrack::MomentTrack(const std::filesystem::path& recording, bool checkpoint
   results_.emplace(header, scene);
   judge_.emplace(scene);
   stepSeconds_ = header.tickSeconds * header.ticksPerStep;
-  names_.structures = header.structures();
+  names_ = analytics::subjectNames(scene);
   if (checkpoints)
     collector_ = std::make_unique<analytics::CheckpointCollector>(header, scene, analytics::Origin::observables);
 }
@@ -164,10 +164,8 @@ MomentTrack::MomentTrack(const std::filesystem::path& recording, bool checkpoint
 void MomentTrack::add(const recorder::RecordedStep& step) {
   const double time = static_cast<double>(step.step + 1) * stepSeconds_;
   const StepResult& result = results_->of(step);
-  for (const Event& event : judge_->observe(result).events) {
-    const EventWords* const words = wordsOf(event.kind);
-    if (words != nullptr) moment_.events.push_back({textOf(event, names_), words->fault, time});
-  }
+  for (const Told& told : tell(judge_->observe(result), names_))
+    moment_.events.push_back({told.text, told.marked(), time});
   smoke_.add(time, step.result.events);
   for (std::size_t h = 0; h < handCount; ++h) {
     const HandResult& hand = step.result.hand[h];

@@ -9,15 +9,6 @@
 namespace calot::gui {
 namespace {
 
-constexpr double sameMistake = 1.0;  // s
-
-SubjectNames namesOf(const Model& model) {
-  SubjectNames names;
-  for (const StructureModel& structure : model.structures()) names.structures.push_back(structure.name);
-  for (const ConnectiveDescription& tissue : model.scene().connective) names.connective.push_back(tissue.name);
-  return names;
-}
-
 std::size_t bedOf(const SceneDescription& scene) {
   const auto bed = std::find_if(scene.connective.begin(), scene.connective.end(),
                                 [&](const auto& tissue) { return tissue.name == scene.procedure.bed; });
@@ -31,45 +22,10 @@ constexpr std::chrono::milliseconds retryAfter(500);
 
 }  // namespace
 
-double Mistake::branchTime(double stepSeconds) const { return std::max(time - goBackBy, stepSeconds); }
-
-MistakeList::MistakeList(SubjectNames names, double stepSeconds)
-    : names_(std::move(names)), stepSeconds_(stepSeconds) {}
-
-bool MistakeList::add(std::span<const Event> events) {
-  std::vector<std::pair<std::string, Mistake>> found;  // by structure
-  for (const Event& event : events) {
-    const EventWords* const words = wordsOf(event.kind);
-    if (words == nullptr || !words->fault) continue;
-    const std::string name = subjectOf(event, names_);
-    auto it = std::find_if(found.begin(), found.end(), [&](const auto& entry) { return entry.first == name; });
-    if (it == found.end()) {
-      const double time = static_cast<double>(event.step + 1) * stepSeconds_;
-      it = found.insert(found.end(), {name, {time, false, name.empty() ? "" : name + ": "}});
-    } else {
-      it->second.text += ", ";
-    }
-    it->second.text += words->phrase;
-    it->second.critical = it->second.critical || event.kind == EventKind::criticalError;
-  }
-  bool added = false;
-  for (auto& [name, mistake] : found) {
-    // Tissue slips and tears step after step: that is one mistake.
-    bool again = false;
-    for (std::size_t i = all_.size(); i-- > 0 && !again;) {
-      again = all_[i].text == mistake.text && mistake.time - last_[i] <= sameMistake;
-      if (again) last_[i] = mistake.time;
-    }
-    if (again) continue;
-    last_.push_back(mistake.time);
-    all_.push_back(std::move(mistake));
-    added = true;
-  }
-  return added;
-}
+double branchTime(double time, double stepSeconds) { return std::max(time - goBackBy, stepSeconds); }
 
 AttemptMonitor::AttemptMonitor(const Model& model)
-    : model_(model), judge_(model.scene()), list_(namesOf(model), model.stepSeconds()), bed_(bedOf(model.scene())) {
+    : model_(model), judge_(model.scene()), names_(analytics::subjectNames(model.scene())), bed_(bedOf(model.scene())) {
   for (std::size_t h = 0; h < handCount; ++h) {
     lastPose_.hand[h].instrument = InstrumentKind::none;
     figures_.hand[h].instrument = model.scene().hands[h].instrument;
@@ -99,7 +55,6 @@ void AttemptMonitor::onStep(const recorder::StepRecord& record) {
     if (tick.lateness > recorder::maxLag) stretched += static_cast<double>(tick.lateness - recorder::maxLag);
   }
   const Judgement& judgement = judge_.observe(record.result);
-  const bool added = list_.add(judgement.events);
 
   const CameraSample& camera = record.samples.back().camera;
   const std::lock_guard lock(mutex_);
@@ -130,7 +85,9 @@ void AttemptMonitor::onStep(const recorder::StepRecord& record) {
   missed_[slot_] = missed;
   slot_ = (slot_ + 1) % missed_.size();
   figures_.stretched += stretched;
-  if (added) figures_.mistakes = std::make_shared<const std::vector<Mistake>>(list_.all());
+  if (judgement.changed)
+    figures_.errors = std::make_shared<const std::vector<analytics::ErrorLine>>(
+        analytics::linesOf(judgement.errorList, names_, model_.stepSeconds()));
   figures_.seen = std::chrono::steady_clock::now();
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a window learns of an attempt: its state, the mistakes that a trainee may want to undo, its views, and how
+// What a window learns of an attempt: its state, the errors that a trainee may want to undo, its views, and how
 // smoothly they come.
 #pragma once
 
@@ -28,32 +28,8 @@ namespace calot::gui {
 /// So long before a mistake a branch sets out (s).
 inline constexpr double goBackBy = 2.0;
 
-/// An error in one step with one structure, or repeated within a second.
-struct Mistake {
-  double time = 0.0;      ///< of the attempt, when it first happened (s)
-  bool critical = false;  ///< fails an assessment
-  std::string text;       ///< one line: "cystic duct: clip half on"
-
-  /// Fork of the branch (s): goBackBy earlier, or the end of the first step.
-  [[nodiscard]] double branchTime(double stepSeconds) const;
-};
-
-/// The mistakes of an attempt in the order of time: all events that should not happen (EventWords::fault).
-class MistakeList {
- public:
-  MistakeList(SubjectNames names, double stepSeconds);
-
-  /// The events of one step. @returns whether something was added
-  bool add(std::span<const Event> events);
-
-  [[nodiscard]] const std::vector<Mistake>& all() const { return all_; }
-
- private:
-  SubjectNames names_;
-  double stepSeconds_;
-  std::vector<Mistake> all_;
-  std::vector<double> last_;  ///< per mistake, when it last happened (s)
-};
+/// Fork of the branch for an error at that time: goBackBy earlier, or the end of the first step (s).
+[[nodiscard]] double branchTime(double time, double stepSeconds);
 
 /// State of an attempt, for the window.
 struct AttemptFigures {
@@ -82,10 +58,10 @@ struct AttemptFigures {
   std::uint64_t missedDeadlines = 0;  ///< of those
   std::uint64_t missedLately = 0;     ///< of the ticks of the last hundred steps
   double stretched = 0.0;             ///< by how much the tick clock was (s)
-  std::shared_ptr<const std::vector<Mistake>> mistakes;  ///< never null
-  std::chrono::steady_clock::time_point seen;            ///< when the last step was over
+  std::shared_ptr<const std::vector<analytics::ErrorLine>> errors;  ///< the gravest first; never null
+  std::chrono::steady_clock::time_point seen;                       ///< when the last step was over
 
-  AttemptFigures() : mistakes(std::make_shared<const std::vector<Mistake>>()) {}
+  AttemptFigures() : errors(std::make_shared<const std::vector<analytics::ErrorLine>>()) {}
 };
 
 /// Watches an attempt for the window. Steps come on the simulation's thread, any thread may ask.
@@ -109,7 +85,7 @@ class AttemptMonitor final : public recorder::Observer {
  private:
   const Model& model_;
   Judge judge_;  ///< simulation's thread
-  MistakeList list_;
+  SubjectNames names_;
   std::size_t bed_;  ///< index of the procedure's connective tissue; none: how many there are
   TickSamples lastPose_;
   std::array<std::uint32_t, 100> missed_{};  ///< in each of the last steps

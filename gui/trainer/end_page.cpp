@@ -283,13 +283,13 @@ void EndPage::showAttempt(const TrainingStatus& status, const QString& result, d
                       : QString("An assessment shows neither figures nor mistakes here. Whoever instructs finds them "
                                 "in the dashboard, when the attempt is in the cohort."));
   next_->setVisible(next);
-  back_->setVisible(practice && !synthetic_ && !status.figures.mistakes->empty());
+  back_->setVisible(practice && !synthetic_ && !status.figures.errors->empty());
   showStoring();
   if (!practice) {
     again_->setFocus();
     return;
   }
-  listMistakes(*moments_, *status.figures.mistakes, stepSeconds);
+  listErrors(*moments_, *status.figures.errors, stepSeconds);
   moments_->setCurrentRow(0);
   momentsTitle_->setText(moments_->count() > 0 ? "What went wrong: a click shows it again." : "Nothing went wrong.");
   picture_->showText("Opening the replay …");

@@ -59,13 +59,13 @@ QWidget* keyPage(bool mouse, bool scope, bool pauses) {
 
 }  // namespace
 
-void listMistakes(QListWidget& list, const std::vector<Mistake>& mistakes, double stepSeconds) {
+void listErrors(QListWidget& list, const std::vector<analytics::ErrorLine>& errors, double stepSeconds) {
   list.clear();
-  for (const Mistake& mistake : mistakes) {
-    auto* const item = new QListWidgetItem(mistakeText(mistake), &list);
-    item->setData(Qt::UserRole, mistake.branchTime(stepSeconds));
+  for (const analytics::ErrorLine& error : errors) {
+    auto* const item = new QListWidgetItem(errorText(error), &list);
+    item->setData(Qt::UserRole, branchTime(error.time, stepSeconds));
   }
-  list.setVisible(!mistakes.empty());
+  list.setVisible(!errors.empty());
 }
 
 std::optional<double> chosenBranch(const QListWidget& list) {
@@ -158,7 +158,7 @@ void RunPanel::show(const TrainingStatus& status, const PanelText& text, double 
   // Mistakes are a score: an assessment shows none.
   const bool looksBack = practice && (status.stage == Stage::paused || status.stage == Stage::ended);
   lower_->setCurrentWidget(looksBack ? mistakes_ : keys_);
-  if (looksBack) showMistakes(status, stepSeconds);
+  if (looksBack) showErrors(status, stepSeconds);
 }
 
 /// Numbers alone that go on are not worth being read aloud.
@@ -172,17 +172,19 @@ void RunPanel::announce(QLabel* label, const QString& text) {
   emit announced(label->objectName(), text);
 }
 
-void RunPanel::showMistakes(const TrainingStatus& status, double stepSeconds) {
-  const bool none = status.figures.mistakes->empty();
+void RunPanel::showErrors(const TrainingStatus& status, double stepSeconds) {
+  const bool none = status.figures.errors->empty();
   mistakesTitle_->setText(!none                           ? "What went wrong:"
                           : status.stage == Stage::paused ? "Nothing went wrong so far."
                                                           : "Nothing went wrong.");
-  if (listed_ == status.figures.mistakes) return;
-  listed_ = status.figures.mistakes;
-  listMistakes(*list_, *listed_, stepSeconds);
+  if (listed_ == status.figures.errors) return;
+  listed_ = status.figures.errors;
+  listErrors(*list_, *listed_, stepSeconds);
   back_->setVisible(!none);
-  // The last one is the one to be undone, mostly.
-  list_->setCurrentRow(list_->count() - 1);
+  // The newest one is the one to be undone, mostly.
+  const auto newest =
+      std::max_element(listed_->begin(), listed_->end(), [](const auto& a, const auto& b) { return a.time < b.time; });
+  list_->setCurrentRow(static_cast<int>(newest - listed_->begin()));
 }
 
 void RunPanel::goBack() {

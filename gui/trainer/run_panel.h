@@ -22,8 +22,8 @@ class QTextToSpeech;
 
 namespace calot::gui {
 
-/// Fills a list with mistakes. @param stepSeconds of the scene
-void listMistakes(QListWidget& list, const std::vector<Mistake>& mistakes, double stepSeconds);
+/// Fills a list with errors. @param stepSeconds of the scene
+void listErrors(QListWidget& list, const std::vector<analytics::ErrorLine>& errors, double stepSeconds);
 /// Fork of a branch before the chosen one (s); none: none is chosen.
 [[nodiscard]] std::optional<double> chosenBranch(const QListWidget& list);
 
@@ -46,7 +46,7 @@ class RunPanel : public QWidget {
   void announced(const QString& subject, const QString& words);  ///< is worth being read aloud
 
  private:
-  void showMistakes(const TrainingStatus& status, double stepSeconds);
+  void showErrors(const TrainingStatus& status, double stepSeconds);
   void goBack();
   void announce(QLabel* label, const QString& text);  ///< shows it, and announces it when its words change
 
@@ -62,7 +62,7 @@ class RunPanel : public QWidget {
   QPushButton* back_;
   QWidget* mistakes_;
   QPushButton *pause_, *finish_, *restart_, *scenes_;
-  std::shared_ptr<const std::vector<Mistake>> listed_;
+  std::shared_ptr<const std::vector<analytics::ErrorLine>> listed_;
 };
 
 /// Reads words aloud by the system's speech synthesis, through whichever of Qt's engines is installed. News waits for

@@ -75,11 +75,11 @@ QString scoreText(const SceneDescription& scene, const AttemptFigures& figures) 
                .arg(p.triangleCleared + p.lowerThirdFreed + p.twoStructures)
                .arg(p.criticalViewFrozen ? " (at the first clip)" : "");
   }
-  text += p.errors == 0   ? QString("No errors")
-          : p.errors == 1 ? QString("1 error")
-                          : QString("%1 errors").arg(p.errors);
-  if (p.criticalErrors > 0) text += QString(", %1 critical").arg(p.criticalErrors);
-  return text;
+  QStringList counts;
+  for (const Severity severity : {Severity::critical, Severity::major, Severity::minor}) {
+    if (p.errors(severity) > 0) counts += QString("%1 %2").arg(p.errors(severity)).arg(analytics::nameOf(severity));
+  }
+  return text + "Errors: " + (counts.isEmpty() ? QString("none") : counts.join(", "));
 }
 
 QString resultText(const TrainingStatus& status) {
@@ -179,8 +179,9 @@ QString clockText(double seconds) {
   return QString::fromStdString(timeText(seconds)).replace('.', QLocale().decimalPoint());
 }
 
-QString mistakeText(const Mistake& mistake) {
-  return clockText(mistake.time) + (mistake.critical ? "  critical: " : "  ") + QString::fromStdString(mistake.text);
+QString errorText(const analytics::ErrorLine& error) {
+  return QString("%1  %2: %3")
+      .arg(clockText(error.time), analytics::nameOf(error.severity), QString::fromStdString(error.counted()));
 }
 
 PanelText panelText(const TrainingStatus& status, const SceneDescription& scene, const std::string& summary,

@@ -46,7 +46,7 @@ enum class Pointer {
 /// Minutes, seconds and tenths: "1:02.5".
 [[nodiscard]] QString clockText(double seconds);
 /// "0:41.2  cystic duct: clip half on", a critical one with "critical" before it.
-[[nodiscard]] QString mistakeText(const Mistake& mistake);
+[[nodiscard]] QString errorText(const analytics::ErrorLine& error);
 
 /// Next instruction in an attempt of this scene, in one or two sentences: from what the procedure asks for and what has
 /// been done of it. For practice; an assessment has no hints.

@@ -2,20 +2,20 @@
 #include "gui/words/attempt_summary.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <algorithm>
 #include <map>
 #include <string>
 #include <string_view>
 #include <utility>
 
+#include "analytics/assessment/verdict.h"
 #include "analytics/checkpoints/checkpoint.h"
 #include "analytics/report/report_document.h"
 
 namespace calot::gui {
 namespace {
 
-constexpr std::string_view criticalView = "critical-view", criticalErrors = "critical-errors";
+constexpr std::string_view criticalView = "critical-view";
 
 const analytics::CheckpointValue* find(const std::vector<analytics::CheckpointValue>& values, std::string_view name) {
   const auto at =
@@ -47,32 +47,15 @@ std::string viewOf(const analytics::CheckpointValue* view) {
                      *view->value, view->note);
 }
 
-std::string counted(const std::vector<analytics::CheckpointValue>& values, std::string_view name, const char* one,
-                    const char* more) {
-  double sum = 0.0;
-  bool any = false;
-  for (const analytics::CheckpointValue& v : values) {
-    if (v.name != name || !v.value) continue;
-    any = true;
-    sum += *v.value;
-  }
-  if (!any) return {};
-  if (sum == 0.0) return fmt::format("no {}", one);
-  return fmt::format("{:.0f} {}", sum, sum == 1.0 ? one : more);
-}
-
+/// The verdict: a sentence a severity. One that is not known is said to be so, never to be none.
 std::string errorsOf(const std::vector<analytics::CheckpointValue>& values) {
-  std::vector<std::string> parts;
-  for (std::string part : {counted(values, criticalErrors, "critical error", "critical errors"),
-                           counted(values, "clip-errors", "clip error", "clip errors"),
-                           counted(values, "organ-perforations", "perforation", "perforations")}) {
-    if (!part.empty()) parts.push_back(std::move(part));
+  std::string text;
+  for (const auto& [severity, name] : analytics::errorCheckpoints()) {
+    const analytics::CheckpointValue* const value = find(values, name);
+    if (!text.empty()) text += ' ';
+    text += analytics::errorSentence(severity, value);
   }
-  if (parts.empty()) return "Errors: none are judged in this scene.";
-  std::string text = fmt::format("Errors: {}", fmt::join(parts, ", "));
-  const analytics::CheckpointValue* critical = find(values, criticalErrors);
-  if (critical != nullptr && critical->value.value_or(0.0) > 0.0) text += "; a critical error fails the attempt";
-  return text + ".";
+  return text;
 }
 
 }  // namespace
@@ -104,9 +87,7 @@ AttemptSummary summaryOf(const analytics::AttemptRow& attempt, const std::vector
 
 NextGoal nextGoal(const analytics::Grade& grade) {
   if (grade.criticalErrors.value_or(0.0) > 0.0)
-    return {"No critical error: nothing that must be spared is clipped, cut, burned or torn.",
-            std::string(criticalErrors),
-            {}};
+    return {"A safe operation: " + grade.criticalNote + ".", std::string(analytics::criticalErrors), {}};
   const analytics::GradedFigure* next = nullptr;
   const auto before = [](const analytics::GradedFigure& a, const analytics::GradedFigure& b) {
     if (analytics::isFixed(a.mark) != analytics::isFixed(b.mark)) return analytics::isFixed(a.mark);
@@ -144,7 +125,7 @@ struct SummaryColumn {
 std::string columnTitle(const analytics::CheckpointEntry& entry, const std::string& subject) {
   const analytics::CheckpointDefinition& d = entry.definition;
   const std::string_view word = entry.place.summaryTitle;
-  if (subject.empty()) return fmt::format("{} {}", word, d.displayUnit);
+  if (subject.empty()) return d.displayUnit == "1" ? std::string(word) : fmt::format("{} {}", word, d.displayUnit);
   if (d.aggregation != analytics::Aggregation::hand) return fmt::format("{} {} {}", subject, word, d.displayUnit);
   return fmt::format("{} {} {}", word, subject == handNames[0] ? "L" : "R", d.displayUnit);
 }

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "analytics/checkpoints/phases.h"
 
@@ -12,34 +11,36 @@ namespace {
 
 using Subject = EventWords::Subject;
 
-constexpr std::array<EventWords, 26> told{{
-    {EventKind::instrumentExchange, Subject::none, "instrument exchanged", false},
-    {EventKind::instrumentsTouched, Subject::none, "instruments touched", false},
-    {EventKind::retractionMore, Subject::structure, "more retraction asked for", false},
-    {EventKind::retractionLess, Subject::structure, "less retraction asked for", false},
-    {EventKind::graspSlip, Subject::structure, "slipped in the jaws", true},
-    {EventKind::tissueTear, Subject::structure, "torn out of the jaws", true},
-    {EventKind::strandsTorn, Subject::connective, "torn instead of burned", true},
-    {EventKind::fatTorn, Subject::structure, "thin string tore", false},
-    {EventKind::connectiveFreed, Subject::connective, "divided", false},
-    {EventKind::vesselTorn, Subject::structure, "torn", true},
-    {EventKind::clipSet, Subject::structure, "clip set", false},
-    {EventKind::clipHalfOn, Subject::structure, "clip half on", true},
-    {EventKind::clipOnClip, Subject::structure, "clip on another clip", true},
-    {EventKind::clipTooNear, Subject::structure, "clip too near to another, a junction or an edge", true},
-    {EventKind::clipDropped, Subject::none, "clip dropped", true},
-    {EventKind::vesselCut, Subject::structure, "cut", false},
-    {EventKind::cutOpen, Subject::structure, "left open", true},
-    {EventKind::cutThroughClip, Subject::structure, "cut through a clip", true},
-    {EventKind::vesselBurned, Subject::structure, "burned through", true},
-    {EventKind::wallInjured, Subject::structure, "wall injured by heat", true},
-    {EventKind::vesselSealed, Subject::structure, "sealed", false},
-    {EventKind::organPerforated, Subject::structure, "perforated", true},
-    {EventKind::tooFewClips, Subject::structure, "cut with too few clips", true},
-    {EventKind::criticalError, Subject::structure, "harmed though it must be spared", true},
-    {EventKind::clockStretched, Subject::none, "simulation late, clock stretched", false},
-    {EventKind::runaway, Subject::none, "simulation failed", true},
+constexpr std::array<EventWords, 20> told{{
+    {EventKind::instrumentExchange, Subject::none, "instrument exchanged"},
+    {EventKind::instrumentsTouched, Subject::none, "instruments touched"},
+    {EventKind::retractionMore, Subject::structure, "more retraction asked for"},
+    {EventKind::retractionLess, Subject::structure, "less retraction asked for"},
+    {EventKind::graspSlip, Subject::structure, "slipped in the jaws"},
+    {EventKind::tissueTear, Subject::structure, "torn out of the jaws"},
+    {EventKind::strandsTorn, Subject::connective, "torn"},
+    {EventKind::fatTorn, Subject::structure, "thin string tore"},
+    {EventKind::connectiveFreed, Subject::connective, "divided"},
+    {EventKind::vesselTorn, Subject::structure, "torn"},
+    {EventKind::clipSet, Subject::structure, "clip set"},
+    {EventKind::vesselCut, Subject::structure, "cut"},
+    {EventKind::cutOpen, Subject::structure, "open end"},
+    {EventKind::vesselBurned, Subject::structure, "burned through"},
+    {EventKind::wallInjured, Subject::structure, "wall burned"},
+    {EventKind::vesselSealed, Subject::structure, "sealed"},
+    {EventKind::organPerforated, Subject::structure, "perforated"},
+    {EventKind::clipDropped, Subject::none, "clip lost"},
+    {EventKind::clockStretched, Subject::none, "simulation late, clock stretched"},
+    {EventKind::runaway, Subject::none, "simulation failed"},
 }};
+
+std::string subjectOf(const Event& event, const EventWords& words, const SubjectNames& names) {
+  if (words.subject == Subject::none) return {};
+  const bool structure = words.subject == Subject::structure;
+  const std::vector<std::string>& name = structure ? names.structures : names.connective;
+  if (event.subject < name.size()) return spoken(name[event.subject]);
+  return structure ? "tissue" : "connective tissue";
+}
 
 }  // namespace
 
@@ -49,33 +50,32 @@ const EventWords* wordsOf(EventKind kind) {
   return found == told.end() ? nullptr : found;
 }
 
-std::string subjectOf(const Event& event, const SubjectNames& names) {
-  const EventWords* const words = wordsOf(event.kind);
-  if (words == nullptr || words->subject == Subject::none) return {};
-  const bool structure = words->subject == Subject::structure;
-  const std::vector<std::string>& name = structure ? names.structures : names.connective;
-  if (event.subject < name.size()) return spoken(name[event.subject]);
-  return structure ? "tissue" : "connective tissue";
-}
-
 std::string textOf(const Event& event, const SubjectNames& names) {
   const EventWords* const words = wordsOf(event.kind);
   if (words == nullptr) return {};
-  const std::string subject = subjectOf(event, names);
+  const std::string subject = subjectOf(event, *words, names);
   return subject.empty() ? words->phrase : subject + ": " + words->phrase;
 }
 
-std::string spoken(std::string name) {
-  std::replace_if(
-      name.begin(), name.end(), [](char c) { return c == '_' || c == '-'; }, ' ');
-  return name;
-}
-
-std::string timeText(double seconds) {
-  const auto tenths = static_cast<long long>(std::floor(std::max(0.0, seconds) * 10.0 + 1e-6));
-  const long long rest = tenths / 10 % 60;
-  return std::to_string(tenths / 600) + (rest < 10 ? ":0" : ":") + std::to_string(rest) + '.' +
-         std::to_string(tenths % 10);
+std::vector<Told> tell(const Judgement& judgement, const SubjectNames& names) {
+  std::vector<Told> told;
+  ErrorList errors;
+  errors.add(judgement.found);
+  for (const AttemptError& error : errors.all()) {
+    const std::string text = analytics::textOf(error, names);
+    const auto by = std::find_if(judgement.found.begin(), judgement.found.end(), [&](const JudgedError& e) {
+      return e.rule == error.rules.front() && e.event.subject == error.subject;
+    });
+    told.push_back({by->event, error.severity(), text, text});
+  }
+  for (const Event& event : judgement.events) {
+    const EventWords* const words = wordsOf(event.kind);
+    const bool isError = std::any_of(judgement.found.begin(), judgement.found.end(), [&](const JudgedError& e) {
+      return e.event.kind == event.kind && e.event.subject == event.subject && e.event.hand == event.hand;
+    });
+    if (words != nullptr && !isError) told.push_back({event, {}, textOf(event, names), words->phrase});
+  }
+  return told;
 }
 
 std::string wordFor(Phase phase) {

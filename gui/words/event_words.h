@@ -1,44 +1,48 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Texts for events, shared by films, the dashboard's lists and the trainer's list of mistakes.
+// Texts for events and errors, shared by films, the dashboard's lists, the trainer and the page.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "analytics/checkpoints/error_words.h"
 #include "sim/judgement/judge.h"
 
 namespace calot::gui {
 
-/// Text for a kind of event: "cystic duct: clip half on" is the subject's name and the phrase.
+using analytics::spoken;
+using analytics::SubjectNames;
+using analytics::timeText;
+
+/// Text for a kind of event that is a plain fact: "cystic duct: clip set" is the subject's name and the phrase.
 struct EventWords {
   enum class Subject { none, structure, connective };
   EventKind kind;
   Subject subject;     ///< whose name precedes the phrase
-  const char* phrase;  ///< "clip half on"
-  bool fault;          ///< a mistake, harm, or a simulation failure
+  const char* phrase;  ///< "clip set"
 };
 
 /// Null for technical events (contacts, samples, solver, smoke).
 [[nodiscard]] const EventWords* wordsOf(EventKind kind);
 
-/// Names in the order of event subject indices.
-struct SubjectNames {
-  std::vector<std::string> structures;
-  std::vector<std::string> connective;  ///< connective tissues; may be left empty
-};
-
-/// The subject's name in plain text: "cystic duct". Empty if the phrase stands alone; "tissue" or "connective tissue"
-/// if no name is known.
-[[nodiscard]] std::string subjectOf(const Event& event, const SubjectNames& names);
-
-/// Subject and phrase; empty where wordsOf() is null.
+/// Subject and phrase; empty where wordsOf() is null. The subject is "tissue" or "connective tissue" where no name is
+/// known.
 [[nodiscard]] std::string textOf(const Event& event, const SubjectNames& names);
 
-/// "cystic-duct" in plain text: "cystic duct".
-[[nodiscard]] std::string spoken(std::string name);
+/// Something to tell of a step.
+struct Told {
+  Event event;                       ///< the fact, or the one by which the rule was broken
+  std::optional<Severity> severity;  ///< of an error
+  std::string text;                  ///< "cystic duct: clip set", "cystic duct left open, cut with too few clips"
+  std::string title;                 ///< what it is listed under: "clip set"; of an error its text
 
-/// "0:42.5", "12:03.0": minutes, seconds and tenths, with the decimal point of no locale.
-[[nodiscard]] std::string timeText(double seconds);
+  /// It should not have happened: an error, or a simulation that failed.
+  [[nodiscard]] bool marked() const { return severity.has_value() || event.kind == EventKind::runaway; }
+};
+
+/// Errors of the step, those of one structure in one sentence, and its other facts that have words.
+[[nodiscard]] std::vector<Told> tell(const Judgement& judgement, const SubjectNames& names);
 
 /// "identification", ..., "done"; empty for none.
 [[nodiscard]] std::string wordFor(Phase phase);

@@ -120,6 +120,7 @@ struct SeenHand {
 
 struct Sight {
   std::vector<SeenVessel> vessel;
+  std::vector<std::pair<Vec3, double>> spared;  ///< stations of the vessels that are to be spared, and their radii (m)
   std::vector<SeenStrand> strand;
   std::vector<SeenColumn> column;  ///< in the order of PerformerSight::columns()
   bool held = false;               ///< fat still holds the specimen
@@ -157,9 +158,9 @@ class PerformerSight {
   [[nodiscard]] Sight look(const StepRecord& record) const;
 
   [[nodiscard]] const std::vector<VesselPlan>& vessels() const { return vessel_; }
+  /// Vessels that are to be spared, by name.
+  [[nodiscard]] const std::vector<VesselPlan>& spared() const { return spared_; }
   [[nodiscard]] const std::vector<ColumnPlan>& columns() const { return column_; }
-  /// Stations of the vessels that are to be spared, at rest, and their radii (m).
-  [[nodiscard]] const std::vector<std::pair<Vec3, double>>& spared() const { return spared_; }
   [[nodiscard]] bool hasSpecimen() const { return specimen_ < organs_; }
   [[nodiscard]] bool hasFat() const { return !fat_.empty(); }
   /// Are the vessels to be clipped and cut?
@@ -172,6 +173,7 @@ class PerformerSight {
   static std::vector<Vec3> stationsOf(const std::vector<Vec3>& path);
   void planVessels(const SceneDescription& scene);
   void planColumns(const SceneDescription& scene);
+  void planSpared(const SceneDescription& scene);
   void findSpecimen(const SceneDescription& scene);
   void seeVessel(const SceneView& view, const VesselPlan& plan, SeenVessel& seen) const;
   void seeColumns(const SceneView& view, Sight& sight) const;
@@ -180,7 +182,7 @@ class PerformerSight {
 
   std::vector<VesselPlan> vessel_;
   std::vector<ColumnPlan> column_;
-  std::vector<std::pair<Vec3, double>> spared_;
+  std::vector<VesselPlan> spared_;
   std::string bed_, fat_, specimenName_;
   std::size_t organs_ = 0, specimen_ = 0, worker_ = 1;
   std::array<Vec3, handCount> port_{Vec3::Zero(), Vec3::Zero()};
@@ -190,6 +192,11 @@ class PerformerSight {
   double triangleDepth_ = 0.0;
   std::size_t gripVertex_ = 0, neckVertex_ = 0;
 };
+
+/// The lowest that the hook may go at a place with its toe along `toe`, towards the port (m), so that its metal keeps
+/// `off` from vessels' walls.
+double lowestAt(const Vec3& place, const Vec3& shaft, const Vec3& toe, double off,
+                const std::vector<std::pair<Vec3, double>>& vessels);
 
 /// Both hands of an operation, its anatomy, and the operator's interpretation of its perception.
 struct OperationTools {
@@ -247,7 +254,8 @@ class WorkingMind {
   void clear(const Sight& sight);
   struct FatStroke;
   double highestFat(const SeenVessel& vessel, double radius, FatStroke& stroke) const;
-  void runStroke(const FatStroke& stroke, const SeenVessel& vessel, double radius);
+  void runStroke(const FatStroke& stroke, const SeenVessel& vessel, double radius,
+                 const std::vector<std::pair<Vec3, double>>& spared);
   void window(Sight sight);
   void search(const Sight& sight);
   /// Vessels that the hook keeps off: places of their centre lines, and radii (m).

@@ -64,6 +64,7 @@ PerformerSight::PerformerSight(const SceneDescription& scene, std::size_t worker
     specimenName_ = nameWithRole(scene.organs, StructureRole::gallbladder);
   fat_ = nameWithRole(scene.fat, StructureRole::triangleFat);
   planColumns(scene);
+  planSpared(scene);
   // A scene of fat alone is for clearing.
   divides_ = !vessel_.empty() && (fat_.empty() || !bed_.empty());
   for (std::size_t o = 0; o < organs_; ++o) {
@@ -169,6 +170,11 @@ Sight PerformerSight::look(const StepRecord& record) const {
     seen.partings = record.result.vessel[plan.index].partings;
     sight.vessel.push_back(seen);
   }
+  for (const VesselPlan& plan : spared_) {
+    SeenVessel seen;
+    seeVessel(view, plan, seen);
+    for (const Vec3& centre : seen.centre) sight.spared.emplace_back(centre, plan.radius);
+  }
   seeColumns(view, sight);
   for (const ConnectiveView& tissue : view.connective) {
     if (tissue.name != bed_) continue;
@@ -201,7 +207,7 @@ constexpr double tetherWidth = 0.006;  // what hangs nearer to one another is on
 
 }  // namespace
 
-/// Rows and columns within the triangle, and what in it is not to be touched.
+/// Rows and columns within the triangle.
 void PerformerSight::planColumns(const SceneDescription& scene) {
   for (const FatDescription& fat : scene.fat) {
     if (fat.name != fat_ || !(fat.triangleDepth > 0.0)) continue;
@@ -216,10 +222,16 @@ void PerformerSight::planColumns(const SceneDescription& scene) {
       }
     }
   }
+}
+
+void PerformerSight::planSpared(const SceneDescription& scene) {
   for (const VesselDescription& v : scene.vessels) {
     const std::vector<std::string>& spare = scene.procedure.spare;
     if (std::find(spare.begin(), spare.end(), v.name) == spare.end()) continue;
-    for (const Vec3& p : stationsOf(v.path)) spared_.emplace_back(p, v.radius);
+    VesselPlan& plan = spared_.emplace_back();
+    plan.name = v.name;
+    plan.radius = v.radius;
+    plan.rest = stationsOf(v.path);
   }
 }
 

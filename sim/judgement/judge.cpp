@@ -2,7 +2,7 @@
 #include "sim/judgement/judge.h"
 
 #include <algorithm>
-#include <optional>
+#include <utility>
 
 #include "sim/math/linear.h"
 
@@ -10,13 +10,7 @@ namespace calot {
 
 namespace {
 
-bool contains(const std::vector<std::size_t>& structures, std::size_t structure) {
-  return std::find(structures.begin(), structures.end(), structure) != structures.end();
-}
-
-bool opensVessel(EventKind kind) {
-  return kind == EventKind::vesselCut || kind == EventKind::vesselBurned || kind == EventKind::vesselTorn;
-}
+constexpr std::uint8_t noHand = 255;
 
 /// The value of an event of this kind that stands beside the one at `at`: of the same hand and structure, in this step.
 std::optional<double> beside(const std::vector<Event>& events, std::size_t at, EventKind kind) {
@@ -30,15 +24,18 @@ std::optional<double> beside(const std::vector<Event>& events, std::size_t at, E
 
 }  // namespace
 
-Judge::Judge(const SceneDescription& scene, const JudgementRules& rules) : rules_(rules), clip_(scene.clip) {
+Judge::Judge(const SceneDescription& scene, const JudgementRules& rules)
+    : rules_(rules), clip_(scene.clip), errors_(static_cast<std::uint64_t>(1000 / scene.ticksPerStep)) {
   const ProcedureDescription& procedure = scene.procedure;
+  const std::size_t firstVessel = scene.organs.size();
+  for (const OrganDescription& organ : scene.organs) role_.push_back(organ.role);
+  for (const VesselDescription& vessel : scene.vessels) role_.push_back(vessel.role);
   present_ = !procedure.specimen.empty();
   if (!present_) return;
   fat_ = indexNamed(scene.fat, procedure.fat);
   hasFat_ = fat_ < scene.fat.size();
   bed_ = indexNamed(scene.connective, procedure.bed);
   hasBed_ = bed_ < scene.connective.size();
-  const std::size_t firstVessel = scene.organs.size();
   for (const DivideDescription& d : procedure.divide) {
     const std::size_t vessel = indexNamed(scene.vessels, d.vessel);
     if (vessel == scene.vessels.size()) continue;
@@ -46,12 +43,14 @@ Judge::Judge(const SceneDescription& scene, const JudgementRules& rules) : rules
     divide.vessel = vessel;
     divide.structure = firstVessel + vessel;
     divide.clips = {d.patient, d.specimen};
+    divide.patientAtStart = d.patientAtStart;
     if (!d.patientAtStart) std::swap(divide.clips[0], divide.clips[1]);
   }
   for (const std::string& name : procedure.spare) {
     const std::size_t vessel = indexNamed(scene.vessels, name);
     if (vessel < scene.vessels.size()) spare_.push_back(firstVessel + vessel);
   }
+  parted_.resize(divide_.size());
   now_.phase = hasFat_ ? Phase::identification : !divide_.empty() ? Phase::clipping : Phase::dissection;
 }
 
@@ -60,8 +59,10 @@ bool Judge::isReported(const StepResult& result) const {
          std::all_of(divide_.begin(), divide_.end(), [&](const Divide& d) { return d.vessel < result.vessel.size(); });
 }
 
-bool Judge::isToDivide(std::size_t structure) const {
-  return std::any_of(divide_.begin(), divide_.end(), [&](const Divide& d) { return d.structure == structure; });
+std::size_t Judge::dividing(std::size_t structure) const {
+  const auto at =
+      std::find_if(divide_.begin(), divide_.end(), [&](const Divide& d) { return d.structure == structure; });
+  return static_cast<std::size_t>(at - divide_.begin());
 }
 
 bool Judge::isParted(const StepResult& result, std::size_t vessel) const { return result.vessel[vessel].partings > 0; }
@@ -77,71 +78,205 @@ void Judge::judgeView(const StepResult& result) {
   now_.twoStructures = static_cast<std::size_t>(seen) == divide_.size() ? 2 : seen > 0 ? 1 : 0;
 }
 
-void Judge::countError(Event event, EventKind kind, double value) {
+void Judge::judged(Event event, EventKind kind, double value) {
   event.kind = kind;
   event.value = value;
   now_.events.push_back(event);
-  if (present_) ++now_.errors;
+  constexpr std::array<std::pair<EventKind, ErrorRule>, 3> rules{{{EventKind::clipHalfOn, ErrorRule::clipHalfOn},
+                                                                  {EventKind::clipOnClip, ErrorRule::clipOnClip},
+                                                                  {EventKind::clipTooNear, ErrorRule::clipTooNear}}};
+  for (const auto& [of, rule] : rules) {
+    if (of == kind) find(rule, event);
+  }
 }
 
 void Judge::judgeClip(const std::vector<Event>& events, std::size_t at) {
-  if (!beside(events, at, EventKind::clipPlace)) return;  // before version 4: judged at its time
+  const auto place = beside(events, at, EventKind::clipPlace);
+  if (!place) return;  // before version 4: judged at its time
   const Event& clip = events[at];
-  if (clip.value < rules_.encloses) countError(clip, EventKind::clipHalfOn, clip.value);
+  if (clip.value < rules_.encloses) {
+    judged(clip, EventKind::clipHalfOn, clip.value);
+  } else {
+    closeEnds(clip, *place);
+  }
   constexpr double far = 1e300;
   const double gap = beside(events, at, EventKind::clipGap).value_or(far);
   const double junction = beside(events, at, EventKind::clipJunctionGap).value_or(far);
   const bool beyondEnd = beside(events, at, EventKind::clipEndGap).value_or(far) < 0.0;
-  if (gap < 0.0) countError(clip, EventKind::clipOnClip, -gap);
+  if (gap < 0.0) judged(clip, EventKind::clipOnClip, -gap);
   const double nearClip = gap >= 0.0 && gap < clip_.minGap ? gap : far;
   const double nearJunction = junction < clip_.minJunctionGap ? junction : far;
   const double nearest = beyondEnd ? 0.0 : std::min(nearClip, nearJunction);
-  if (nearest < far) countError(clip, EventKind::clipTooNear, nearest);
+  if (nearest < far) judged(clip, EventKind::clipTooNear, nearest);
 }
 
 /// Clips that the procedure wants beside a cut and that are not there.
 void Judge::judgeCut(const std::vector<Event>& events, std::size_t at) {
   const auto start = beside(events, at, EventKind::clipsTowardsStart);
   const auto end = beside(events, at, EventKind::clipsTowardsEnd);
-  if (!start || !end) return;  // before version 4: judged at its time
-  double missing = 0.0;
-  for (const Divide& divide : divide_) {
-    if (divide.structure != events[at].subject) continue;
-    missing += notNegative(static_cast<double>(divide.clips[0]) - *start);
-    missing += notNegative(static_cast<double>(divide.clips[1]) - *end);
-  }
-  if (missing > 0.0) countError(events[at], EventKind::tooFewClips, missing);
+  const std::size_t of = dividing(events[at].subject);
+  if (!start || !end || of == divide_.size()) return;  // before version 4: judged at its time
+  const Divide& divide = divide_[of];
+  const std::array<double, 2> missing{notNegative(static_cast<double>(divide.clips[0]) - *start),
+                                      notNegative(static_cast<double>(divide.clips[1]) - *end)};
+  if (!(missing[0] + missing[1] > 0.0)) return;
+  judged(events[at], EventKind::tooFewClips, missing[0] + missing[1]);
+  const std::size_t patient = divide.patientAtStart ? 0 : 1;
+  if (missing[patient] > 0.0) find(ErrorRule::tooFewClips, now_.events.back());
+  if (missing[1 - patient] > 0.0) find(ErrorRule::tooFewTowardsSpecimen, now_.events.back());
 }
 
-void Judge::countEvent(const std::vector<Event>& events, std::size_t at, Phase& phase) {
+/// A vessel that is to be divided was cut, burned through or torn.
+void Judge::judgeParting(const std::vector<Event>& events, std::size_t at) {
   const Event& event = events[at];
-  if (event.kind == EventKind::criticalError || event.kind == EventKind::phaseBegin) return;  // judged at its time
-  now_.events.push_back(event);
+  const std::size_t of = dividing(event.subject);
+  if (of == divide_.size()) return;
+  const bool tears = event.kind == EventKind::vesselTorn;
+  // What lies beyond a new end belongs to another piece.
+  if (!tears) {
+    std::erase_if(open_, [&](const OpenEnd& e) {
+      return e.vessel == of && e.arc && (e.atStart ? *e.arc > event.value : *e.arc < event.value);
+    });
+  }
+  const bool isSealed = beside(events, at, EventKind::vesselSealed).has_value();
+  if (event.kind == EventKind::vesselBurned)
+    find(isSealed ? ErrorRule::burnedAndSealed : ErrorRule::burnedThrough, event);
+  if (tears) find(ErrorRule::torn, event);
+  if (event.kind == EventKind::vesselCut) judgeCut(events, at);
+  const bool hides = hasFat_ || hasBed_;
+  if (!tears && hides && !parted_[of] && now_.criticalView() < rules_.satisfactory)
+    find(now_.criticalView() < rules_.identified ? ErrorRule::notIdentified : ErrorRule::viewIncomplete, event);
+  parted_[of] = true;
+  if (tears) return;  // its open ends are told by themselves
+  for (std::size_t i = at + 1; i < events.size() && events[i].kind != event.kind; ++i) {
+    if (events[i].kind == EventKind::cutOpen && events[i].subject == event.subject && events[i].hand == event.hand)
+      judgeOpenEnds(events[i], event.value);
+  }
+}
+
+/// @param open tells which ends, in its value: 1 the one towards the vessel's start, 2 the other, 3 both
+void Judge::judgeOpenEnds(const Event& open, std::optional<double> arc) {
+  const std::size_t of = dividing(open.subject);
+  if (of == divide_.size()) return;
+  const auto sides = static_cast<unsigned>(open.value);
+  for (const bool atStart : {true, false}) {
+    if ((sides & (atStart ? 1U : 2U)) == 0) continue;
+    const bool stays = atStart == divide_[of].patientAtStart;
+    if (!stays && !carriesBile(role_[open.subject])) continue;
+    const ErrorRule rule = stays ? ErrorRule::leftOpen : ErrorRule::openTowardsSpecimen;
+    open_.push_back({of, atStart, arc, rule});
+    find(rule, open);
+  }
+}
+
+/// A clip that encloses the whole vessel closes the end of the piece on which it is.
+void Judge::closeEnds(const Event& clip, double place) {
+  const std::size_t of = dividing(clip.subject);
+  for (std::size_t i = 0; i < open_.size();) {
+    const OpenEnd end = open_[i];
+    const bool closes = end.vessel == of && (!end.arc || (end.atStart ? place < *end.arc : place > *end.arc));
+    if (!closes) {
+      ++i;
+      continue;
+    }
+    open_.erase(open_.begin() + static_cast<std::ptrdiff_t>(i));
+    const bool remains = std::any_of(open_.begin(), open_.end(),
+                                     [&](const OpenEnd& e) { return e.vessel == end.vessel && e.rule == end.rule; });
+    if (remains) continue;
+    errors_.takeBack(end.rule, clip.subject);
+    now_.changed = true;
+  }
+}
+
+/// What happens to a structure that must be spared.
+void Judge::judgeHarm(const Event& event) {
+  const auto rule = [&]() -> std::optional<ErrorRule> {
+    switch (event.kind) {
+      case EventKind::clipSet:
+        return ErrorRule::sparedClipped;
+      case EventKind::vesselCut:
+        return ErrorRule::sparedCut;
+      case EventKind::vesselBurned:
+        return ErrorRule::sparedBurned;
+      case EventKind::vesselTorn:
+        return ErrorRule::sparedTorn;
+      case EventKind::wallInjured:
+        return ErrorRule::sparedHeated;
+      default:
+        return std::nullopt;
+    }
+  }();
+  if (rule) find(*rule, event);
+}
+
+void Judge::judgeEvent(const std::vector<Event>& events, std::size_t at) {
+  const Event& event = events[at];
+  const bool isSpared = std::find(spare_.begin(), spare_.end(), event.subject) != spare_.end();
+  if (isSpared) judgeHarm(event);
+  switch (event.kind) {
+    case EventKind::clipSet:
+      judgeClip(events, at);
+      break;
+    case EventKind::clipHalfOn:
+      find(ErrorRule::clipHalfOn, event);
+      break;
+    case EventKind::clipOnClip:
+      find(ErrorRule::clipOnClip, event);
+      break;
+    case EventKind::clipTooNear:
+      find(ErrorRule::clipTooNear, event);
+      break;
+    case EventKind::clipDropped:
+      find(ErrorRule::clipLost, event);
+      break;
+    case EventKind::tooFewClips:
+      find(ErrorRule::tooFewClips, event);
+      break;
+    case EventKind::cutThroughClip:
+      find(ErrorRule::cutThroughClip, event);
+      break;
+    case EventKind::vesselCut:
+    case EventKind::vesselBurned:
+    case EventKind::vesselTorn:
+      judgeParting(events, at);
+      break;
+    case EventKind::cutOpen:
+      if (event.hand == noHand) judgeOpenEnds(event, {});  // of a vessel that tears
+      break;
+    case EventKind::wallInjured:
+      if (!isSpared) find(ErrorRule::heated, event);
+      break;
+    case EventKind::organPerforated:
+      find(ErrorRule::perforated, event);
+      break;
+    case EventKind::tissueTear:
+      find(event.subject < role_.size() && role_[event.subject] == StructureRole::liver ? ErrorRule::organTorn
+                                                                                        : ErrorRule::tornFromJaws,
+           event);
+      break;
+    case EventKind::graspSlip:
+      find(ErrorRule::slipped, event);
+      break;
+    case EventKind::strandsTorn:
+      find(ErrorRule::strandsTorn, event);
+      break;
+    default:
+      break;
+  }
+}
+
+/// The phase that an act makes.
+void Judge::follow(const Event& event, Phase& phase) {
   switch (event.kind) {
     case EventKind::clipSet:
       now_.criticalViewFrozen = present_;
       phase = Phase::clipping;
-      judgeClip(events, at);
       break;
     case EventKind::clipDropped:
       phase = Phase::clipping;
-      if (present_) ++now_.errors;
-      break;
-    case EventKind::clipHalfOn:
-    case EventKind::clipOnClip:
-    case EventKind::clipTooNear:
-    case EventKind::tooFewClips:
-    case EventKind::cutThroughClip:
-    case EventKind::organPerforated:
-      if (present_) ++now_.errors;
       break;
     case EventKind::vesselCut:
       phase = Phase::cutting;
-      judgeCut(events, at);
-      break;
-    case EventKind::vesselBurned:
-    case EventKind::vesselTorn:
-      if (isToDivide(event.subject)) ++now_.errors;
       break;
     case EventKind::strandsBurned:
     case EventKind::strandsTorn:
@@ -151,24 +286,41 @@ void Judge::countEvent(const std::vector<Event>& events, std::size_t at, Phase& 
     default:
       break;
   }
-  const bool harms = event.kind == EventKind::clipSet || opensVessel(event.kind);
-  if (!harms || !contains(spare_, event.subject)) return;
-  ++now_.criticalErrors;
-  Event critical = event;
-  critical.kind = EventKind::criticalError;
-  critical.value = static_cast<double>(event.kind);
-  now_.events.push_back(critical);
+}
+
+void Judge::countErrors() {
+  if (now_.found.empty() && !now_.changed) return;
+  for (const JudgedError& error : now_.found) {
+    if (textOf(error.rule).severity != Severity::critical) continue;
+    Event critical = error.event;
+    critical.kind = EventKind::criticalError;
+    critical.value = static_cast<double>(error.event.kind);
+    now_.events.push_back(critical);
+  }
+  errors_.add(now_.found);
+  now_.errorList = errors_.all();
+  for (std::size_t s = 0; s < severityCount; ++s) now_.errorCount[s] = errors_.count(static_cast<Severity>(s + 1));
+  now_.changed = true;
 }
 
 const Judgement& Judge::observe(const StepResult& result) {
   now_.events.clear();
+  now_.found.clear();
+  now_.changed = false;
   Phase phase = now_.phase;
   const bool judged = present_ && isReported(result);
   if (judged) {
     now_.lowerThirdAttached = hasBed_ ? result.connective[bed_].lowerAttached : 0.0;
     if (!now_.criticalViewFrozen) judgeView(result);
   }
-  for (std::size_t i = 0; i < result.events.size(); ++i) countEvent(result.events, i, phase);
+  for (std::size_t i = 0; i < result.events.size(); ++i) {
+    const Event& event = result.events[i];
+    if (event.kind == EventKind::criticalError || event.kind == EventKind::phaseBegin) continue;  // of its time
+    now_.events.push_back(event);
+    follow(event, phase);
+    judgeEvent(result.events, i);
+  }
+  countErrors();
   if (!judged) return now_;
   const bool allParted =
       std::all_of(divide_.begin(), divide_.end(), [&](const Divide& d) { return isParted(result, d.vessel); });

@@ -4,8 +4,10 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
+#include "sim/judgement/error_rules.h"
 #include "sim/scene/description.h"
 #include "sim/scene/step_result.h"
 
@@ -32,6 +34,8 @@ struct JudgementRules {
   double encloses = 0.999;  ///< share of a vessel between a clip's legs, below which the clip is half on
   /// Points out of six: the view is satisfactory from here on (the published doublet view).
   int satisfactory = 5;
+  /// Points below which a vessel that is divided was not identified.
+  int identified = 3;
 };
 
 /// Progress of the procedure.
@@ -41,10 +45,13 @@ struct ProcedureStatus {
   std::uint8_t lowerThirdFreed = 0;
   std::uint8_t twoStructures = 0;
   bool criticalViewFrozen = false;
-  double lowerThirdAttached = 0.0;   ///< share of the lower third of the bed
-  std::uint32_t errors = 0;          ///< so far
-  std::uint32_t criticalErrors = 0;  ///< so far; one fails the attempt
+  double lowerThirdAttached = 0.0;                        ///< share of the lower third of the bed
+  std::array<std::uint32_t, severityCount> errorCount{};  ///< occasions so far, minor ones first
 
+  [[nodiscard]] std::uint32_t errors(Severity severity) const {
+    return errorCount[static_cast<std::size_t>(severity) - 1];
+  }
+  [[nodiscard]] std::uint32_t errors() const { return errorCount[0] + errorCount[1] + errorCount[2]; }
   [[nodiscard]] int criticalView() const { return triangleCleared + lowerThirdFreed + twoStructures; }
 };
 
@@ -52,6 +59,9 @@ struct ProcedureStatus {
 struct Judgement : ProcedureStatus {
   /// The step's events with what is judged of them beside them, as people read them.
   std::vector<Event> events;
+  std::vector<JudgedError> found;       ///< errors of the step
+  std::vector<AttemptError> errorList;  ///< of the attempt so far, as ErrorList::all()
+  bool changed = false;                 ///< `errorList` did, in the step
 };
 
 /// Judges an attempt step by step. Live panel, hints, performers, replay, assessment and regrading all use this; it
@@ -77,17 +87,34 @@ class Judge {
     std::size_t vessel = 0;              ///< of the scene's
     std::size_t structure = 0;           ///< of the scene's
     std::array<std::size_t, 2> clips{};  ///< wanted towards its start and towards its end
+    bool patientAtStart = true;          ///< the piece at its start stays
   };
 
   /// True if there are results of everything that the procedure names; false before version 3 of StepResult.
   [[nodiscard]] bool isReported(const StepResult& result) const;
-  [[nodiscard]] bool isToDivide(std::size_t structure) const;
+  /// Index in divide_; its size: not to be divided.
+  [[nodiscard]] std::size_t dividing(std::size_t structure) const;
   [[nodiscard]] bool isParted(const StepResult& result, std::size_t vessel) const;
+  /// An end of a parted vessel that nothing closes.
+  struct OpenEnd {
+    std::size_t vessel = 0;     ///< index in divide_
+    bool atStart = false;       ///< the piece towards the vessel's start
+    std::optional<double> arc;  ///< of the end from the vessel's start (m); none of a torn one
+    ErrorRule rule;             ///< by which it counts
+  };
+
   void judgeView(const StepResult& result);
   void judgeClip(const std::vector<Event>& events, std::size_t at);
   void judgeCut(const std::vector<Event>& events, std::size_t at);
-  void countEvent(const std::vector<Event>& events, std::size_t at, Phase& phase);
-  void countError(Event event, EventKind kind, double value);
+  void judgeParting(const std::vector<Event>& events, std::size_t at);
+  void judgeOpenEnds(const Event& open, std::optional<double> arc);
+  void closeEnds(const Event& clip, double place);
+  void judgeHarm(const Event& event);
+  void judgeEvent(const std::vector<Event>& events, std::size_t at);
+  void follow(const Event& event, Phase& phase);
+  void find(ErrorRule rule, const Event& event) { now_.found.push_back({rule, event}); }
+  void countErrors();
+  void judged(Event event, EventKind kind, double value);
 
   JudgementRules rules_;
   ClipDescription clip_;
@@ -97,7 +124,11 @@ class Judge {
   std::size_t fat_ = 0;  ///< the procedure's body of fat
   std::size_t bed_ = 0;  ///< the procedure's connective tissue
   std::vector<Divide> divide_;
-  std::vector<std::size_t> spare_;  ///< structures
+  std::vector<std::size_t> spare_;   ///< structures
+  std::vector<StructureRole> role_;  ///< of the structures
+  std::vector<bool> parted_;         ///< of divide_: it was cut, burned or torn before
+  std::vector<OpenEnd> open_;
+  ErrorList errors_;
   Judgement now_;
 };
 

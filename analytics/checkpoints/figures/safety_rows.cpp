@@ -6,6 +6,7 @@
 #include <array>
 #include <optional>
 
+#include "analytics/checkpoints/error_words.h"
 #include "analytics/checkpoints/figures/rows.h"
 #include "analytics/checkpoints/phases.h"
 #include "sim/instruments/instruments.h"
@@ -162,15 +163,35 @@ struct CriticalView {
   }
 };
 
-/// Errors that fail an attempt whatever its other figures.
-struct CriticalErrors {
-  std::uint32_t errors = 0;
+/// Errors of one severity, by the rules of sim/judgement/error_rules.h.
+struct ErrorsOf {
+  const AttemptContext& context;
+  Severity severity;
+  std::vector<AttemptError> errors = {};
 
-  void add(const recorder::StepRecord& /*record*/, const Judgement& judgement) { errors = judgement.criticalErrors; }
+  void add(const recorder::StepRecord& /*record*/, const Judgement& judgement) {
+    if (judgement.changed) errors = judgement.errorList;
+  }
   [[nodiscard]] Measured figure() const {
-    return Measured::of(static_cast<double>(errors), errors > 0 ? "fails the attempt" : "");
+    const bool critical = severity == Severity::critical;
+    SeverityWords words = wordsOf(linesOf(errors, context.subjects, context.stepSeconds()), severity,
+                                  critical ? context.notAssessed : std::vector<std::string>());
+    return Measured::of(static_cast<double>(words.count), std::move(words.lines));
   }
 };
+
+CheckpointEntry errorsRow(Severity severity, const char* name, const char* title, int rank, const char* definition) {
+  return {.place = {CheckpointFamily::safety, rank, severity == Severity::critical ? "critical" : ""},
+          .definition = {.name = name,
+                         .title = title,
+                         .direction = Direction::lower,
+                         .instruments = "sum over instruments",
+                         .domain = Domain::whole,
+                         .version = errorVersion(1),
+                         .definition = definition},
+          .results = 3,
+          .accumulate = accumulating<ErrorsOf>(severity)};
+}
 
 /// How often the assistant was asked to retract more or less, and how often that was taken back.
 struct Retraction {
@@ -206,6 +227,10 @@ std::vector<CheckpointEntry> safetyRows() {
                                    "and touches nothing, without those under 0.1 s"},
       .results = 3,
       .accumulate = accumulating<CauteryWithoutContact>()};
+  CheckpointEntry critical = errorsRow(Severity::critical, "critical-errors", "Critical errors", 90,
+                                       "#{occasions of critical errors}; the rules are in the procedure's table of "
+                                       "errors; one fails the attempt");
+  critical.needs = {hasProcedure};
   return {
       cautery,
       phaseRow(cautery, 150, "steps", accumulating<PerPhase<CauteryWithoutContact>>()),
@@ -276,18 +301,11 @@ std::vector<CheckpointEntry> safetyRows() {
        .needs = {hasProcedure, hasCystic},
        .results = 3,
        .accumulate = accumulating<CriticalView>()},
-      {.place = {CheckpointFamily::safety, 90},
-       .definition = {.name = "critical-errors",
-                      .title = "Critical errors",
-                      .direction = Direction::lower,
-                      .instruments = "sum over instruments",
-                      .domain = Domain::whole,
-                      .version = judgedVersion(1),
-                      .definition = "#{clips on, and cuts, burns and tears through, vessels that the scene's procedure "
-                                    "tells to spare}; one fails the attempt"},
-       .needs = {hasProcedure},
-       .results = 3,
-       .accumulate = accumulating<CriticalErrors>()},
+      critical,
+      errorsRow(Severity::major, "major-errors", "Major errors", 92,
+                "#{occasions of major errors}; the rules are in the procedure's table of errors"),
+      errorsRow(Severity::minor, "minor-errors", "Minor errors", 94,
+                "#{occasions of minor errors}; the rules are in the procedure's table of errors"),
   };
 }
 

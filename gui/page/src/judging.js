@@ -22,11 +22,6 @@ export class Judging {
       w.str(type);
       w.u4(width);
     }
-    const connective = recording.components.filter((c) => c.startsWith('connective.')).map((c) => c.slice(11));
-    for (const names of [[...recording.organs, ...recording.vessels, ...recording.fat], connective]) {
-      w.u8(names.length);
-      names.forEach((name) => w.str(name));
-    }
     place(this.judge, w.done());
     if (this.call('calot_begin') !== 1) throw new Error('its scene is no scene');
   }
@@ -39,7 +34,7 @@ export class Judging {
     }
   }
 
-  /** {first, phases, told: [{step, fault, text}], criticalView, errors, criticalErrors, done} of the next steps. */
+  /** {first, phases, told: [{step, fault, text}], criticalView, verdict, done} of the next steps. */
   next() {
     const { recording, columns } = this;
     const first = this.step;
@@ -71,8 +66,7 @@ export class Judging {
       phases: r.blob(),
       told: r.list(() => ({ step: r.count(), fault: r.u1() === 1, text: r.str() })),
       criticalView: r.u1(),
-      errors: r.u4(),
-      criticalErrors: r.u4(),
+      verdict: r.list(() => r.str()),
       done: this.step === recording.counts.steps,
     };
   }

@@ -22,7 +22,7 @@ export function describeAttempt({ about, counts, tick, outcome, completed }, jud
     ['Length', `${clock(counts.ticks * tick)} (min:s)`],
     ['Outcome', completed ? outcome : 'incomplete'],
     ['Critical view', judgement ? `${judgement.criticalView} of 6 points` : ''],
-    ['Mistakes', judgement ? `${judgement.errors}, critical ${judgement.criticalErrors}` : ''],
+    ['Verdict', judgement ? judgement.verdict.join(' ') : ''],
     ['Operator', operator],
     ['Participant', about.participant],
     ['Mode', `${about.mode}, ${about.purpose}`],

@@ -23,12 +23,9 @@ namespace wire = recorder::wire;
 struct Begin {
   std::vector<wire::File> files;      ///< the scene file first
   std::vector<wire::Column> columns;  ///< of a row of results
-  std::vector<std::string> structures, connective;
   static void fields(auto& self, auto& visit) {
     visit("files", self.files);
     visit("columns", self.columns);
-    visit("structures", self.structures);
-    visit("connective", self.connective);
   }
 };
 
@@ -58,14 +55,13 @@ struct Told {
 struct Answer {
   std::vector<std::uint8_t> phase;  ///< of each step
   std::vector<Told> told;
-  std::uint8_t criticalView = 0;  ///< points after the last step, of six
-  std::uint32_t errors = 0, criticalErrors = 0;
+  std::uint8_t criticalView = 0;     ///< points after the last step, of six
+  std::vector<std::string> verdict;  ///< a sentence a severity, the gravest first
   static void fields(auto& self, auto& visit) {
     visit("phase", self.phase);
     visit("told", self.told);
     visit("critical view", self.criticalView);
-    visit("errors", self.errors);
-    visit("critical errors", self.criticalErrors);
+    visit("verdict", self.verdict);
   }
 };
 
@@ -107,6 +103,8 @@ struct Attempt {
   Begin begin;
   std::unique_ptr<Judge> judge;
   gui::SubjectNames names;
+  double stepSeconds = 0.0;
+  std::vector<std::string> missing;  ///< notAssessed()
   wire::Bytes answer;
 };
 
@@ -126,8 +124,11 @@ __attribute__((export_name("calot_begin"))) int calot_begin() {
   if (!recorder::decode(page::placed(), a.begin)) return 0;
   std::vector<recorder::Asset> assets;
   for (wire::File& file : a.begin.files) assets.push_back({std::move(file.name), std::move(file.content)});
-  a.judge = std::make_unique<Judge>(recorder::sceneFromAssets(std::move(assets)).description);
-  a.names = {a.begin.structures, a.begin.connective};
+  const SceneDescription scene = recorder::sceneFromAssets(std::move(assets)).description;
+  a.judge = std::make_unique<Judge>(scene);
+  a.names = analytics::subjectNames(scene);
+  a.stepSeconds = tickLength * static_cast<double>(scene.ticksPerStep);
+  a.missing = notAssessed(scene, stepResultVersion);
   return 1;
 }
 
@@ -146,14 +147,10 @@ __attribute__((export_name("calot_judge"))) std::uint32_t calot_judge() {
     for (const wire::Event& event : row.events) result.events.push_back(wire::fromWire(event));
     const Judgement& now = a.judge->observe(result);
     answer.phase.push_back(static_cast<std::uint8_t>(now.phase));
-    for (const Event& event : now.events) {
-      const gui::EventWords* const words = gui::wordsOf(event.kind);
-      if (words == nullptr) continue;
-      answer.told.push_back({row.step, static_cast<std::uint8_t>(words->fault ? 1 : 0), gui::textOf(event, a.names)});
-    }
+    for (const gui::Told& told : gui::tell(now, a.names))
+      answer.told.push_back({row.step, static_cast<std::uint8_t>(told.marked() ? 1 : 0), told.text});
     answer.criticalView = static_cast<std::uint8_t>(now.criticalView());
-    answer.errors = now.errors;
-    answer.criticalErrors = now.criticalErrors;
+    answer.verdict = analytics::verdictOf(now.errorList, a.names, a.stepSeconds, a.missing);
   }
   a.answer = recorder::encodePayload(answer);
   return static_cast<std::uint32_t>(a.answer.size());

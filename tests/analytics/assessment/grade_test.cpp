@@ -74,7 +74,10 @@ class Grades : public testing::Test {
 
 TEST_F(Grades, aPassMarkIsWhereTheCurvesCross) {
   const Norm norm = made();
-  ASSERT_EQ(norm.checkpoints.size(), 2U) << "critical errors are asked first and have no pass mark";
+  ASSERT_EQ(norm.checkpoints.size(), 3U);
+  EXPECT_EQ(norm.checkpoints[2].checkpoint, "critical-errors");
+  EXPECT_EQ(norm.checkpoints[2].version, findCheckpoint("critical-errors")->version) << "of the rules, kept";
+  EXPECT_FALSE(norm.checkpoints[2].cut) << "they are asked first and have no pass mark";
   const NormCheckpoint& left = norm.checkpoints[0];
   EXPECT_NEAR(*left.cut, 61.7004517205, 1e-9);
   EXPECT_FALSE(left.logScale) << "lengths are not times";
@@ -127,12 +130,12 @@ TEST_F(Grades, figuresOfPhasesCountWhereTheyAreAskedFor) {
                                (i < 8 ? 1.0 : 5.0) + 0.1 * i));
     cohort_.storeValues(uuidOf(n), values);
   }
-  EXPECT_EQ(made().checkpoints.size(), 2U);
+  EXPECT_EQ(made().checkpoints.size(), 3U);
   request_.checkpoints = {"path-length left", "phase-path-length left clipping"};
   EXPECT_EQ(neededPasses(made()), 2U);
   request_.checkpoints.clear();
   request_.who.includePhases = true;
-  EXPECT_EQ(made().checkpoints.size(), 3U);
+  EXPECT_EQ(made().checkpoints.size(), 4U);
 }
 
 TEST_F(Grades, aNormOfFewSaysThatItsIntervalsCoverTooLittle) {
@@ -170,11 +173,25 @@ TEST_F(Grades, criticalErrorsComeFirst) {
   EXPECT_FALSE(failed.passed);
   EXPECT_EQ(failed.figures[0].passed, true) << "though every figure passed";
   expectNames(failed.verdict, {"1 critical error"});
-  EXPECT_EQ(weakFigures(failed).at(0).first, "critical-errors");
+  EXPECT_TRUE(weakFigures(failed).empty()) << "the verdict says which errors";
   const Grade passed = graded(21, norm);
   EXPECT_TRUE(passed.passed);
   EXPECT_TRUE(weakFigures(passed).empty());
   expectNames(graded(22, norm).criticalMissing, {});
+}
+
+TEST_F(Grades, aMembersCriticalErrorCountsInTheNormsOwnRates) {
+  cohort_.storeValues(uuidOf(1), figures(50.0, 1.0, 1.0));
+  EXPECT_EQ(passRates(made()).first.passed, 6U) << "one of the seven whose figures pass";
+}
+
+TEST_F(Grades, errorsByOtherRulesThanTheNormsAreSaid) {
+  Norm norm = made();
+  add(20, "T1", "", figures(40.0, 1.0));
+  EXPECT_TRUE(graded(20, norm).remarks.empty());
+  norm.checkpoints[2].version -= 1;
+  ASSERT_EQ(graded(20, norm).remarks.size(), 1U);
+  expectNames(graded(20, norm).remarks[0], {"version 3", "version 2"});
 }
 
 TEST_F(Grades, weakOpenAndMissingFigures) {
@@ -344,18 +361,22 @@ TEST_F(Grades, aSheetIsFormativeUntilThereIsEvidence) {
   });
   database.attachEvidence(database.norm("clinic"), {"Agrees with raters", "v.pdf", std::string(64, 'a'), "me", ""});
   grade = graded(20, database.norm("clinic"));
-  addMoments(grade, {{"path-length", "left", {{12.0, 13.0, 0.5}}, ""}});
+  addMoments(grade, {{{"path-length", "left", {{12.0, 13.0, 0.5}}, ""}},
+                     {{Severity::critical, 1, 100.2, "cystic duct left open"}, {Severity::minor, 2, 5.0, "bed torn"}}});
   const std::string html = pageHtml(gradeDocument(grade, "a&b.h5", "A & B draws it."));
   EXPECT_EQ(html.find("FORMATIVE"), std::string::npos);
   EXPECT_NE(html.find("Agrees with raters"), std::string::npos);
   expectHolds(html, {"href=\"a&amp;b.h5#t=12.00,13.00\">0:12.0", "0:13.0 (50 %"});
   EXPECT_NE(html.find("T&lt;1&gt;"), std::string::npos) << "every text is escaped";
-  expectHolds(html, {"A &amp; B"});
+  expectHolds(html, {"A &amp; B", "critical, cystic duct left open: ", "#t=100.20,101.20\">1:40.2"});
+  EXPECT_EQ(html.find("bed torn"), std::string::npos) << "minor errors are in the verdict alone";
   EXPECT_EQ(html.find("<script"), std::string::npos);
   const auto json = gradeTree(grade);
   EXPECT_EQ(json["use"], "evidence attached");
   EXPECT_EQ(json["passed"], false);
   EXPECT_EQ(json["figures"][0]["moments"][0]["begin"], 12.0);
+  EXPECT_EQ(json["errors"][0]["error"], "cystic duct left open");
+  EXPECT_EQ(json["errors"][1]["severity"], "minor");
   EXPECT_NEAR(json["figures"][0]["cut"].get<double>(), 61700.4517205, 1e-6) << "shown in mm";
 }
 

@@ -281,7 +281,10 @@ TEST_F(Dashboard, TenThousandAttemptsAreSortedAndSearched) {
   filter.setSourceModel(&model);
   rows[5].tags = {"odd", "teaching"};
   rows[7].tags = {"teaching"};
-  model.setLines(std::make_shared<const AttemptLines>(rows));
+  const analytics::CheckpointValue unsafe =
+      makeValue(*analytics::findCheckpoint("critical-errors"), "", analytics::Origin::resimulated, 1.0,
+                "cystic duct left open, 1:40.2");
+  model.setLines(std::make_shared<const AttemptLines>(rows, std::map{std::pair{rows[7].uuid, unsafe}}));
   filter.sort(AttemptTableModel::startColumn, Qt::DescendingOrder);
   filter.set({.search = "unskilled 2026-03-05"});
   EXPECT_EQ(filter.rowCount(), 0) << "the fifth of the month is an even number";
@@ -292,6 +295,13 @@ TEST_F(Dashboard, TenThousandAttemptsAreSortedAndSearched) {
   ASSERT_EQ(filter.rowCount(), 2);
   EXPECT_EQ(filter.index(0, AttemptTableModel::tagsColumn).data().toString(), "teaching") << "the later one first";
   EXPECT_EQ(filter.index(1, AttemptTableModel::tagsColumn).data().toString(), "odd, teaching");
+  filter.set({.search = "not safe"});
+  ASSERT_EQ(filter.rowCount(), 1);
+  EXPECT_EQ(filter.index(0, AttemptTableModel::safetyColumn).data().toString(),
+            "Not safe: cystic duct left open, 1:40.2.");
+  EXPECT_EQ(filter.index(0, AttemptTableModel::tagsColumn).data().toString(), "teaching");
+  filter.set({.tag = "teaching"});
+  EXPECT_EQ(filter.index(1, AttemptTableModel::safetyColumn).data().toString(), "not assessed") << "never \"none\"";
   filter.set({.tag = "teach"});
   EXPECT_EQ(filter.rowCount(), 0) << "a tag is a whole word";
   filter.set({.search = "odd"});

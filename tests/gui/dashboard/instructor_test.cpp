@@ -145,12 +145,20 @@ TEST_F(Instructor, FoldsCheckpointsByFamilyAndSortsThem) {
 TEST_F(Instructor, FindsEventsInGroupsThatSayWhich) {
   test::startApplication();
   QStandardItemModel model;
-  listEvents(model, {{1.0, EventKind::clipSet, "cystic duct: clip set (right hand)", false},
-                     {2.0, EventKind::clipDropped, "clip dropped (right hand)", true},
-                     {3.0, EventKind::clipSet, "cystic artery: clip set (right hand)", false}});
-  ASSERT_EQ(model.rowCount(), 2);
-  EXPECT_EQ(model.index(0, 0).data().toString(), QString::fromUtf8("▲ Clip dropped (1)")) << "errors first";
-  const QModelIndex set = model.index(1, 0);
+  listEvents(model,
+             {{1.0, "clip set", "cystic duct: clip set (right hand)"},
+              {2.0, "clip lost", "clip lost (right hand)", true, Severity::major},
+              {3.0, "clip set", "cystic artery: clip set (right hand)"},
+              {4.0, "clip lost", "clip lost (left hand)", true, Severity::major}},
+             {{Severity::critical, 1, 5.0, "cystic duct left open"}, {Severity::major, 2, 4.0, "clip lost"}});
+  ASSERT_EQ(model.rowCount(), 3);
+  EXPECT_EQ(model.index(0, 0).data().toString(), QString::fromUtf8("▲ Critical: cystic duct left open"));
+  const QModelIndex lost = model.index(1, 0);
+  EXPECT_EQ(lost.data().toString(), QString::fromUtf8("▲ Major: clip lost, 2 times"));
+  EXPECT_EQ(lost.data(eventSecondsRole).toDouble(), 4.0) << "its worst moment";
+  EXPECT_EQ(model.rowCount(lost), 2);
+  EXPECT_EQ(model.index(0, 0, lost).data().toString(), "clip lost (right hand)");
+  const QModelIndex set = model.index(2, 0);
   EXPECT_EQ(set.data().toString(), "Clip set (2)");
   EXPECT_EQ(model.index(1, 0, set).data().toString(), "cystic artery: clip set (right hand)");
   EXPECT_EQ(model.index(1, 0, set).data(eventSecondsRole).toDouble(), 3.0);

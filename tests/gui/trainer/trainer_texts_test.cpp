@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Mistakes, hints, words and keys: what the window says, without a window.
+// Errors, hints, words and keys: what the window says, without a window.
 #include "gui/trainer/trainer_texts.h"
 
 #include <gtest/gtest.h>
@@ -13,52 +13,16 @@
 namespace calot::gui {
 namespace {
 
-Event event(std::uint64_t step, EventKind kind, std::uint16_t subject, double value = 0.0) {
-  Event e;
-  e.step = step;
-  e.kind = kind;
-  e.hand = 1;
-  e.subject = subject;
-  e.value = value;
-  return e;
+TEST(Errors, SayWhenHowSevereAndHowOften) {
+  EXPECT_EQ(errorText({Severity::critical, 1, 5.0, "hepatic artery clipped, though it must be spared"}),
+            "0:05.0  critical: hepatic artery clipped, though it must be spared");
+  EXPECT_EQ(errorText({Severity::minor, 18, 65.0, "liver slipped in the jaws"}),
+            "1:05.0  minor: liver slipped in the jaws, 18 times");
 }
 
-MistakeList list() { return MistakeList({{"liver", "cystic-duct", "hepatic_artery"}, {"bed"}}, 0.01); }
-
-TEST(Mistakes, OneForEachStructureOfAStep) {
-  MistakeList mistakes = list();
-  EXPECT_FALSE(mistakes.add(std::vector{event(9, EventKind::clipSet, 1), event(9, EventKind::phaseBegin, 2),
-                                        event(9, EventKind::contactBegin, 0), event(9, EventKind::smoke, 0)}));
-  EXPECT_TRUE(mistakes.add(std::vector{event(99, EventKind::vesselCut, 1), event(99, EventKind::tooFewClips, 1),
-                                       event(99, EventKind::cutOpen, 1), event(99, EventKind::clipDropped, 0)}));
-  ASSERT_EQ(mistakes.all().size(), 2U);
-  EXPECT_EQ(mistakes.all()[0].text, "cystic duct: cut with too few clips, left open");
-  EXPECT_DOUBLE_EQ(mistakes.all()[0].time, 1.0);
-  EXPECT_FALSE(mistakes.all()[0].critical);
-  EXPECT_EQ(mistakes.all()[1].text, "clip dropped");
-}
-
-TEST(Mistakes, WhatMustBeSparedIsCritical) {
-  MistakeList mistakes = list();
-  mistakes.add(std::vector{event(500, EventKind::clipSet, 2), event(500, EventKind::criticalError, 2, 21.0)});
-  ASSERT_EQ(mistakes.all().size(), 1U);
-  EXPECT_TRUE(mistakes.all()[0].critical);
-  EXPECT_EQ(mistakes.all()[0].text, "hepatic artery: harmed though it must be spared");
-  EXPECT_EQ(mistakeText(mistakes.all()[0]), "0:05.0  critical: hepatic artery: harmed though it must be spared");
-}
-
-TEST(Mistakes, WhatGoesOnIsOne) {
-  MistakeList mistakes = list();
-  for (std::uint64_t n = 100; n < 400; ++n) mistakes.add(std::vector{event(n, EventKind::strandsTorn, 0, 0.01)});
-  ASSERT_EQ(mistakes.all().size(), 1U);
-  EXPECT_EQ(mistakes.all()[0].text, "bed: torn instead of burned");
-  mistakes.add(std::vector{event(501, EventKind::strandsTorn, 0, 0.01)});
-  EXPECT_EQ(mistakes.all().size(), 2U) << "more than a second later it is another one";
-}
-
-TEST(Mistakes, ABranchLeavesTwoSecondsBeforeButNotBeforeTheFirstStep) {
-  EXPECT_DOUBLE_EQ((Mistake{10.0, false, ""}.branchTime(0.01)), 8.0);
-  EXPECT_DOUBLE_EQ((Mistake{1.5, false, ""}.branchTime(0.01)), 0.01);
+TEST(Errors, ABranchLeavesTwoSecondsBeforeButNotBeforeTheFirstStep) {
+  EXPECT_DOUBLE_EQ(branchTime(10.0, 0.01), 8.0);
+  EXPECT_DOUBLE_EQ(branchTime(1.5, 0.01), 0.01);
 }
 
 SceneDescription operation() {
@@ -141,7 +105,7 @@ class Texts : public ::testing::Test {
     status.file = "/data/cholecystectomy.h5";
     status.figures = figuresAt(Phase::clipping);
     status.figures.time = 62.56;
-    status.figures.procedure.errors = 1;
+    status.figures.procedure.errorCount = {2, 0, 1};
     return status;
   }
 };
@@ -163,7 +127,7 @@ TEST_F(Texts, SayWhatRuns) {
   EXPECT_EQ(text.time, "1:02.5") << "a clock does not round up";
   EXPECT_EQ(text.deadlines, "Forces on time");
   EXPECT_EQ(text.phase, "Phase: clipping");
-  EXPECT_EQ(text.score, "Critical view 0 of 6\n1 error");
+  EXPECT_EQ(text.score, "Critical view 0 of 6\nErrors: 1 critical, 2 minor");
   EXPECT_FALSE(text.hint.isEmpty());
   EXPECT_EQ(text.hand[0], "Left: grasper");
   EXPECT_EQ(text.hand[1], QString::fromUtf8("▶ Right: clip applier, 1 clip left, holds tissue"));

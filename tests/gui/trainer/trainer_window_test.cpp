@@ -291,14 +291,14 @@ TEST_F(Trainer, PausesListsTheMistakeAndGoesBack) {
   ASSERT_TRUE(QTest::qWaitFor(
       [&] { return window.session()->status().figures.hand[1].instrument == InstrumentKind::clipApplier; }, patience));
   hold(Qt::Key_S, [&] { return jaw() > 0.5; });
-  hold(Qt::Key_A, [&] { return !window.session()->status().figures.mistakes->empty(); });
+  hold(Qt::Key_A, [&] { return !window.session()->status().figures.errors->empty(); });
   const TrainingStatus before = window.session()->status();
   QTest::keyClick(&view, Qt::Key_Escape);
   ASSERT_TRUE(reaches(Stage::paused));
   EXPECT_EQ(text("stage"), QString::fromUtf8("❚❚ Paused"));
   auto* const mistakes = child<QListWidget>("mistakes");
   ASSERT_EQ(mistakes->count(), 1);
-  EXPECT_TRUE(mistakes->item(0)->text().endsWith("clip dropped"));
+  EXPECT_TRUE(mistakes->item(0)->text().endsWith("clip lost"));
   EXPECT_TRUE(mistakes->isVisible());
   // What the mouse does meanwhile moves nothing.
   pointTo(view.rect().center());
@@ -309,7 +309,7 @@ TEST_F(Trainer, PausesListsTheMistakeAndGoesBack) {
   EXPECT_TRUE(child<QLabel>("over")->isVisible());
   ASSERT_TRUE(QTest::qWaitFor([&] { return window.session()->status().parent == before.attempt; }, patience));
   ASSERT_TRUE(runs(window.session()->status().branchedAt + 0.2));
-  EXPECT_TRUE(window.session()->status().figures.mistakes->empty()) << "it has not happened in the branch";
+  EXPECT_TRUE(window.session()->status().figures.errors->empty()) << "it has not happened in the branch";
   window.refresh();
   EXPECT_FALSE(mistakes->isVisible());
   QTest::mouseClick(child<QPushButton>("finish"), Qt::LeftButton);
@@ -337,8 +337,8 @@ TEST_F(Trainer, TheEndShowsFiguresMomentsAndTheReplayOfOne) {
   OperationView& view = *window.view();
   QTest::keyClick(&view, Qt::Key_3);
   hold(Qt::Key_S, [&] { return jaw() > 0.5; });
-  hold(Qt::Key_A, [&] { return !window.session()->status().figures.mistakes->empty(); });
-  const double mistake = window.session()->status().figures.mistakes->front().time;
+  hold(Qt::Key_A, [&] { return !window.session()->status().figures.errors->empty(); });
+  const double mistake = window.session()->status().figures.errors->front().time;
   window.session()->finish();
   ASSERT_TRUE(reaches(Stage::ended));
   EndPage& end = *window.endPage();
@@ -481,7 +481,7 @@ TEST_F(Trainer, AnAssessmentShowsNoHintsNoScoreAndNoPause) {
       open(std::make_shared<trainertest::ScriptInput>(trainertest::swayingScript(20.0)), recorder::Mode::assessment);
   beginSmall();
   window.session()->mount(Hand::right, InstrumentKind::clipApplier);
-  ASSERT_TRUE(QTest::qWaitFor([&] { return !window.session()->status().figures.mistakes->empty(); }, patience));
+  ASSERT_TRUE(QTest::qWaitFor([&] { return !window.session()->status().figures.errors->empty(); }, patience));
   window.refresh();
   EXPECT_EQ(text("mode"), "Assessment, synthetic");
   for (const char* name : {"hint", "score"}) EXPECT_FALSE(child<QLabel>(name)->isVisible()) << name;

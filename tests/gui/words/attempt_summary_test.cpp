@@ -2,17 +2,27 @@
 // What an instructor reads first of an attempt, and what a trainee aims at next.
 #include "gui/words/attempt_summary.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
 #include "analytics/assessment/norm.h"
+#include "analytics/assessment/verdict.h"
 #include "analytics/checkpoints/checkpoint.h"
+#include "analytics/checkpoints/error_words.h"
+#include "gui/words/event_words.h"
+#include "tests/support/message.h"
 
 namespace calot::analytics {
 namespace {
 
 CheckpointValue of(const char* name, const char* subject, double value) {
-  return makeValue(*findCheckpoint(name), subject, Origin::resimulated, value,
-                   name == std::string("critical-view") ? "triangle 2, lower third 2, two structures 1" : "");
+  const std::string note = name == std::string("critical-view")     ? "triangle 2, lower third 2, two structures 1"
+                           : name == std::string("critical-errors") ? "cystic duct left open, 1:40.2"
+                           : name == std::string("minor-errors")
+                               ? "liver slipped in the jaws, 18 times, worst at 0:31.0"
+                               : "";
+  return makeValue(*findCheckpoint(name), subject, Origin::resimulated, value, note);
 }
 CheckpointValue none(const char* name, Availability kind, const char* reason) {
   return makeMissing(*findCheckpoint(name), "", Origin::resimulated, kind, reason);
@@ -31,13 +41,14 @@ TEST(AttemptSummary, saysVerdictCriticalViewErrorsAndTheFiguresThatCount) {
       of("elapsed-time", "", 61.0),   of("path-length", "left", 0.2),   of("path-length", "right", 0.5),
       of("speed-mean", "left", 0.01), of("organ-burned", "liver", 0.0), of("organ-burned", "gallbladder", 0.01),
       of("critical-view", "", 5.0),   of("clip-errors", "", 2.0),       of("organ-perforations", "liver", 0.0),
-      of("critical-errors", "", 1.0)};
+      of("critical-errors", "", 1.0), of("major-errors", "", 0.0),      of("minor-errors", "", 18.0)};
   const gui::AttemptSummary summary = gui::summaryOf(completed(), values, nullptr);
   EXPECT_EQ(summary.verdict, "The task was completed. It is not held against a norm.");
   EXPECT_EQ(summary.criticalView,
             "Critical view: satisfactory, 5 of 6 points (triangle 2, lower third 2, two structures 1).");
   EXPECT_EQ(summary.errors,
-            "Errors: 1 critical error, 2 clip errors, no perforation; a critical error fails the attempt.");
+            "Not safe: cystic duct left open, 1:40.2. No major error. 18 minor errors: liver slipped in the jaws, 18 "
+            "times, worst at 0:31.0.");
   ASSERT_EQ(summary.figures.size(), 5U);
   std::vector<std::string_view> shown{"critical-view"};
   for (const gui::KeyFigure& figure : summary.figures) shown.push_back(figure.checkpoint);
@@ -48,17 +59,55 @@ TEST(AttemptSummary, saysVerdictCriticalViewErrorsAndTheFiguresThatCount) {
 TEST(AttemptSummary, saysNothingOfWhatTheSceneDoesNotHave) {
   const std::vector<CheckpointValue> values{
       none("critical-view", Availability::notApplicable, "the scene has no procedure"),
+      none("critical-errors", Availability::notApplicable, "the scene has no procedure"),
       none("clip-errors", Availability::notApplicable, "the scene has no vessels"),
       none("connective-remaining", Availability::notApplicable,
            "no connective tissue holds a gallbladder in this scene"),
       none("elapsed-time", Availability::notApplicable, "not completed: stopped at 4.000 s")};
   const gui::AttemptSummary summary = gui::summaryOf(completed(), values, nullptr);
   EXPECT_EQ(summary.criticalView, "");
-  EXPECT_EQ(summary.errors, "Errors: none are judged in this scene.");
+  EXPECT_EQ(summary.errors,
+            "Critical errors: not assessed, the scene has no procedure. Major errors: not assessed. Minor errors: not "
+            "assessed.");
   ASSERT_EQ(summary.figures.size(), 1U);
   EXPECT_EQ(summary.figures[0].checkpoint, "elapsed-time") << "that is of the attempt, not of the scene";
-  EXPECT_TRUE(gui::sceneLacks(values[2]));
-  EXPECT_FALSE(gui::sceneLacks(values[3]));
+  EXPECT_TRUE(gui::sceneLacks(values[3]));
+  EXPECT_FALSE(gui::sceneLacks(values[4]));
+}
+
+/// Every rule, from the error to the sentence that summary, list, sheet, JSON, page and trainer have.
+TEST(AttemptSummary, everyRuleIsSaidInItsWordsWithItsTime) {
+  const SubjectNames names{{"cystic-duct"}, {"bed"}};
+  for (const ErrorRuleText& rule : errorRules()) {
+    const AttemptError error{{rule.rule}, 0, 1, 10021, 10021, 10021, 0.0};
+    const std::vector<ErrorLine> lines = linesOf({error}, names, 0.01);
+    const SeverityWords words = wordsOf(lines, rule.severity);
+    std::vector<CheckpointValue> values;
+    for (const auto& [severity, checkpoint] : errorCheckpoints())
+      values.push_back(makeValue(*findCheckpoint(checkpoint), "", Origin::resimulated,
+                                 severity == rule.severity ? 1.0 : 0.0, severity == rule.severity ? words.lines : ""));
+    const char* subject = rule.subject == ErrorSubject::none        ? ""
+                          : rule.subject == ErrorSubject::structure ? "cystic duct "
+                                                                    : "bed ";
+    const std::string said = subject + std::string(rule.words) + ", 1:40.2.";
+    const std::string sentence = (rule.severity == Severity::critical ? "Not safe: "
+                                  : rule.severity == Severity::major  ? "1 major error: "
+                                                                      : "1 minor error: ") +
+                                 said;
+    expectHolds(gui::summaryOf(completed(), values, nullptr).errors, {sentence});
+    expectHolds(fmt::format("{}", fmt::join(verdictOf({error}, names, 0.01, {}), " ")), {sentence});
+    Judgement now;
+    now.found = {{rule.rule, {}}};
+    ASSERT_EQ(gui::tell(now, names).size(), 1U);
+    EXPECT_EQ(gui::tell(now, names)[0].text, subject + std::string(rule.words));
+  }
+}
+
+TEST(AttemptSummary, figuresOfEarlierRulesSaySo) {
+  CheckpointValue early = of("critical-errors", "", 2.0);
+  early.version -= 1;
+  EXPECT_EQ(errorSentence(Severity::critical, &early),
+            "Critical errors: 2 by version 2 of the rules, which are of version 3 now.");
 }
 
 TEST(AttemptSummary, anAttemptThatDivergedSaysSoFirst) {

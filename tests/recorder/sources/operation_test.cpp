@@ -84,7 +84,7 @@ Attempt perform(const Model& model, const PerformerProfile& profile, std::uint64
         if (!current) attempt.carvedWithoutCurrent += fat.carved;
       }
       attempt.last = record.result;
-      attempt.criticalErrors = judge.observe(record.result).criticalErrors;
+      attempt.criticalErrors = judge.observe(record.result).errors(Severity::critical);
     }
     void onEnd(Outcome /*outcome*/) override {}
   } watch(attempt, model.scene());

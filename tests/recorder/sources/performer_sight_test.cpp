@@ -32,7 +32,8 @@ TEST(PerformerSight, PlansByTheProcedure) {
   EXPECT_TRUE(whole.hasSpecimen() && whole.hasFat() && whole.divides());
   EXPECT_EQ(vesselsOf(whole), cystic);
   EXPECT_GT(whole.columns().size(), 10U);
-  EXPECT_FALSE(whole.spared().empty());
+  ASSERT_EQ(whole.spared().size(), 3U);
+  EXPECT_EQ(whole.spared()[0].name, "bile-duct");
   const PerformerSight touch(sceneOf("touch-liver"), worker);
   EXPECT_FALSE(touch.hasSpecimen() || touch.hasFat() || touch.divides());
   const PerformerSight bed(sceneOf("dissect-bed"), worker);
@@ -74,6 +75,17 @@ TEST(PerformerSight, SeesNothingToDoWithoutRolesAndProcedure) {
   for (FatDescription& one : scene.fat) one.role = StructureRole::other;
   const PerformerSight sight(scene, worker);
   EXPECT_FALSE(sight.hasSpecimen() || sight.hasFat() || sight.divides());
+}
+
+/// The hook's toe lies from its heel 4.6 mm along x; the port is above, so that a shaft points along -z.
+TEST(PerformerSight, TheHookKeepsOffVesselsThatLieBelowItsToe) {
+  const Vec3 place = Vec3::Zero(), shaft = -Vec3::UnitZ(), toe = Vec3::UnitX();
+  const auto lowest = [&](const Vec3& vessel) { return lowestAt(place, shaft, toe, 0.001, {{vessel, 0.002}}); };
+  EXPECT_NEAR(lowest(Vec3(0.002, 0.0, 0.001)), 0.004, 1e-12) << "its height, radius and the distance";
+  EXPECT_NEAR(lowest(Vec3(0.0075, 0.0, 0.0)), 0.003, 1e-12) << "under the toe's end, by 0.1 mm";
+  EXPECT_EQ(lowest(Vec3(0.0077, 0.0, 0.0)), -1.0) << "beyond it";
+  EXPECT_EQ(lowest(Vec3(0.002, 0.0031, 0.0)), -1.0) << "beside it";
+  EXPECT_EQ(lowest(Vec3(-0.0031, 0.0, 0.0)), -1.0) << "behind its heel";
 }
 
 }  // namespace

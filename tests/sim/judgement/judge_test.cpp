@@ -8,6 +8,8 @@
 #include <cmath>
 #include <limits>
 
+#include "sim/scene/version.h"
+
 namespace calot {
 namespace {
 
@@ -18,6 +20,8 @@ SceneDescription sceneOfAll() {
   SceneDescription scene;
   for (const char* name : {"liver", "gallbladder"}) scene.organs.emplace_back().name = name;
   for (const char* name : {"duct", "artery", "spared"}) scene.vessels.emplace_back().name = name;
+  scene.vessels[0].role = StructureRole::cysticDuct;
+  scene.vessels[1].role = StructureRole::cysticArtery;
   scene.connective.emplace_back().name = "bed";
   scene.fat.emplace_back().name = "fat";
   scene.procedure = {"gallbladder", "bed", "fat", {{"duct", 2, 1, true}, {"artery", 2, 1, false}}, {"spared"}};
@@ -58,6 +62,24 @@ class JudgeTest : public testing::Test {
   static int countOf(const Judgement& j, EventKind kind) {
     return static_cast<int>(
         std::count_if(j.events.begin(), j.events.end(), [&](const Event& e) { return e.kind == kind; }));
+  }
+
+  /// All that the critical view asks for.
+  void seen() {
+    now_.fat[0].uncleared = now_.connective[0].lowerAttached = 0.0;
+    now_.vessel[0].covered = now_.vessel[1].covered = 0.0;
+  }
+  /// A cut as the step reports one. @param open cutOpen's value; 0: closed
+  void tellCut(std::uint16_t vessel, double arc, double open, double start, double end) {
+    tell(EventKind::vesselCut, vessel, arc);
+    if (open > 0.0) tell(EventKind::cutOpen, vessel, open);
+    tell(EventKind::clipsTowardsStart, vessel, start);
+    tell(EventKind::clipsTowardsEnd, vessel, end);
+  }
+  static bool has(const Judgement& j, ErrorRule rule) {
+    return std::any_of(j.errorList.begin(), j.errorList.end(), [&](const AttemptError& e) {
+      return std::find(e.rules.begin(), e.rules.end(), rule) != e.rules.end();
+    });
   }
 
   static constexpr double none = std::numeric_limits<double>::infinity();
@@ -148,7 +170,7 @@ TEST_F(JudgeTest, FatThatHoldsTheSpecimenKeepsItFromBeingDone) {
   now_.fat[0].holdsSpecimen = false;
   const Judgement& done = observe(judge);
   EXPECT_EQ(done.phase, Phase::done) << "the last string is gone";
-  EXPECT_EQ(done.errors, 0U) << "a string that tears is no error";
+  EXPECT_EQ(done.errors(), 0U) << "a string that tears is no error";
 }
 
 TEST_F(JudgeTest, ClipsAreJudgedByTheScenesGaps) {
@@ -167,7 +189,8 @@ TEST_F(JudgeTest, ClipsAreJudgedByTheScenesGaps) {
     EXPECT_EQ(countOf(j, EventKind::clipHalfOn), c.halfOn);
     EXPECT_EQ(countOf(j, EventKind::clipOnClip), c.onClip);
     EXPECT_EQ(countOf(j, EventKind::clipTooNear), c.tooNear);
-    EXPECT_EQ(j.errors, static_cast<std::uint32_t>(c.halfOn + c.onClip + c.tooNear));
+    EXPECT_EQ(j.found.size(), static_cast<std::size_t>(c.halfOn + c.onClip + c.tooNear));
+    EXPECT_EQ(j.errors(), j.found.empty() ? 0U : 1U) << "one clip, one line";
     for (const Event& e : j.events) {
       if (e.kind == EventKind::clipTooNear) {
         EXPECT_EQ(e.value, c.value);
@@ -177,22 +200,23 @@ TEST_F(JudgeTest, ClipsAreJudgedByTheScenesGaps) {
 }
 
 TEST_F(JudgeTest, ClipsThatAreMissingBesideACut) {
-  const auto cut = [&](std::uint16_t vessel, double start, double end) {
+  const auto cut = [&](std::uint16_t vessel, double start, double end, bool stays) {
     Judge judge(sceneOfAll());
+    seen();
     tell(EventKind::vesselCut, vessel, 0.01);
     tell(EventKind::clipsTowardsStart, vessel, start);
     tell(EventKind::clipsTowardsEnd, vessel, end);
     const Judgement& j = observe(judge);
     double missing = 0.0;
     for (const Event& e : j.events) missing += e.kind == EventKind::tooFewClips ? e.value : 0.0;
-    EXPECT_EQ(j.errors, missing > 0.0 ? 1U : 0U);
+    EXPECT_EQ(j.errors(Severity::critical), stays ? 1U : 0U);
     return missing;
   };
-  EXPECT_EQ(cut(toDivide, 2.0, 1.0), 0.0);
-  EXPECT_EQ(cut(toDivide, 1.0, 2.0), 1.0) << "a clip more on the one side is none on the other";
-  EXPECT_EQ(cut(toDivide, 0.0, 0.0), 3.0);
-  EXPECT_EQ(cut(alsoToDivide, 1.0, 2.0), 0.0) << "it stays at its end";
-  EXPECT_EQ(cut(toSpare, 0.0, 0.0), 0.0) << "nobody wants clips there";
+  EXPECT_EQ(cut(toDivide, 2.0, 1.0, false), 0.0);
+  EXPECT_EQ(cut(toDivide, 1.0, 2.0, true), 1.0) << "a clip more on the one side is none on the other";
+  EXPECT_EQ(cut(toDivide, 0.0, 0.0, true), 3.0);
+  EXPECT_EQ(cut(alsoToDivide, 1.0, 2.0, false), 0.0) << "it stays at its end";
+  EXPECT_EQ(cut(toSpare, 0.0, 0.0, true), 0.0) << "nobody wants clips there";
 }
 
 TEST_F(JudgeTest, HarmToWhatIsToBeSparedIsCritical) {
@@ -200,9 +224,11 @@ TEST_F(JudgeTest, HarmToWhatIsToBeSparedIsCritical) {
   tellClip(toSpare, 1.0, none, none, 0.01);
   tell(EventKind::vesselBurned, toSpare, 0.01);
   const Judgement& j = observe(judge);
-  EXPECT_EQ(j.criticalErrors, 2U);
   EXPECT_EQ(countOf(j, EventKind::criticalError), 2);
-  EXPECT_EQ(j.errors, 0U) << "burning what is to be divided would be one";
+  ASSERT_EQ(j.errorList.size(), 1U) << "at once, of one structure";
+  EXPECT_EQ(j.errorList[0].rules, (std::vector{ErrorRule::sparedBurned, ErrorRule::sparedClipped}));
+  EXPECT_EQ(j.errors(Severity::critical), 1U);
+  EXPECT_EQ(j.errors(), 1U) << "burning what is to be divided would be another";
 }
 
 /// Version 3 told of clips as they were judged: the facts are not there, so the events count as they are.
@@ -216,13 +242,13 @@ TEST_F(JudgeTest, EventsOfOldCountAsTheyWereRecorded) {
   tell(EventKind::criticalError, toSpare, 21.0);
   const Judgement& j = observe(judge);
   EXPECT_EQ(countOf(j, EventKind::clipHalfOn), 1);
-  EXPECT_EQ(j.errors, 2U);
-  EXPECT_EQ(j.criticalErrors, 0U) << "judged anew: nothing happened to it";
-  EXPECT_EQ(countOf(j, EventKind::criticalError), 0);
+  EXPECT_EQ(j.found.size(), 3U) << "half on, too few clips, and not identified";
+  EXPECT_EQ(j.errors(Severity::critical), 1U) << "judged anew: nothing happened to what must be spared";
+  EXPECT_EQ(countOf(j, EventKind::criticalError), 2) << "its own alone";
   EXPECT_EQ(countOf(j, EventKind::phaseBegin), 1) << "its own alone";
 }
 
-TEST_F(JudgeTest, WithoutAProcedureClipsAreJudgedAndNothingElse) {
+TEST_F(JudgeTest, WithoutAProcedureThereAreErrorsAndNoPhases) {
   SceneDescription scene = sceneOfAll();
   scene.procedure = {};
   Judge judge(scene);
@@ -230,8 +256,93 @@ TEST_F(JudgeTest, WithoutAProcedureClipsAreJudgedAndNothingElse) {
   const Judgement& j = observe(judge);
   EXPECT_EQ(countOf(j, EventKind::clipHalfOn), 1);
   EXPECT_EQ(j.phase, Phase::none);
-  EXPECT_EQ(j.errors, 0U);
+  EXPECT_EQ(j.errors(Severity::major), 1U);
   EXPECT_FALSE(j.criticalViewFrozen);
+}
+
+TEST_F(JudgeTest, AnEndIsOpenUntilAClipClosesIt) {
+  Judge judge(sceneOfAll());
+  seen();
+  tellCut(toDivide, 0.010, 3.0, 0.0, 0.0);
+  const Judgement& j = observe(judge);
+  EXPECT_TRUE(has(j, ErrorRule::leftOpen));
+  EXPECT_TRUE(has(j, ErrorRule::openTowardsSpecimen)) << "it is a duct";
+  ASSERT_EQ(j.errorList.size(), 1U) << "of one cause";
+  EXPECT_EQ(j.errorList[0].rules.front(), ErrorRule::leftOpen) << "the gravest first";
+  tell(EventKind::clipSet, toDivide, 1.0);
+  tell(EventKind::clipPlace, toDivide, 0.012);  // on the specimen's side
+  observe(judge);
+  EXPECT_TRUE(has(j, ErrorRule::leftOpen));
+  EXPECT_FALSE(has(j, ErrorRule::openTowardsSpecimen));
+  tell(EventKind::clipSet, toDivide, 0.9);  // half on closes nothing
+  tell(EventKind::clipPlace, toDivide, 0.008);
+  EXPECT_TRUE(has(observe(judge), ErrorRule::leftOpen));
+  tell(EventKind::clipSet, toDivide, 1.0);
+  tell(EventKind::clipPlace, toDivide, 0.007);
+  observe(judge);
+  EXPECT_TRUE(j.changed);
+  EXPECT_FALSE(has(j, ErrorRule::leftOpen));
+  EXPECT_TRUE(has(j, ErrorRule::tooFewClips)) << "that is done";
+}
+
+TEST_F(JudgeTest, ANewCutMakesTheOldEndOnesOfAnotherPiece) {
+  Judge judge(sceneOfAll());
+  seen();
+  tellCut(toDivide, 0.010, 1.0, 0.0, 1.0);
+  observe(judge);
+  tellCut(toDivide, 0.005, 2.0, 2.0, 0.0);  // nearer to where it stays, behind two clips
+  EXPECT_FALSE(has(observe(judge), ErrorRule::leftOpen));
+}
+
+TEST_F(JudgeTest, TheSideThatStaysIsTheScenes) {
+  Judge judge(sceneOfAll());
+  seen();
+  tellCut(alsoToDivide, 0.010, 1.0, 0.0, 2.0);  // an artery that stays at its end
+  const Judgement& j = observe(judge);
+  EXPECT_FALSE(has(j, ErrorRule::leftOpen));
+  EXPECT_FALSE(has(j, ErrorRule::openTowardsSpecimen)) << "no bile is in it";
+  EXPECT_TRUE(has(j, ErrorRule::tooFewTowardsSpecimen));
+  EXPECT_EQ(j.errors(Severity::critical), 0U);
+}
+
+TEST_F(JudgeTest, DivisionWithoutTheViewIsCriticalOnceAVessel) {
+  Judge judge(sceneOfAll());
+  tellClip(toDivide, 1.0, none, none, 0.01);
+  observe(judge);
+  seen();  // after the first clip: too late
+  tellCut(toDivide, 0.010, 0.0, 2.0, 1.0);
+  const Judgement& j = observe(judge);
+  EXPECT_TRUE(has(j, ErrorRule::notIdentified));
+  tellCut(toDivide, 0.012, 0.0, 2.0, 1.0);
+  now_.step += 500;
+  EXPECT_EQ(observe(judge).errors(Severity::critical), 1U);
+  Judge other(sceneOfAll());
+  tellCut(toDivide, 0.010, 0.0, 2.0, 1.0);
+  EXPECT_FALSE(has(observe(other), ErrorRule::notIdentified)) << "all was seen before the first clip";
+  SceneDescription bare = sceneOfAll();
+  bare.procedure.fat.clear();
+  bare.procedure.bed.clear();
+  now_.vessel[0].covered = now_.vessel[1].covered = 1.0;
+  Judge hidesNothing(bare);
+  tellCut(toDivide, 0.010, 0.0, 2.0, 1.0);
+  EXPECT_FALSE(has(observe(hidesNothing), ErrorRule::notIdentified)) << "not assessed";
+  EXPECT_EQ(notAssessed(bare, stepResultVersion).size(), 2U);
+}
+
+TEST_F(JudgeTest, WhatGoesOnIsOneOccasionAndItsWorstMomentIsKept) {
+  Judge judge(sceneOfAll());
+  for (const double pull : {1.0, 3.0, 2.0}) {
+    tell(EventKind::graspSlip, 1, pull);
+    observe(judge);
+  }
+  now_.step += 101;
+  tell(EventKind::graspSlip, 1, 1.5);
+  const Judgement& j = observe(judge);
+  ASSERT_EQ(j.errorList.size(), 1U);
+  EXPECT_EQ(j.errorList[0].count, 2U);
+  EXPECT_EQ(j.errorList[0].first, 0U);
+  EXPECT_EQ(j.errorList[0].worst, 1U);
+  EXPECT_EQ(j.errors(Severity::minor), 2U);
 }
 
 TEST_F(JudgeTest, ResultsThatLackWhatTheProcedureNamesAreNotJudged) {

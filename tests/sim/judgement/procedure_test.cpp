@@ -100,8 +100,7 @@ TEST_F(Procedure, AsItShouldBe) {
   ASSERT_EQ(all(EventKind::vesselCut).size(), 1U);
   EXPECT_TRUE(all(EventKind::tooFewClips).empty());
   EXPECT_EQ(now().phase, Phase::done) << "nothing else holds the specimen";
-  EXPECT_EQ(now().errors, 0U);
-  EXPECT_EQ(now().criticalErrors, 0U);
+  EXPECT_EQ(now().errors(), 0U);
   const std::vector<Event> phases = all(EventKind::phaseBegin);
   ASSERT_FALSE(phases.empty());
   EXPECT_EQ(phases.back().subject, static_cast<std::uint16_t>(Phase::done));
@@ -113,7 +112,7 @@ TEST_F(Procedure, AClipTooFewIsAnError) {
   ASSERT_EQ(all(EventKind::tooFewClips).size(), 1U);
   EXPECT_EQ(all(EventKind::tooFewClips)[0].value, 1.0);
   EXPECT_EQ(all(EventKind::tooFewClips)[0].subject, duct);
-  EXPECT_EQ(now().errors, 1U);
+  EXPECT_EQ(now().errors(), 1U);
 }
 
 TEST_F(Procedure, WhatIsToBeSparedIsACriticalError) {
@@ -124,9 +123,9 @@ TEST_F(Procedure, WhatIsToBeSparedIsACriticalError) {
   EXPECT_EQ(critical[0].subject, main_);
   EXPECT_EQ(critical[0].value, static_cast<double>(EventKind::clipSet));
   EXPECT_EQ(critical[1].value, static_cast<double>(EventKind::vesselCut));
-  EXPECT_EQ(now().criticalErrors, 2U);
+  EXPECT_EQ(now().errors(Severity::critical), 2U);
   step(Vec3(0.0, 0.0, 0.06), 0.9, InstrumentKind::scissors);
-  EXPECT_EQ(now().criticalErrors, 2U);
+  EXPECT_EQ(now().errors(Severity::critical), 2U);
 }
 
 TEST_F(Procedure, AVesselThatIsCutBeforeTheFirstClipIsNotSeenAnyMore) {
