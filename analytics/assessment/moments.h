@@ -30,7 +30,7 @@ struct FigureMoments {
 /// @param series its value, or none as NaN, at the end of each window; @param length of a window (s)
 FigureMoments momentsOf(const std::vector<double>& series, double length, Direction better);
 
-/// What a recording's steps tell of when it went wrong.
+/// When an attempt went wrong, by what its recording's steps hold.
 struct AttemptMoments {
   std::vector<FigureMoments> figures;
   std::vector<ErrorLine> errors = {};  ///< the gravest first

@@ -16,7 +16,7 @@ struct SubjectNames {
   std::vector<std::string> connective;  ///< connective tissues; may be left empty
 };
 
-/// Of a scene's structures and connective tissues.
+/// The names of a scene's structures and connective tissues.
 SubjectNames subjectNames(const SceneDescription& scene);
 
 /// "cystic-duct" in plain text: "cystic duct".
@@ -28,7 +28,7 @@ std::string timeText(double seconds);
 /// "critical", "major", "minor".
 const char* nameOf(Severity severity);
 
-/// What happened: "cystic duct left open, cut with too few clips".
+/// Subject and words: "cystic duct left open, cut with too few clips".
 std::string textOf(const AttemptError& error, const SubjectNames& names);
 
 /// An error for people.

@@ -30,7 +30,7 @@ struct EventWords {
 /// known.
 [[nodiscard]] std::string textOf(const Event& event, const SubjectNames& names);
 
-/// Something to tell of a step.
+/// An event or an error of a step, in words.
 struct Told {
   Event event;                       ///< the fact, or the one by which the rule was broken
   std::optional<Severity> severity;  ///< of an error

@@ -62,7 +62,7 @@ constexpr std::array<ErrorRuleText, 25> rules{{
     {ErrorRule::clipOnClip, minor, "clip-on-clip", structure, "clipped over another clip",
      "Clips that overlap do not close.", own},
     {ErrorRule::clipTooNear, minor, "clip-too-near", structure,
-     "clipped too near to another clip, a junction or an end", "There is no room to cut, or the clip slips off.", own},
+     "clipped too near to another clip, a junction or an end", "There is no space to cut, or the clip slips off.", own},
     {ErrorRule::tornFromJaws, minor, "torn-from-jaws", structure, "torn out of the jaws",
      "It was pulled harder than it holds.", technical},
     {ErrorRule::slipped, minor, "slipped", structure, "slipped in the jaws",

@@ -25,7 +25,7 @@ enum class Severity : std::uint8_t {
 };
 inline constexpr std::size_t severityCount = 3;
 
-/// Numbers are told to other programs and never reused.
+/// Numbers are public and never reused.
 enum class ErrorRule : std::uint8_t {
   sparedCut = 1,
   sparedBurned = 2,
@@ -77,7 +77,7 @@ struct JudgedError {
   Event event;
 };
 
-/// What happened to one structure at once, and as often as it happened again: a line for people.
+/// All that went wrong with one structure at once, and as often as it did again: a line for people.
 struct AttemptError {
   std::vector<ErrorRule> rules;  ///< of one cause, the gravest first; never empty
   std::uint16_t subject = 0;     ///< as the first rule's ErrorSubject counts
@@ -112,8 +112,8 @@ class ErrorList {
   std::vector<AttemptError> all_;
 };
 
-/// What the scene, or the version of the results, cannot tell: each with its reason, "bleeding (nothing bleeds in the
-/// simulation)". Where it is not empty, no error is not the same as none.
+/// Errors that the scene, or the version of the results, does not show, each with its reason: "bleeding (nothing bleeds
+/// in the simulation)". Where there are any, a count of 0 is not "none".
 std::vector<std::string> notAssessed(const SceneDescription& scene, std::uint32_t resultVersion);
 
 }  // namespace calot

@@ -97,7 +97,7 @@ void Judge::judgeClip(const std::vector<Event>& events, std::size_t at) {
   if (clip.value < rules_.encloses) {
     judged(clip, EventKind::clipHalfOn, clip.value);
   } else {
-    closeEnds(clip, *place);
+    closeEnds(dividing(clip.subject), *place, true);
   }
   constexpr double far = 1e300;
   const double gap = beside(events, at, EventKind::clipGap).value_or(far);
@@ -132,12 +132,7 @@ void Judge::judgeParting(const std::vector<Event>& events, std::size_t at) {
   const std::size_t of = dividing(event.subject);
   if (of == divide_.size()) return;
   const bool tears = event.kind == EventKind::vesselTorn;
-  // What lies beyond a new end belongs to another piece.
-  if (!tears) {
-    std::erase_if(open_, [&](const OpenEnd& e) {
-      return e.vessel == of && e.arc && (e.atStart ? *e.arc > event.value : *e.arc < event.value);
-    });
-  }
+  if (!tears) closeEnds(of, event.value, false);
   const bool isSealed = beside(events, at, EventKind::vesselSealed).has_value();
   if (event.kind == EventKind::vesselBurned)
     find(isSealed ? ErrorRule::burnedAndSealed : ErrorRule::burnedThrough, event);
@@ -147,20 +142,20 @@ void Judge::judgeParting(const std::vector<Event>& events, std::size_t at) {
   if (!tears && hides && !parted_[of] && now_.criticalView() < rules_.satisfactory)
     find(now_.criticalView() < rules_.identified ? ErrorRule::notIdentified : ErrorRule::viewIncomplete, event);
   parted_[of] = true;
-  if (tears) return;  // its open ends are told by themselves
+  if (tears) return;  // its open ends come as events of their own
   for (std::size_t i = at + 1; i < events.size() && events[i].kind != event.kind; ++i) {
     if (events[i].kind == EventKind::cutOpen && events[i].subject == event.subject && events[i].hand == event.hand)
       judgeOpenEnds(events[i], event.value);
   }
 }
 
-/// @param open tells which ends, in its value: 1 the one towards the vessel's start, 2 the other, 3 both
+/// @param open its value: 1 the end towards the vessel's start, 2 the other, 3 both @param arc of the parting; none:
+/// torn
 void Judge::judgeOpenEnds(const Event& open, std::optional<double> arc) {
   const std::size_t of = dividing(open.subject);
   if (of == divide_.size()) return;
-  const auto sides = static_cast<unsigned>(open.value);
   for (const bool atStart : {true, false}) {
-    if ((sides & (atStart ? 1U : 2U)) == 0) continue;
+    if (open.value != (atStart ? 1.0 : 2.0) && open.value != 3.0) continue;
     const bool stays = atStart == divide_[of].patientAtStart;
     if (!stays && !carriesBile(role_[open.subject])) continue;
     const ErrorRule rule = stays ? ErrorRule::leftOpen : ErrorRule::openTowardsSpecimen;
@@ -169,12 +164,12 @@ void Judge::judgeOpenEnds(const Event& open, std::optional<double> arc) {
   }
 }
 
-/// A clip that encloses the whole vessel closes the end of the piece on which it is.
-void Judge::closeEnds(const Event& clip, double place) {
-  const std::size_t of = dividing(clip.subject);
+/// Open ends that lie beyond a place, seen from the piece that they belong to, are open no more: a clip closes them, or
+/// a new parting makes them ends of another piece. @param torn those of a tear, too, whose place is not known
+void Judge::closeEnds(std::size_t of, double place, bool torn) {
   for (std::size_t i = 0; i < open_.size();) {
     const OpenEnd end = open_[i];
-    const bool closes = end.vessel == of && (!end.arc || (end.atStart ? place < *end.arc : place > *end.arc));
+    const bool closes = end.vessel == of && (end.arc ? (end.atStart ? place < *end.arc : place > *end.arc) : torn);
     if (!closes) {
       ++i;
       continue;
@@ -183,12 +178,12 @@ void Judge::closeEnds(const Event& clip, double place) {
     const bool remains = std::any_of(open_.begin(), open_.end(),
                                      [&](const OpenEnd& e) { return e.vessel == end.vessel && e.rule == end.rule; });
     if (remains) continue;
-    errors_.takeBack(end.rule, clip.subject);
+    errors_.takeBack(end.rule, static_cast<std::uint16_t>(divide_[of].structure));
     now_.changed = true;
   }
 }
 
-/// What happens to a structure that must be spared.
+/// Harm to a structure that must be spared.
 void Judge::judgeHarm(const Event& event) {
   const auto rule = [&]() -> std::optional<ErrorRule> {
     switch (event.kind) {

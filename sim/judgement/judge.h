@@ -108,7 +108,7 @@ class Judge {
   void judgeCut(const std::vector<Event>& events, std::size_t at);
   void judgeParting(const std::vector<Event>& events, std::size_t at);
   void judgeOpenEnds(const Event& open, std::optional<double> arc);
-  void closeEnds(const Event& clip, double place);
+  void closeEnds(std::size_t of, double place, bool torn);
   void judgeHarm(const Event& event);
   void judgeEvent(const std::vector<Event>& events, std::size_t at);
   void follow(const Event& event, Phase& phase);

@@ -94,18 +94,17 @@ TEST(ErrorCounts, areTheProceduresAndSayWhichAndWhen) {
   Operation o;
   o.step();
   EXPECT_EQ(*o.value("critical-errors").value, 0.0);
-  EXPECT_EQ(o.value("critical-errors").note, "not assessed: bleeding (nothing bleeds in the simulation)");
+  expectNames(o.value("critical-errors").note, {"assessed", "bleeding"});
   o.judged.errorList = {{{ErrorRule::leftOpen, ErrorRule::tooFewClips}, cysticDuct, 1, 9, 9, 9, 0.0},
                         {{ErrorRule::slipped}, liver, 18, 20, 900, 99, 3.0}};
   o.judged.changed = true;
   o.step();
   o.end();
   EXPECT_EQ(*o.value("critical-errors").value, 1.0);
-  EXPECT_EQ(o.value("critical-errors").note,
-            "v2 left open, cut with too few clips, 0:00.1; not assessed: bleeding (nothing bleeds in the simulation)");
+  expectNames(o.value("critical-errors").note, {"v2", "open", "clips", "0:00.1", "assessed"});
   EXPECT_EQ(*o.value("major-errors").value, 0.0);
   EXPECT_EQ(*o.value("minor-errors").value, 18.0);
-  EXPECT_EQ(o.value("minor-errors").note, "organ a slipped in the jaws, 18 times, worst at 0:01.0");
+  expectNames(o.value("minor-errors").note, {"organ", "slipped", "18 times", "0:01.0"});
   SceneDescription scene = operationScene();
   scene.procedure = {};
   Operation without(scene);
