@@ -40,7 +40,7 @@ struct Attempt {
   double seconds = 0.0;
   std::array<double, handCount> path{};  ///< of the simulated tips (m)
   StepResult last;
-  std::uint32_t criticalErrors = 0;
+  std::uint32_t harmed = 0;  ///< injuries of vessels that must be spared
   std::uint32_t clips = 0;
   std::vector<TickSamples> samples;  ///< every 10th
   bool onGrid = true;
@@ -84,7 +84,9 @@ Attempt perform(const Model& model, const PerformerProfile& profile, std::uint64
         if (!current) attempt.carvedWithoutCurrent += fat.carved;
       }
       attempt.last = record.result;
-      attempt.criticalErrors = judge.observe(record.result).errors(Severity::critical);
+      attempt.harmed = 0;
+      for (const AttemptError& error : judge.observe(record.result).errorList)
+        attempt.harmed += error.rules.front() <= ErrorRule::sparedHeated ? 1U : 0U;
     }
     void onEnd(Outcome /*outcome*/) override {}
   } watch(attempt, model.scene());
@@ -183,7 +185,7 @@ TEST_P(EachProfile, ClipsAndCutsDuctAndArtery) {
     const bool divided = vessel.end.kind == VesselEndDescription::Kind::organ;
     EXPECT_EQ(attempt.last.vessel[v].partings, divided ? 1U : 0U) << vessel.name;
   }
-  EXPECT_EQ(attempt.criticalErrors, 0U);
+  EXPECT_EQ(attempt.harmed, 0U);
   expectHuman(attempt);
 }
 
@@ -210,7 +212,7 @@ TEST(Operation, ClearsVesselsOfFat) {
   ASSERT_EQ(attempt.last.fat.size(), 1U);
   EXPECT_LT(attempt.last.fat[0].volume, 0.85 * attempt.fatAtFirst);
   EXPECT_EQ(attempt.carvedWithoutCurrent, 0.0);
-  EXPECT_EQ(attempt.criticalErrors, 0U);
+  EXPECT_EQ(attempt.harmed, 0U);
   for (const VesselResult& vessel : attempt.last.vessel) EXPECT_EQ(vessel.partings, 0U);
 }
 
@@ -226,7 +228,7 @@ TEST(Operation, SearchesForAVesselCostWayAndFat) {
     profile.operation.searches = searches;
     const Attempt attempt = perform(*model, profile, 1, 60.0);
     EXPECT_EQ(attempt.outcome, Outcome::completed);
-    EXPECT_EQ(attempt.criticalErrors, 0U);
+    EXPECT_EQ(attempt.harmed, 0U);
     for (const VesselResult& vessel : attempt.last.vessel) EXPECT_EQ(vessel.partings, 0U);
     ASSERT_EQ(attempt.last.fat.size(), 1U);
     path[searches > 0 ? 1 : 0] = attempt.path[1];
