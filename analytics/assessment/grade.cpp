@@ -186,11 +186,11 @@ Grade gradeAttempt(const AttemptRow& attempt, const std::vector<AttemptRow>& att
   for (const AttemptValue& v : values) valuesOf[v.attempt].push_back(&v);
   const std::vector<const AttemptValue*>& own = valuesOf[attempt.uuid];
   grade.criticalMissing = "not computed for this attempt";
-  for (const auto& [severity, checkpoint] : errorCheckpoints()) {
+  for (const auto& counted : errorCheckpoints()) {
     const auto at =
-        std::find_if(own.begin(), own.end(), [&](const AttemptValue* v) { return v->value.name == checkpoint; });
-    grade.safety.push_back(errorSentence(severity, at == own.end() ? nullptr : &(*at)->value));
-    if (severity != Severity::critical || at == own.end()) continue;
+        std::find_if(own.begin(), own.end(), [&](const AttemptValue* v) { return v->value.name == counted.second; });
+    grade.safety.push_back(errorSentence(counted.first, at == own.end() ? nullptr : &(*at)->value));
+    if (counted.first != Severity::critical || at == own.end()) continue;
     const AttemptValue& critical = **at;
     grade.criticalErrors = critical.value.value;
     grade.criticalMissing = critical.value.reason;

@@ -269,7 +269,6 @@ namespace {
 
 constexpr double hookToe = 0.0023;      // from the hook's heel to the middle of its toe (m)
 constexpr double hookWire = 0.0006;     // radius of the hook's wire (m)
-constexpr double toeEnd = 0.0046;       // from the hook's heel (m)
 constexpr double film = 0.0006;         // of fat on a vessel that counts as none (m)
 constexpr double laneLength = 0.014;    // of a stroke along a vessel (m)
 constexpr double legLength = 0.006;     // of its straight pieces (m)
@@ -280,19 +279,6 @@ constexpr std::uint32_t mostTried = 2;  // strokes for one place: what they leav
 constexpr std::size_t over = 0;         // lanes: over the vessel, the others beside and under it
 
 }  // namespace
-
-double lowestAt(const Vec3& place, const Vec3& shaft, const Vec3& toe, double off,
-                const std::vector<std::pair<Vec3, double>>& vessels) {
-  double lowest = -1.0;
-  for (const auto& [centre, radius] : vessels) {
-    const Vec3 d = centre - place;
-    const double height = -d.dot(shaft);
-    const double along = std::min(notNegative(d.dot(toe)), toeEnd);
-    const double aside = (d + height * shaft - along * toe).norm();
-    if (aside < radius + off) lowest = std::max(lowest, height + radius + off);
-  }
-  return lowest;
-}
 
 /// A stroke along a vessel.
 struct WorkingMind::FatStroke {
@@ -354,7 +340,7 @@ void WorkingMind::clear(const Sight& sight) {
     const double bare = highestFat(vessel, radius, stroke);
     if (bare >= operation.bareShare || strokes_ >= operation.strokes || stroke.height <= 0.0) break;
     ++strokes_;
-    runStroke(stroke, vessel, radius, sight.spared);
+    runStroke(stroke, vessel, radius);
     // It is taken to succeed until the next picture.
     for (std::size_t s = stroke.first; s <= stroke.last; ++s) {
       ++fatTried_[stroke.lane][s];
@@ -371,15 +357,13 @@ void WorkingMind::clear(const Sight& sight) {
 
 /// Over a vessel the toe lies across it, and takes a layer. Beside it the wire takes all that stands there, with the
 /// toe under the vessel; the hook goes down and comes up off it.
-void WorkingMind::runStroke(const FatStroke& stroke, const SeenVessel& vessel, double radius,
-                            const std::vector<std::pair<Vec3, double>>& spared) {
+void WorkingMind::runStroke(const FatStroke& stroke, const SeenVessel& vessel, double radius) {
   const PerformerProfile::Operation& operation = tools_.profile.operation;
   newError();
   error_ *= 0.25;
   const double off = radius + hookWire + operation.keepOff;
   const double height = stroke.lane == over ? std::max(stroke.height - operation.layer, off) : -off;
   const double sign = stroke.lane == 1 ? -1.0 : 1.0;
-  const double toe = stroke.lane == over ? 1.0 : -sign;
   double top = height;
   for (std::size_t s = stroke.first; s <= stroke.last; ++s) {
     for (const double fat : vessel.fat[s]) top = std::max(top, fat);
@@ -388,9 +372,7 @@ void WorkingMind::runStroke(const FatStroke& stroke, const SeenVessel& vessel, d
     const Vec3 shaft = hand().shaft(vessel.centre[s]);
     Vec3 side = shaft.cross(vessel.along[s]);
     side /= side.norm();
-    const Vec3 place = vessel.centre[s] + aside * side - height * shaft;
-    return Vec3(place - notNegative(lowestAt(place, shaft, toe * side, hookWire + operation.keepOff, spared)) * shaft +
-                error_);
+    return Vec3(vessel.centre[s] + aside * side - height * shaft + error_);
   };
   const std::size_t stations = stroke.last - stroke.first;
   const auto legs = static_cast<std::size_t>(
@@ -407,7 +389,7 @@ void WorkingMind::runStroke(const FatStroke& stroke, const SeenVessel& vessel, d
   const std::size_t middle = (stroke.first + stroke.last) / 2;
   Vec3 side = hand().shaft(vessel.centre[middle]).cross(vessel.along[middle]);
   side /= side.norm();
-  strokeThrough(way, toe * side, top - height + clearance);
+  strokeThrough(way, stroke.lane == over ? side : Vec3(-sign * side), top - height + clearance);
 }
 
 /// A stroke of the hook under current, from above through all of `way`, and up again.

@@ -193,11 +193,6 @@ class PerformerSight {
   std::size_t gripVertex_ = 0, neckVertex_ = 0;
 };
 
-/// The lowest that the hook may go at a place with its toe along `toe`, towards the port (m), so that its metal keeps
-/// `off` from vessels' walls.
-double lowestAt(const Vec3& place, const Vec3& shaft, const Vec3& toe, double off,
-                const std::vector<std::pair<Vec3, double>>& vessels);
-
 /// Both hands of an operation, its anatomy, and the operator's interpretation of its perception.
 struct OperationTools {
   const PerformerProfile& profile;
@@ -254,8 +249,7 @@ class WorkingMind {
   void clear(const Sight& sight);
   struct FatStroke;
   double highestFat(const SeenVessel& vessel, double radius, FatStroke& stroke) const;
-  void runStroke(const FatStroke& stroke, const SeenVessel& vessel, double radius,
-                 const std::vector<std::pair<Vec3, double>>& spared);
+  void runStroke(const FatStroke& stroke, const SeenVessel& vessel, double radius);
   void window(Sight sight);
   void search(const Sight& sight);
   /// Vessels that the hook keeps off: places of their centre lines, and radii (m).

@@ -136,6 +136,7 @@ void WorkingMind::cut(const Sight& sight) {
 
 namespace {
 
+constexpr double toeEnd = 0.0046;               // from the hook's heel (m)
 constexpr double windowWire = 0.0006;           // its radius (m)
 constexpr double windowWireLength = 0.009;      // of it along the shaft, that burns (m)
 constexpr double windowClearance = 0.002;       // above the fat, on the way from one stroke to the next (m)
@@ -144,6 +145,20 @@ constexpr std::size_t searchLength = 14;        // stations of a stroke beside a
 constexpr std::size_t shortest = 2;             // columns of a stroke, at least
 constexpr std::size_t longest = 8;              // and at most
 constexpr std::uint32_t mostTriedOfColumn = 3;  // strokes through one column
+
+/// The lowest that the hook may go at a place with its toe along `toe`, towards the port, so that it keeps off vessels.
+double lowestAt(const Vec3& place, const Vec3& shaft, const Vec3& toe, double off,
+                const std::vector<std::pair<Vec3, double>>& vessels) {
+  double lowest = -1.0;
+  for (const auto& [centre, radius] : vessels) {
+    const Vec3 d = centre - place;
+    const double height = -d.dot(shaft);
+    const double along = std::min(notNegative(d.dot(toe)), toeEnd);
+    const double aside = (d + height * shaft - along * toe).norm();
+    if (aside < radius + off) lowest = std::max(lowest, height + radius + off);
+  }
+  return lowest;
+}
 
 }  // namespace
 

@@ -77,16 +77,5 @@ TEST(PerformerSight, SeesNothingToDoWithoutRolesAndProcedure) {
   EXPECT_FALSE(sight.hasSpecimen() || sight.hasFat() || sight.divides());
 }
 
-/// The hook's toe lies from its heel 4.6 mm along x; the port is above, so that a shaft points along -z.
-TEST(PerformerSight, TheHookKeepsOffVesselsThatLieBelowItsToe) {
-  const Vec3 place = Vec3::Zero(), shaft = -Vec3::UnitZ(), toe = Vec3::UnitX();
-  const auto lowest = [&](const Vec3& vessel) { return lowestAt(place, shaft, toe, 0.001, {{vessel, 0.002}}); };
-  EXPECT_NEAR(lowest(Vec3(0.002, 0.0, 0.001)), 0.004, 1e-12) << "its height, radius and the distance";
-  EXPECT_NEAR(lowest(Vec3(0.0075, 0.0, 0.0)), 0.003, 1e-12) << "under the toe's end, by 0.1 mm";
-  EXPECT_EQ(lowest(Vec3(0.0077, 0.0, 0.0)), -1.0) << "beyond it";
-  EXPECT_EQ(lowest(Vec3(0.002, 0.0031, 0.0)), -1.0) << "beside it";
-  EXPECT_EQ(lowest(Vec3(-0.0031, 0.0, 0.0)), -1.0) << "behind its heel";
-}
-
 }  // namespace
 }  // namespace calot::recorder
