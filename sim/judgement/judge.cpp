@@ -11,6 +11,7 @@ namespace calot {
 namespace {
 
 constexpr std::uint8_t noHand = 255;
+constexpr std::uint16_t mostSubjects = 128;  ///< more structures, or connective tissues, than any scene has
 
 /// The value of an event of this kind that stands beside the one at `at`: of the same hand and structure, in this step.
 std::optional<double> beside(const std::vector<Event>& events, std::size_t at, EventKind kind) {
@@ -284,6 +285,8 @@ void Judge::follow(const Event& event, Phase& phase) {
 }
 
 void Judge::countErrors() {
+  // A damaged recording may name any subject: its errors are of none that the scene has, and their list has an end.
+  std::erase_if(now_.found, [](const JudgedError& error) { return error.event.subject >= mostSubjects; });
   if (now_.found.empty() && !now_.changed) return;
   for (const JudgedError& error : now_.found) {
     if (textOf(error.rule).severity != Severity::critical) continue;

@@ -345,6 +345,12 @@ TEST_F(JudgeTest, WhatGoesOnIsOneOccasionAndItsWorstMomentIsKept) {
   EXPECT_EQ(j.errors(Severity::minor), 2U);
 }
 
+TEST_F(JudgeTest, SubjectsThatNoSceneHasAreNoErrors) {
+  Judge judge(sceneOfAll());
+  for (std::uint16_t subject = 127; subject < 2000; ++subject) tell(EventKind::graspSlip, subject, 1.0);
+  EXPECT_EQ(observe(judge).errorList.size(), 1U);
+}
+
 TEST_F(JudgeTest, ResultsThatLackWhatTheProcedureNamesAreNotJudged) {
   Judge judge(sceneOfAll());
   now_.vessel.clear();
