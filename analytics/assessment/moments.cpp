@@ -11,6 +11,7 @@
 #include "analytics/checkpoints/collector.h"
 #include "recorder/base/errors.h"
 #include "recorder/formats/scene_file.h"
+#include "recorder/recorded_results.h"
 
 namespace calot::analytics {
 namespace {
@@ -71,6 +72,7 @@ AttemptMoments findMoments(recorder::Recording& recording,
   const recorder::AttemptHeader& header = recording.header();
   const SceneDescription scene = recorder::sceneFromAssets(header.assets).description;
   CheckpointCollector collector(header, scene, Origin::observables);
+  recorder::RecordedResults results(header, scene);
   Judge judge(scene);
   const double stepSeconds = header.tickSeconds * static_cast<double>(header.ticksPerStep);
   const std::uint64_t steps = recording.stepCount();
@@ -82,8 +84,9 @@ AttemptMoments findMoments(recorder::Recording& recording,
     if (step.result.organ.size() != scene.organs.size())
       throw Error(ErrorKind::damaged, Where{recording.path().string(), "/observables"},
                   "has other organs than the scene in /scene");
-    collector.take({step.step, step.samples, step.ticks, step.result, step.digest, step.lateness, {}, {}},
-                   judge.observe(step.result));
+    const StepResult& result = results.of(step);
+    collector.take({step.step, step.samples, step.ticks, result, step.digest, step.lateness, {}, {}},
+                   judge.observe(result));
     if (n + 1 == steps) collector.onEnd(recording.outcome());
     if ((n + 1) % window != 0 && n + 1 != steps) continue;
     const std::vector<CheckpointValue> values = collector.values();

@@ -87,7 +87,7 @@ AttemptSummary summaryOf(const analytics::AttemptRow& attempt, const std::vector
 
 NextGoal nextGoal(const analytics::Grade& grade) {
   if (grade.criticalErrors.value_or(0.0) > 0.0)
-    return {"A safe operation: " + grade.criticalNote + ".", std::string(analytics::criticalErrors), {}};
+    return {"No critical error (now: " + grade.criticalNote + ").", std::string(analytics::criticalErrors), {}};
   const analytics::GradedFigure* next = nullptr;
   const auto before = [](const analytics::GradedFigure& a, const analytics::GradedFigure& b) {
     if (analytics::isFixed(a.mark) != analytics::isFixed(b.mark)) return analytics::isFixed(a.mark);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What counts as an error, how severe it is, and why: the one table that judgement, figures, norms, sheets and windows
-// stand on.
+// Errors: which there are, how severe each is, and why. Judgement, figures, norms, sheets and windows stand on this one
+// table.
 #pragma once
 
 #include <cstddef>

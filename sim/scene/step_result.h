@@ -49,7 +49,7 @@ enum class EventKind : std::uint16_t {
   smoke = 31,            ///< subject: structure, or 100 + connective tissue, that was burned; value: energy (J)
   fatCameLoose = 32,     ///< fat that hangs on nothing any more left; subject: structure; value: its volume (m^3)
   tooFewClips = 33,      ///< judged: a side of a cut has fewer clips than it should; value: missing
-  criticalError = 34,    ///< judged: a vessel to be spared was clipped or opened; value: kind of that event
+  criticalError = 34,    ///< judged: a critical error (sim/judgement); value: kind of the event that is one
   phaseBegin = 35,       ///< judged: subject: the Phase that begins; value: the one before
   runaway = 36,          ///< something moves faster than maxTissueSpeed, or is no number any more; value: speed (m/s)
   motionHeldBack = 37,   ///< tissue faster than it can move was held back; subject: structure; value: that speed (m/s)
