@@ -93,16 +93,17 @@ std::string simulationText(const GradedFigure& f, const ValueTree& tree) {
   return fmt::format("[{}, {}]", digits4(tree["simulation_lower"]), digits4(tree["simulation_upper"]));
 }
 
-ReportTable figuresTable(const Grade& g) {
+/// @param titled figures by their titles, for people; else by the names that options take
+ReportTable figuresTable(const Grade& g, bool titled = false) {
   ValueTree rows = ValueTree::array();
   for (const GradedFigure& f : g.figures) {
     ValueTree& row = rows.emplace_back(treeOf(f));
     row["simulation"] = simulationText(f, row);
     row["rule"] = f.mark.inRule ? "counts" : "";
-    row["name"] = nameOf(f);
+    row["name"] = titled ? figureName(f.title, f.mark.subject.empty() ? "" : "(" + f.mark.subject + ")") : nameOf(f);
   }
   return tableOf("Figures", rows,
-                 {{"=checkpoint", "/name", plain},
+                 {{titled ? "=figure" : "=checkpoint", "/name", plain},
                   {"=unit", "/unit", unitText},
                   {"=better", "/direction", plain},
                   {"value", "/value", digits4},
@@ -268,10 +269,10 @@ ValueTree gradeTree(const Grade& g) {
   return tree;
 }
 
-ReportDocument gradeDocument(const Grade& g, const std::string& recording, const std::string& howToDraw) {
-  ReportDocument document{title(g), synthetic(g), {}};
+void addGradeAppendix(ReportDocument& document, const Grade& g, const std::string& recording,
+                      const std::string& howToDraw) {
   for (const std::string& line : opening(g)) document.add(line);
-  document.parts.emplace_back(figuresTable(g));
+  document.parts.emplace_back(figuresTable(g, true));
   addMomentsTo(document, g, recording, howToDraw);
   if (ReportTable history = historyTable(g); !history.rows.empty()) {
     document.parts.emplace_back(std::move(history));
@@ -295,7 +296,6 @@ ReportDocument gradeDocument(const Grade& g, const std::string& recording, const
   }
   document.parts.emplace_back(Heading{"Notes"});
   document.addList(notes(g));
-  return document;
 }
 
 }  // namespace calot::analytics

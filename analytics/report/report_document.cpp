@@ -292,7 +292,7 @@ constexpr const char* head = R"(<!DOCTYPE html>
 <html lang="en">
 <head>
 <meta charset="utf-8">
-<meta http-equiv="Content-Security-Policy" content="default-src 'none'; style-src 'unsafe-inline'">
+<meta http-equiv="Content-Security-Policy" content="default-src 'none'; style-src 'unsafe-inline'; img-src data:">
 <meta name="viewport" content="width=device-width">
 <style>
 body { font: 15px/1.45 sans-serif; color: #1b1f24; max-width: 76em; margin: 2em auto; padding: 0 1em; }
@@ -302,7 +302,9 @@ table { border-collapse: collapse; font-variant-numeric: tabular-nums; }
 th, td { padding: .2em .7em; border-bottom: 1px solid #d8dde3; text-align: left; white-space: nowrap; }
 th { border-bottom: 2px solid #57606a; } .right { text-align: right; }
 .words { white-space: normal; min-width: 16em; vertical-align: top; }
-.figures { display: flex; flex-wrap: wrap; gap: 1em; } svg { max-width: 100%; height: auto; }
+.figures { display: flex; flex-wrap: wrap; gap: 1em; } svg, img { max-width: 100%; height: auto; }
+.pictures { display: grid; grid-template-columns: repeat(3, 1fr); gap: 1em; } figure { margin: 0; }
+.blank { border: 1px solid #57606a; padding: .2em .5em; margin: .5em 0; color: #57606a; }
 .watermark { background: #b00020; color: #fff; font-weight: bold; padding: .5em 1em; }
 .behind { position: fixed; inset: 0; display: flex; align-items: center; justify-content: center; pointer-events: none;
   font: bold 14vw sans-serif; color: #b00020; opacity: .07; transform: rotate(-30deg); }
@@ -352,6 +354,18 @@ struct Part {
     std::string html = "<div class=\"figures\">\n";
     for (const Drawing& drawing : figures.drawings) html += svgOf(drawing);
     return html + "</div>\n";
+  }
+  std::string operator()(const Pictures& pictures) const {
+    std::string html = "<div class=\"pictures\">\n";
+    for (const Picture& picture : pictures.pictures)
+      html += fmt::format(
+          "<figure><img alt=\"{0}\" src=\"data:image/png;base64,{1}\"><figcaption>{0}</figcaption></figure>\n",
+          escaped(picture.caption), recorder::base64(std::as_bytes(std::span(picture.png))));
+    return html + "</div>\n";
+  }
+  std::string operator()(const Blank& blank) const {
+    return fmt::format("<div class=\"blank\" style=\"min-height: {:.0f}mm\">{}</div>\n", blank.millimetres,
+                       escaped(blank.label));
   }
 };
 

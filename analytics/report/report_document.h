@@ -87,11 +87,24 @@ struct BulletList {
 struct Figures {
   std::vector<Drawing> drawings;
 };
+struct Picture {
+  std::string png;  ///< a file's bytes
+  std::string caption;
+};
+/// Side by side, three a line.
+struct Pictures {
+  std::vector<Picture> pictures;
+};
+/// An empty box to write in; on a terminal nothing.
+struct Blank {
+  std::string label;
+  double millimetres = 0.0;  ///< height
+};
 
 struct ReportDocument {
   std::string title;
   bool synthetic = false;  ///< watermarked: performers' figures are in it
-  std::vector<std::variant<Heading, Paragraph, BulletList, ReportTable, Figures>> parts;
+  std::vector<std::variant<Heading, Paragraph, BulletList, ReportTable, Figures, Pictures, Blank>> parts;
 
   void add(std::string paragraph) { parts.emplace_back(Paragraph{{std::move(paragraph), {}}}); }
   void addList(const std::vector<std::string>& items) {

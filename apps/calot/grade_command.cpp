@@ -6,9 +6,11 @@
 #include "analytics/assessment/grade.h"
 #include "analytics/checkpoints/replay_words.h"
 #include "analytics/cohort/cohort_database.h"
+#include "analytics/report/attempt_sheet.h"
 #include "analytics/report/grade_sheet.h"
 #include "apps/calot/command.h"
 #include "apps/calot/study_command.h"
+#include "gui/moments/moments.h"
 #include "recorder/base/files.h"
 #include "recorder/recording/probe.h"
 #include "recorder/recording/reader.h"
@@ -45,13 +47,24 @@ fs::path recordingOf(const analytics::AttemptRow& attempt, const GradeOptions& o
   return fs::is_regular_file(beside, ignored) && beside.extension() == ".h5" ? beside : fs::path();
 }
 
-void lookAtRecording(analytics::Grade& grade, const fs::path& file, const GradeOptions& o) {
+/// Pictures of the gravest moments, as a sheet shows them.
+std::vector<analytics::Picture> picturesOf(const analytics::Grade& grade,
+                                           const std::vector<analytics::FigureMoments>& figures, const fs::path& file,
+                                           bool quiet) {
+  const std::vector<analytics::SheetMoment> moments = analytics::worstMoments(grade.errors, figures, &grade);
+  Progress progress("drawing moments", quiet);
+  return gui::sheetPictures(file, moments, [&](std::uint64_t done, std::uint64_t of) { progress.show(done, of); });
+}
+
+/// Finds the moments of the grade. @return pictures of the gravest, where `draw` asks for them
+std::vector<analytics::Picture> lookAtRecording(analytics::Grade& grade, const fs::path& file, const GradeOptions& o,
+                                                bool draw) {
   const auto figures = analytics::weakFigures(grade);
   if (file.empty()) {
-    if (figures.empty() && !(grade.criticalErrors.value_or(0.0) > 0.0)) return;
+    if (figures.empty() && !draw && !(grade.criticalErrors.value_or(0.0) > 0.0)) return {};
     grade.momentsMissing =
         fmt::format("the recording {} is not beside the database (--recording)", grade.attempt.fileName);
-    return;
+    return {};
   }
   if (const recorder::ChainVerdict chain = recorder::probe(file); !chain.intact())
     throw Error(ErrorKind::refused, Where{file.string()},
@@ -62,12 +75,18 @@ void lookAtRecording(analytics::Grade& grade, const fs::path& file, const GradeO
                 fmt::format("is of attempt {}, not {}", recording.header().attempt, grade.attempt.uuid));
   if (recording.header().purpose == "golden") {
     grade.momentsMissing = "a golden recording holds no results of its steps";
-    return;
+    return {};
   }
-  Progress progress("looking for moments, steps", o.json);
-  analytics::addMoments(grade, analytics::findMoments(recording, figures, [&](std::uint64_t done, std::uint64_t of) {
-                          progress.show(done, of);
-                        }));
+  std::vector<analytics::FigureMoments> moments;
+  {
+    Progress progress("looking for moments, steps", o.json);
+    analytics::AttemptMoments found = analytics::findMoments(
+        recording, figures, [&](std::uint64_t done, std::uint64_t of) { progress.show(done, of); });
+    moments = found.figures;
+    analytics::addMoments(grade, std::move(found));
+  }
+  if (!draw) return {};
+  return picturesOf(grade, moments, file, o.json);
 }
 
 /// The bytes of the attempt's recording.
@@ -95,13 +114,16 @@ void grade(const GradeOptions& o) {
   const analytics::Norm norm = normOf(cohort, o);
   analytics::Grade result = analytics::gradeAttempt(attempt, attempts, cohort.allValues(), norm, o.mixKeys, o.database);
   const fs::path recording = recordingOf(attempt, o);
-  lookAtRecording(result, recording, o);
+  analytics::AttemptSheet sheet{attempt, cohort.values(attempt.uuid), &result, {}, {}, {}};
+  sheet.pictures = lookAtRecording(result, recording, o, !o.html.empty() || !o.pdf.empty());
+  sheet.picturesMissing = result.momentsMissing;
   const std::string name = recording.filename().string();
-  const std::string howToDraw = fmt::format("calot render {} --at SECONDS -o F.png draws a moment.", name);
+  sheet.recording = name;
+  sheet.howToDraw = fmt::format("calot render {} --at SECONDS -o F.png draws a moment.", name);
   const std::vector<std::byte> carried = o.withReplay ? carriedRecording(attempt, recording) : std::vector<std::byte>{};
   const analytics::CarriedRecording inPage{name, carried};
-  writeReport(analytics::gradeDocument(result, name, howToDraw), o.html, o.pdf, o.force,
-              o.withReplay ? &inPage : nullptr);
+  if (!o.html.empty() || !o.pdf.empty())
+    writeReport(analytics::sheetDocument(sheet), o.html, o.pdf, o.force, o.withReplay ? &inPage : nullptr);
   printResult(o.json, "grade", analytics::gradeTree(result),
               [&](std::ostream& out) { analytics::printGrade(result, out); });
 }

@@ -4,12 +4,10 @@
 #include <fmt/format.h>
 #include <cmath>
 #include <map>
-#include <QBoxLayout>
-#include <QDateTime>
 #include <QLocale>
 
 #include "analytics/checkpoints/checkpoint.h"
-#include "analytics/report/report_document.h"
+#include "analytics/report/attempt_sheet.h"
 #include "analytics/statistics/descriptive.h"
 #include "gui/attempt/widget_parts.h"
 #include "gui/words/problem_words.h"
@@ -106,11 +104,7 @@ QString operatorText(const analytics::AttemptRow& attempt) {
   return attempt.operatorKind == recorder::OperatorKind::kinematics ? "(kinematics file)" : "(performer)";
 }
 
-QString startText(const std::string& startUtc) {
-  const QString stored = QString::fromStdString(startUtc);
-  const QDateTime time = QDateTime::fromString(stored, Qt::ISODate);
-  return time.isValid() ? time.toUTC().toString("yyyy-MM-dd hh:mm") + " UTC" : stored;
-}
+QString startText(const std::string& startUtc) { return QString::fromStdString(analytics::localTime(startUtc)); }
 
 QString numberText(double value) {
   const double magnitude = std::abs(value);
@@ -209,40 +203,6 @@ AttemptStanding standingOf(const analytics::AttemptRow& attempt, const std::vect
     standing.figures.push_back(std::move(figure));
   }
   return standing;
-}
-
-SummaryPanel::SummaryPanel()
-    : verdict_(parts::selectableLabel("summary-verdict")),
-      criticalView_(parts::selectableLabel("summary-critical-view")),
-      errors_(parts::selectableLabel("summary-errors")),
-      figures_(parts::selectableLabel("summary-figures")) {
-  parts::embolden(verdict_);
-  figures_->setAlignment(Qt::AlignTop | Qt::AlignLeft);
-  QBoxLayout* const words = parts::column({verdict_, criticalView_, errors_, parts::spring()});
-  words->setSpacing(2);
-  QBoxLayout* const both = parts::bare(parts::row({{words, 1}, {figures_, 1}}));
-  both->setSpacing(16);
-  setLayout(both);
-}
-
-void SummaryPanel::showSummary(const AttemptSummary& summary) {
-  verdict_->setText(QString::fromStdString(summary.verdict));
-  criticalView_->setText(QString::fromStdString(summary.criticalView));
-  criticalView_->setVisible(!summary.criticalView.empty());
-  errors_->setText(QString::fromStdString(summary.errors));
-  QStringList lines;
-  for (const KeyFigure& figure : summary.figures) lines += keyFigureText(figure);
-  figures_->setText(lines.join('\n'));
-  show();
-}
-
-QString keyFigureText(const KeyFigure& figure) {
-  QStringList parts;
-  for (const analytics::CheckpointValue& value : figure.values) {
-    const QString subject = QString::fromStdString(value.subject);
-    parts += subject.isEmpty() ? valueText(value) : subject + ' ' + valueText(value);
-  }
-  return QString::fromStdString(figure.title) + ": " + parts.join(", ");
 }
 
 }  // namespace calot::gui

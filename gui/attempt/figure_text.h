@@ -7,15 +7,12 @@
 #include <optional>
 #include <QColor>
 #include <QString>
-#include <QWidget>
 #include <string>
 #include <vector>
 
 #include "analytics/assessment/grade.h"
 #include "analytics/cohort/cohort_database.h"
 #include "gui/words/attempt_summary.h"
-
-class QLabel;
 
 namespace calot::gui {
 
@@ -34,7 +31,8 @@ struct Badge {
 [[nodiscard]] QString outcomeText(recorder::Outcome outcome);  ///< "completed", "time limit", ...
 /// Participant's pseudonym; else the performer's profile; else what kind of source it was.
 [[nodiscard]] QString operatorText(const analytics::AttemptRow& attempt);
-[[nodiscard]] QString startText(const std::string& startUtc);  ///< "2026-02-03 14:05 UTC"; as stored if it is no date
+[[nodiscard]] QString startText(
+    const std::string& startUtc);  ///< "2026-02-03 14:05", by the clock here; as stored if it is no date
 
 /// Four significant digits, never an exponent between 0.000001 and 10^15; 0 below analytics::arithmeticDust.
 [[nodiscard]] QString numberText(double value);
@@ -94,22 +92,5 @@ std::vector<const analytics::Norm*> normsFor(const analytics::AttemptRow& attemp
 /// An attempt that did not verify, or is not whole, is not judged: the verdict then says why, and the bands stand.
 AttemptStanding standingOf(const analytics::AttemptRow& attempt, const std::vector<analytics::CheckpointValue>& values,
                            const analytics::Norm& norm, const std::vector<analytics::ValueInterval>& intervals = {});
-
-/// Summary for an instructor, in words: verdict, critical view, errors, and the figures that count.
-class SummaryPanel : public QWidget {
-  Q_OBJECT
- public:
-  SummaryPanel();
-  void showSummary(const AttemptSummary& summary);
-
- private:
-  QLabel* verdict_;
-  QLabel* criticalView_;
-  QLabel* errors_;
-  QLabel* figures_;
-};
-
-/// "Path length of the instrument's tip: left 179 mm, right 696 mm"
-[[nodiscard]] QString keyFigureText(const KeyFigure& figure);
 
 }  // namespace calot::gui

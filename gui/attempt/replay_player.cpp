@@ -8,6 +8,7 @@
 #include <exception>
 
 #include "analytics/checkpoints/replay_words.h"
+#include "gui/moments/moments.h"
 #include "gui/view/thread_rank.h"
 #include "gui/words/problem_words.h"
 #include "recorder/base/errors.h"
@@ -262,19 +263,6 @@ void ReplayPlayer::run() {
   } catch (const std::exception& error) {
     receiver_.failed(problemText(error));
   }
-}
-
-std::uint64_t stepAt(const recorder::Recording& recording, double time) {
-  const auto steps = static_cast<double>(recording.stepCount());
-  const double n = std::clamp(std::floor(time / (recording.seconds() / steps) + 1e-6), 0.0, steps - 1.0);
-  return static_cast<std::uint64_t>(n);
-}
-
-void seekAsRecorded(recorder::Seeker& seeker, const recorder::Recording& recording, std::uint64_t step) {
-  seeker.seek(step);
-  if (const auto& differs = seeker.differsFrom())
-    throw Error(ErrorKind::refused, Where{recording.path().filename().string()},
-                fmt::format("diverged at step {}: from there on another operation would be shown", *differs));
 }
 
 std::uint64_t stepsTo(const ReplayReach& reach, std::uint64_t step) {

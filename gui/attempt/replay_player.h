@@ -151,12 +151,6 @@ inline constexpr std::uint64_t maxBins = 1500;  ///< of a trace: more than a scr
 AttemptTrack readTrack(recorder::Recording& recording,
                        const std::function<void(std::uint64_t, std::uint64_t)>& progress = {});
 
-/// The step that a moment (s since the attempt's start, clamped) lies in. @pre the recording has a step
-[[nodiscard]] std::uint64_t stepAt(const recorder::Recording& recording, double time);
-
-/// Makes a step the seeker's last one. @throws Error (refused) where another operation than the recorded one came
-void seekAsRecorded(recorder::Seeker& seeker, const recorder::Recording& recording, std::uint64_t step);
-
 /// The file of this name beside the database, or in one of the folders, in their order; empty where there is none.
 std::filesystem::path findRecording(const analytics::AttemptRow& attempt, const std::filesystem::path& database,
                                     const std::vector<std::filesystem::path>& folders);

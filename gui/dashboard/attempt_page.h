@@ -10,10 +10,10 @@
 namespace calot::gui {
 
 class FigurePanel;
-class SummaryPanel;
+class VerdictCard;
 
-/// One attempt: what an instructor wants to know first, in words; its checkpoints within a norm, timeline, traces and
-/// replay. A click on a figure, an event or a trace shows that moment.
+/// One attempt: left its picture over one time line of phases, errors and forces; right the verdict, the figures that
+/// count against a norm, and all others. Each sentence, figure, event and trace leads to its moment.
 class AttemptPage : public CohortPage {
   Q_OBJECT
  public:
@@ -26,8 +26,10 @@ class AttemptPage : public CohortPage {
   /// True if everything readable of the attempt was read, and the replay is at its target.
   [[nodiscard]] bool settled() const { return recording_->settled(); }
   [[nodiscard]] Replay& replay() { return recording_->replay(); }
-  /// Writes the attempt on one page, or against its norm, on a thread of its own. @pre an attempt is shown
-  void writeSheet(const std::filesystem::path& file, bool onePage);
+  /// Writes the attempt's sheet on a thread of its own. @pre an attempt is shown
+  void writeSheet(const std::filesystem::path& file);
+  /// The sheet, made on a thread of its own.
+  bool makeDocument(const Taker& take) override;
   [[nodiscard]] LongWork& work() { return work_; }
 
  public slots:
@@ -36,22 +38,25 @@ class AttemptPage : public CohortPage {
 
  signals:
   void sheetWritten(const QString& text);
+  void normRequested();
 
  private:
   void read() override;
   void connectParts();
-  void askForSheet(bool onePage);
+  void askForSheet();
+  void startSheet(const QString& what,
+                  std::function<QString(const analytics::ReportDocument&, LongWork::Control&)> then);
 
   std::optional<analytics::AttemptRow> attempt_;
   LongWork work_;
+  std::function<void()> printed_;  ///< hands over what work_ makes for paper
   WorkStrip* strip_;
   AttemptBanner* banner_;
-  SummaryPanel* summary_;
+  VerdictCard* verdict_;
   FigurePanel* figures_;
   RecordingView* recording_;
   QPushButton* find_;
   TraceChart* force_;
-  TraceChart* speed_;
 };
 
 }  // namespace calot::gui

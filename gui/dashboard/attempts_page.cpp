@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <QFileInfo>
 #include <QFont>
 #include <QItemSelectionModel>
 #include <QMenu>
@@ -28,6 +29,7 @@ QVariant AttemptTableModel::data(const QModelIndex& index, int role) const {
   const analytics::AttemptRow& row = attempt(index.row());
   switch (role) {
     case Qt::DisplayRole:
+    case Qt::EditRole:
       return lines_->cell(index.row(), index.column());
     case sortRole:
       return lines_->rank(index.row(), index.column());
@@ -60,6 +62,20 @@ QVariant AttemptTableModel::headerData(int section, Qt::Orientation orientation,
   return AttemptLines::title(section);
 }
 
+Qt::ItemFlags AttemptTableModel::flags(const QModelIndex& index) const {
+  const Qt::ItemFlags flags = QAbstractTableModel::flags(index);
+  const bool editable = index.isValid() && index.column() == groupColumn && !attempt(index.row()).participant.empty();
+  return editable ? flags | Qt::ItemIsEditable : flags;
+}
+
+bool AttemptTableModel::setData(const QModelIndex& index, const QVariant& value, int role) {
+  if (role != Qt::EditRole || !flags(index).testFlag(Qt::ItemIsEditable)) return false;
+  const analytics::AttemptRow& row = attempt(index.row());
+  const QString group = value.toString().trimmed();
+  if (group.toStdString() != row.group) emit groupEdited(QString::fromStdString(row.participant), group);
+  return false;  // the cohort decides
+}
+
 AttemptFilter::AttemptFilter() { setSortRole(AttemptTableModel::sortRole); }
 
 void AttemptFilter::set(const Criteria& wanted) {
@@ -74,6 +90,7 @@ bool AttemptFilter::filterAcceptsRow(int sourceRow, const QModelIndex&) const {
   const analytics::AttemptRow& attempt = model.attempt(sourceRow);
   if (!wanted_.tag.empty() && std::find(attempt.tags.begin(), attempt.tags.end(), wanted_.tag) == attempt.tags.end())
     return false;
+  if (wanted_.latest && !model.isLatest(sourceRow)) return false;
   if (wanted_.verdict && attempt.verification.verdict != *wanted_.verdict) return false;
   if (wanted_.synthetic && attempt.synthetic != *wanted_.synthetic) return false;
   const QString& text = model.search(sourceRow);
@@ -90,6 +107,7 @@ constexpr std::array verdicts{Verdict::verified, Verdict::diverged, Verdict::dam
 
 AttemptsPage::AttemptsPage()
     : search_(parts::named("search", new QLineEdit)),
+      which_(parts::named("which", new QComboBox)),
       verdict_(parts::named("verdict", new QComboBox)),
       operators_(parts::named("operators", new QComboBox)),
       tag_(parts::choice("tag", 8)),
@@ -102,7 +120,8 @@ AttemptsPage::AttemptsPage()
   table_->setSelectionMode(QAbstractItemView::ExtendedSelection);
   table_->setSortingEnabled(true);
   table_->sortByColumn(AttemptTableModel::startColumn, Qt::DescendingOrder);
-  setWidths(*table_, {150, 180, 110, 130, 120, 300, 130, 95, 90, 90, 80});
+  setWidths(*table_, {150, 90, 125, 125, 330, 85, 160, 125, 110, 110, 85, 80, 90, 70});
+  table_->setEditTriggers(QAbstractItemView::EditKeyPressed);
   setWidths(*details_, {330, 110, 170, 150, 0, 0, 140, 150, 110, 70});
   for (const int column :
        {CheckpointTableModel::intervalColumn, CheckpointTableModel::normColumn, CheckpointTableModel::momentColumn})
@@ -117,6 +136,7 @@ AttemptsPage::AttemptsPage()
   setLayout(parts::column({makeSplitter(Qt::Vertical, {{upper, 3}, {lower, 2}})}));
 
   connect(table_->selectionModel(), &QItemSelectionModel::currentRowChanged, this, [this] { showSelected(); });
+  connect(&attempts_, &AttemptTableModel::groupEdited, this, &AttemptsPage::groupEdited);
   connect(table_->selectionModel(), &QItemSelectionModel::selectionChanged, this, [this] { showCount(); });
   connect(table_, &QTableView::activated, this,
           [this](const QModelIndex& at) { emit attemptActivated(at.data(AttemptTableModel::uuidRole).toString()); });
@@ -130,14 +150,17 @@ QLayout* AttemptsPage::buildFilters() {
   search_->setAccessibleName("Search attempts");
   search_->setPlaceholderText("Search (Ctrl+F): participant, profile, group, scene, date …");
   search_->setClearButtonEnabled(true);
+  which_->addItems({"Every attempt", "Latest of each person"});
+  which_->setAccessibleName("Which attempts");
   verdict_->addItem("All verdicts");
   for (const Verdict verdict : verdicts) verdict_->addItem(badgeText(verdict));
   operators_->addItems({"People and synthetic", "Not synthetic", "Synthetic only"});
   tag_->setToolTip("Tags are put on attempts by the menu Edit, or by calot attempt tag");
   connect(search_, &QLineEdit::textChanged, this, [this] { filter(); });
-  for (QComboBox* choice : {verdict_, operators_, tag_})
+  for (QComboBox* choice : {which_, verdict_, operators_, tag_})
     connect(choice, &QComboBox::currentIndexChanged, this, [this] { filter(); });
-  return parts::row({{"&Search", search_, 1},
+  return parts::row({which_,
+                     {"&Search", search_, 1},
                      {"Verifi&cation", verdict_},
                      {"&Made by", operators_},
                      {"&Tag", tag_},
@@ -149,7 +172,7 @@ QWidget* AttemptsPage::buildColumns() {
   auto* button = parts::named("columns", new QPushButton("Co&lumns"));
   auto* menu = new QMenu(button);
   const QStringList hidden = settings::hiddenColumns();
-  for (int column = AttemptTableModel::operatorColumn; column < AttemptTableModel::columnTotal; ++column) {
+  for (int column = AttemptTableModel::operatorColumn + 1; column < AttemptTableModel::columnTotal; ++column) {
     QAction* action = menu->addAction(AttemptLines::title(column));
     action->setCheckable(true);
     action->setChecked(!hidden.contains(action->text()));
@@ -194,6 +217,7 @@ void AttemptsPage::select(const QString& uuid) {
   if (selected() != nullptr && selected()->uuid == uuid.toStdString()) return;
   if (rowOf(uuid) < 0) {
     search_->clear();
+    which_->setCurrentIndex(0);
     verdict_->setCurrentIndex(0);
     operators_->setCurrentIndex(0);
     tag_->setCurrentIndex(0);
@@ -220,6 +244,7 @@ void AttemptsPage::filter() {
   AttemptFilter::Criteria wanted;
   wanted.search = search_->text();
   if (const int at = verdict_->currentIndex(); at > 0) wanted.verdict = verdicts[static_cast<std::size_t>(at - 1)];
+  wanted.latest = which_->currentIndex() == 1;
   if (operators_->currentIndex() > 0) wanted.synthetic = operators_->currentIndex() == 2;
   if (tag_->currentIndex() > 0) wanted.tag = tag_->currentText().toStdString();
   filter_.set(wanted);
@@ -241,6 +266,47 @@ void AttemptsPage::fillTags() {
   tag_->setCurrentIndex(before.isEmpty() ? 0 : std::max(0, tag_->findText(before)));
   tag_->setEnabled(tag_->count() > 1);
   if (!before.isEmpty() && tag_->currentIndex() == 0) filter();
+}
+
+void AttemptsPage::offer(const QList<QAction*>& actions) {
+  table_->setContextMenuPolicy(Qt::ActionsContextMenu);
+  table_->addActions(actions);
+}
+
+void AttemptsPage::editGroup() {
+  const QModelIndex at = table_->currentIndex().siblingAtColumn(AttemptTableModel::groupColumn);
+  table_->setColumnHidden(AttemptTableModel::groupColumn, false);
+  if (at.flags().testFlag(Qt::ItemIsEditable)) table_->edit(at);
+}
+
+std::vector<std::vector<std::string>> AttemptsPage::shownCells() const {
+  std::vector<std::vector<std::string>> lines(1);
+  for (int row = -1; row < filter_.rowCount(); ++row) {
+    std::vector<std::string>& cells = row < 0 ? lines.front() : lines.emplace_back();
+    for (int column = 0; column < AttemptTableModel::columnTotal; ++column) {
+      if (table_->isColumnHidden(column)) continue;
+      cells.push_back(
+          (row < 0 ? AttemptLines::title(column) : filter_.index(row, column).data().toString()).toStdString());
+    }
+  }
+  return lines;
+}
+
+bool AttemptsPage::makeDocument(const Taker& take) {
+  if (!document_ || filter_.rowCount() == 0) return false;
+  std::vector<std::vector<std::string>> lines = shownCells();
+  analytics::ReportTable table;
+  for (const std::string& title : lines.front()) table.columns.emplace_back(title, analytics::Align::left);
+  table.rows.assign(std::next(lines.begin()), lines.end());
+  dropEmptyColumns(table);
+  const auto& attempts = document_->attempts();
+  const bool synthetic = std::any_of(attempts.begin(), attempts.end(), [](const auto& a) { return a.synthetic; });
+  analytics::ReportDocument document{"Attempts", synthetic, {}};
+  document.add(count_->text().toStdString() + " of " +
+               QFileInfo(QString::fromStdString(document_->path())).fileName().toStdString());
+  document.parts.emplace_back(std::move(table));
+  take(document);
+  return true;
 }
 
 void AttemptsPage::selectNext() {

@@ -34,6 +34,14 @@ class AttemptTableModel : public QAbstractTableModel {
   [[nodiscard]] int columnCount(const QModelIndex& parent = {}) const override;
   [[nodiscard]] QVariant data(const QModelIndex& index, int role) const override;
   [[nodiscard]] QVariant headerData(int section, Qt::Orientation orientation, int role) const override;
+  /// A participant's group can be edited.
+  [[nodiscard]] Qt::ItemFlags flags(const QModelIndex& index) const override;
+  /// Asks for the change by groupEdited(), and shows it when the cohort was read again.
+  bool setData(const QModelIndex& index, const QVariant& value, int role) override;
+  [[nodiscard]] bool isLatest(int row) const { return lines_->isLatest(row); }
+
+ signals:
+  void groupEdited(const QString& participant, const QString& group);
 
  private:
   std::shared_ptr<const AttemptLines> lines_;
@@ -48,6 +56,7 @@ class AttemptFilter : public QSortFilterProxyModel {
     std::string tag = {};  ///< empty: any, or none
     std::optional<analytics::Verdict> verdict = {};
     std::optional<bool> synthetic = {};
+    bool latest = false;  ///< AttemptLines::isLatest() alone
     bool operator==(const Criteria&) const = default;
   };
 
@@ -64,7 +73,7 @@ class AttemptFilter : public QSortFilterProxyModel {
   QStringList words_;  ///< of the search
 };
 
-/// The attempts of a cohort with search and filters, and the checkpoints of the selected one.
+/// The attempts of a cohort as a roster with search and filters, and the checkpoints of the selected one.
 class AttemptsPage : public CohortPage {
   Q_OBJECT
  public:
@@ -78,11 +87,19 @@ class AttemptsPage : public CohortPage {
   [[nodiscard]] const analytics::AttemptRow* selected() const;  ///< or null
   /// Selects an attempt; filters that hide it are taken away.
   void select(const QString& uuid);
+  /// Actions of the table's context menu.
+  void offer(const QList<QAction*>& actions);
+  void editGroup();  ///< of the current row
+  /// The rows and columns that are shown, titles first.
+  [[nodiscard]] std::vector<std::vector<std::string>> shownCells() const;
+  bool makeDocument(const Taker& take) override;
 
  signals:
   void selectionChanged();
   /// A figure of the selected attempt is to be shown.
   void figureActivated(const QString& checkpoint, const QString& subject);
+  /// A participant is to be of another group.
+  void groupEdited(const QString& participant, const QString& group);
 
  private:
   void read() override {}
@@ -98,7 +115,7 @@ class AttemptsPage : public CohortPage {
   AttemptFilter filter_;
   CheckpointTableModel checkpoints_;
   QLineEdit* search_;
-  QComboBox *verdict_, *operators_, *tag_;
+  QComboBox *which_, *verdict_, *operators_, *tag_;
   QLabel* count_;
   QTableView* table_;
   AttemptBanner* banner_;

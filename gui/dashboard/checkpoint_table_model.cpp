@@ -11,7 +11,7 @@
 #include <QStyle>
 #include <utility>
 
-#include "analytics/assessment/grade.h"
+#include "analytics/report/key_figures.h"
 #include "gui/attempt/widget_parts.h"
 #include "gui/words/attempt_summary.h"
 #include "gui/words/event_words.h"
@@ -343,7 +343,7 @@ void FamilyTreeModel::fill() {
   std::map<int, Entry*> families;  // by rank
   for (int row = 0; row < source_.rowCount(); ++row) {
     const analytics::CheckpointValue& value = source_.value(row);
-    if (sceneLacks(value)) {
+    if (analytics::sceneLacks(value)) {
       ++leftOut_;
       continue;
     }

@@ -2,6 +2,7 @@
 #include "gui/dashboard/cohort_document.h"
 
 #include <algorithm>
+#include <cmath>
 #include <exception>
 #include <map>
 #include <numeric>
@@ -33,9 +34,16 @@ namespace {
 
 using Row = analytics::AttemptRow;
 
+/// What is known of an attempt beside its row.
+struct Known {
+  std::array<const analytics::CheckpointValue*, severityCount> errors{};  ///< null: none is stored
+  const analytics::CheckpointValue* criticalView = nullptr;
+  QString trend;
+};
+
 struct ColumnText {
   const char* title;
-  QString (*of)(const Row& attempt, const analytics::CheckpointValue* critical);
+  QString (*of)(const Row& attempt, const Known& known);
 };
 
 /// The verdict's first sentence; where it has none, that.
@@ -44,41 +52,94 @@ QString safetyText(const analytics::CheckpointValue* critical) {
   return QString::fromStdString(analytics::errorSentence(Severity::critical, critical));
 }
 
+QString viewText(const analytics::CheckpointValue* view) {
+  return view == nullptr || !view->value ? QString() : QString("%1 of 6").arg(std::lround(*view->value));
+}
+
+/// "1 critical, 9 minor"
+QString errorsText(const Known& known) {
+  QStringList parts;
+  for (std::size_t s = 0; s < severityCount; ++s) {
+    const analytics::CheckpointValue* const value = known.errors[s];
+    if (value == nullptr || !value->value) return {};
+    if (const long count = std::lround(*value->value); count > 0)
+      parts += QString("%1 %2").arg(count).arg(analytics::nameOf(analytics::errorCheckpoints()[s].first));
+  }
+  return parts.isEmpty() ? QString("none") : parts.join(", ");
+}
+
 /// In the order of AttemptLines::Column.
-using Critical = const analytics::CheckpointValue*;
 constexpr std::array<ColumnText, AttemptLines::columnTotal> columns{{
-    {"Start", [](const Row& a, Critical) { return startText(a.startUtc); }},
-    {"Participant or profile", [](const Row& a, Critical) { return operatorText(a); }},
-    {"Group", [](const Row& a, Critical) { return QString::fromStdString(a.group); }},
-    {"Scene", [](const Row& a, Critical) { return QString::fromStdString(a.scene); }},
-    {"Outcome", [](const Row& a, Critical) { return outcomeText(a.outcome) + (a.excluded ? ", excluded" : ""); }},
-    {"Safety", [](const Row&, Critical critical) { return safetyText(critical); }},
-    {"Verification", [](const Row& a, Critical) { return badgeText(a.verification.verdict); }},
-    {"Mode", [](const Row& a, Critical) { return modeText(a.mode); }},
-    {"Synthetic", [](const Row& a, Critical) { return QString(a.synthetic ? "synthetic" : ""); }},
-    {"Tags", [](const Row& a, Critical) { return textsOf(a.tags).join(", "); }},
-    {"Attempt", [](const Row& a, Critical) { return QString::fromStdString(a.uuid).left(8); }},
+    {"Participant or profile", [](const Row& a, const Known&) { return operatorText(a); }},
+    {"Group", [](const Row& a, const Known&) { return QString::fromStdString(a.group); }},
+    {"Task", [](const Row& a, const Known&) { return QString::fromStdString(a.scene); }},
+    {"When", [](const Row& a, const Known&) { return startText(a.startUtc); }},
+    {"Safety", [](const Row&, const Known& known) { return safetyText(known.errors[0]); }},
+    {"Critical view", [](const Row&, const Known& known) { return viewText(known.criticalView); }},
+    {"Errors", [](const Row&, const Known& known) { return errorsText(known); }},
+    {"Trend", [](const Row&, const Known& known) { return known.trend; }},
+    {"Outcome", [](const Row& a, const Known&) { return outcomeText(a.outcome) + (a.excluded ? ", excluded" : ""); }},
+    {"Verification", [](const Row& a, const Known&) { return badgeText(a.verification.verdict); }},
+    {"Mode", [](const Row& a, const Known&) { return modeText(a.mode); }},
+    {"Synthetic", [](const Row& a, const Known&) { return QString(a.synthetic ? "synthetic" : ""); }},
+    {"Tags", [](const Row& a, const Known&) { return textsOf(a.tags).join(", "); }},
+    {"Attempt", [](const Row& a, const Known&) { return QString::fromStdString(a.uuid).left(8); }},
 }};
+
+/// Of a participant's attempts that compare, critical errors of the last three: "2, 1, 0 critical".
+std::vector<QString> trendsOf(const std::vector<Row>& attempts, const AttemptLines::Values& critical) {
+  std::map<std::pair<std::string, std::string>, std::vector<std::size_t>> series;
+  for (std::size_t i = 0; i < attempts.size(); ++i) {
+    const Row& a = attempts[i];
+    const auto value = critical.find(a.uuid);
+    if (!a.participant.empty() && value != critical.end() && value->second.value)
+      series[{a.participant, a.comparabilityKey}].push_back(i);
+  }
+  std::vector<QString> trends(attempts.size());
+  for (auto& entry : series) {
+    std::vector<std::size_t>& rows = entry.second;
+    std::stable_sort(rows.begin(), rows.end(),
+                     [&](std::size_t a, std::size_t b) { return attempts[a].startUtc < attempts[b].startUtc; });
+    QStringList counts;
+    constexpr int last = 3;
+    for (const std::size_t row : rows) {
+      counts += QString::number(std::lround(*critical.at(attempts[row].uuid).value));
+      if (counts.size() > 1)
+        trends[row] = QStringList(counts.mid(std::max<qsizetype>(0, counts.size() - last))).join(", ") + " critical";
+    }
+  }
+  return trends;
+}
 
 }  // namespace
 
-AttemptLines::AttemptLines(std::vector<analytics::AttemptRow> attempts,
-                           const std::map<std::string, analytics::CheckpointValue>& critical)
+AttemptLines::AttemptLines(std::vector<analytics::AttemptRow> attempts, const Figures& figures)
     : attempts_(std::move(attempts)) {
   lines_.reserve(attempts_.size());
   std::set<std::string> tags;
+  std::map<QString, int> newest;
+  const std::vector<QString> trends = trendsOf(attempts_, figures.errors[0]);
   for (const analytics::AttemptRow& attempt : attempts_) {
+    const int row = static_cast<int>(lines_.size());
     Line& line = lines_.emplace_back();
-    const auto value = critical.find(attempt.uuid);
+    const auto valueIn = [&](const Values& values) {
+      const auto value = values.find(attempt.uuid);
+      return value == values.end() ? nullptr : &value->second;
+    };
+    Known known{{}, valueIn(figures.criticalView), trends[at(row)]};
+    for (std::size_t s = 0; s < severityCount; ++s) known.errors[s] = valueIn(figures.errors[s]);
     QString text = QString::fromStdString(attempt.uuid) + '\n' + QString::fromStdString(attempt.profile) + '\n' +
                    QString::fromStdString(attempt.fileName);
     for (int column = 0; column < columnTotal; ++column) {
-      line.cells[at(column)] = columns[at(column)].of(attempt, value == critical.end() ? nullptr : &value->second);
+      line.cells[at(column)] = columns[at(column)].of(attempt, known);
       text += '\n' + line.cells[at(column)];
     }
     line.search = text.toLower();
     tags.insert(attempt.tags.begin(), attempt.tags.end());
+    const auto [last, first] = newest.try_emplace(line.cells[operatorColumn], row);
+    if (!first && attempts_[at(last->second)].startUtc <= attempt.startUtc) last->second = row;
   }
+  for (const auto& entry : newest) lines_[at(entry.second)].latest = true;
   tags_ = textsOf({tags.begin(), tags.end()});
   std::vector<int> order(attempts_.size());
   for (int column = 0; column < columnTotal; ++column) {
@@ -119,10 +180,21 @@ FigureValues::FigureValues(const std::function<void(const Take&)>& each) {
   }
 }
 
+namespace {
+
+AttemptLines::Figures figuresOf(const analytics::CohortDatabase& database) {
+  AttemptLines::Figures figures;
+  for (std::size_t s = 0; s < severityCount; ++s)
+    figures.errors[s] = database.valuesOf(analytics::errorCheckpoints()[s].second);
+  figures.criticalView = database.valuesOf("critical-view");
+  return figures;
+}
+
+}  // namespace
+
 CohortDocument::CohortDocument(const std::string& path)
     : database_(path, analytics::CohortDatabase::Access::read),
-      lines_(std::make_shared<const AttemptLines>(database_.listAttempts(),
-                                                  database_.valuesOf(analytics::criticalErrors))) {}
+      lines_(std::make_shared<const AttemptLines>(database_.listAttempts(), figuresOf(database_))) {}
 
 const analytics::AttemptRow* CohortDocument::attempt(const std::string& uuid) const {
   const auto at = std::ranges::find(attempts(), uuid, &analytics::AttemptRow::uuid);

@@ -29,12 +29,15 @@ namespace calot::gui {
 class AttemptLines {
  public:
   enum Column {
-    startColumn,
     operatorColumn,
     groupColumn,
     sceneColumn,
-    outcomeColumn,
+    startColumn,
     safetyColumn,
+    viewColumn,
+    errorsColumn,
+    trendColumn,
+    outcomeColumn,
     verificationColumn,
     modeColumn,
     syntheticColumn,
@@ -43,15 +46,22 @@ class AttemptLines {
     columnTotal
   };
 
+  /// Values of a checkpoint, by attempt.
+  using Values = std::map<std::string, analytics::CheckpointValue>;
+  struct Figures {
+    std::array<Values, severityCount> errors;  ///< as analytics::errorCheckpoints()
+    Values criticalView;
+  };
+
   static QString title(int column);
-  /// @param critical by attempt: its count of critical errors
-  AttemptLines(std::vector<analytics::AttemptRow> attempts,
-               const std::map<std::string, analytics::CheckpointValue>& critical);
+  AttemptLines(std::vector<analytics::AttemptRow> attempts, const Figures& figures);
 
   [[nodiscard]] const std::vector<analytics::AttemptRow>& attempts() const { return attempts_; }
   [[nodiscard]] const QString& cell(int row, int column) const { return lines_[at(row)].cells[at(column)]; }
   /// All that the search box looks through, in small letters.
   [[nodiscard]] const QString& search(int row) const { return lines_[at(row)].search; }
+  /// Is it the newest attempt of its participant, or of its profile where nobody is named?
+  [[nodiscard]] bool isLatest(int row) const { return lines_[at(row)].latest; }
   /// Position of the row in the order of a column; equal cells have equal ranks.
   [[nodiscard]] int rank(int row, int column) const { return ranks_[at(column)][at(row)]; }
   [[nodiscard]] const QStringList& tags() const { return tags_; }  ///< that any attempt has, by name
@@ -60,6 +70,7 @@ class AttemptLines {
   struct Line {
     std::array<QString, columnTotal> cells;
     QString search;
+    bool latest = false;
   };
   static std::size_t at(int index) { return static_cast<std::size_t>(index); }
 

@@ -32,7 +32,6 @@
 namespace calot::gui {
 namespace {
 
-constexpr int noticeFor = 8000;     // ms
 constexpr int refreshEvery = 3000;  // ms, while an import runs
 
 QStringList localFiles(const QMimeData& data) {
@@ -74,6 +73,7 @@ DashboardWindow::DashboardWindow(const AssessProgram& program, const std::vector
       pair_(new PairPage),
       rating_(new RatingPage),
       undo_(new QUndoStack(this)),
+      assetFolders_(assetFolders),
       imports_(program) {
   setWindowTitle("Calot");
   resize(theme::windowSizeFor(screen()->availableSize()));
@@ -129,8 +129,12 @@ void DashboardWindow::buildMenus() {
   };
   QMenu* const file = menuBar()->addMenu("&File");
   add(file, "&Open …", QKeySequence::Open, [this] { askForDatabase(); });
+  recent_ = file->addMenu("Open &recent");
+  fillRecent();
   add(file, "&New cohort …", QKeySequence::New, [this] { askForNewDatabase(); });
   add(file, "&Import recordings …", Qt::CTRL | Qt::Key_I, [this] { askForRecordings(); });
+  add(file, "&Print …", QKeySequence::Print, [this] { print(); });
+  add(file, "&Export the list …", {}, [this] { askForList(); });
   add(file, "&Settings …", Qt::CTRL | Qt::Key_Comma, [this] { SettingsDialog(this).exec(); });
   add(file, "&Quit", Qt::CTRL | Qt::Key_Q, [this] { close(); });
   QMenu* const edit = menuBar()->addMenu("&Edit");
@@ -141,11 +145,17 @@ void DashboardWindow::buildMenus() {
   edit->addActions({undo, redo});
   exclude_ = add(edit, "&Exclude from studies …", Qt::CTRL | Qt::Key_E, [this] { askForExclusion(); });
   exclude_->setEnabled(false);
-  add(edit, "Add &tag …", Qt::CTRL | Qt::Key_T, [this] { askForTag(true); });
-  add(edit, "Remove ta&g …", Qt::CTRL | Qt::SHIFT | Qt::Key_T, [this] { askForTag(false); });
   add(edit, "Make a &norm …", Qt::CTRL | Qt::Key_M, [this] { askForNorm(); });
-  add(edit, "&Verify again", Qt::CTRL | Qt::SHIFT | Qt::Key_V, [this] { verifySelected(); });
-  add(edit, "&Side by side", Qt::CTRL | Qt::Key_B, [this] { pairSelected(); });
+  attempts_->offer({exclude_,
+                    add(edit, "Change the grou&p", Qt::CTRL | Qt::Key_G,
+                        [this] {
+                          tabs_->setCurrentWidget(attempts_);
+                          attempts_->editGroup();
+                        }),
+                    add(edit, "Add &tag …", Qt::CTRL | Qt::Key_T, [this] { askForTag(true); }),
+                    add(edit, "Remove ta&g …", Qt::CTRL | Qt::SHIFT | Qt::Key_T, [this] { askForTag(false); }),
+                    add(edit, "&Verify again", Qt::CTRL | Qt::SHIFT | Qt::Key_V, [this] { verifySelected(); }),
+                    add(edit, "&Side by side", Qt::CTRL | Qt::Key_B, [this] { pairSelected(); })});
   QMenu* const view = menuBar()->addMenu("&View");
   for (int page = 0; page < tabs_->count(); ++page)
     view->addAction(QString("&%1 ").arg(page + 1) + tabs_->tabText(page),
@@ -158,6 +168,7 @@ void DashboardWindow::buildMenus() {
   add(view, "&Reload", Qt::Key_F5, [this] { reload(); });
   view->addAction(importDock_->toggleViewAction());
   QMenu* const help = menuBar()->addMenu("&Help");
+  add(help, "&Manual", {}, [this] { showManual(); });
   add(help, "&Keys …", QKeySequence::HelpContents, [this] { showKeys(keysOf(*menuBar()), this); });
   add(help, "&About Calot …", {}, [this] {
     QMessageBox::about(this, "Calot",
@@ -175,6 +186,8 @@ void DashboardWindow::connectPages() {
   connect(greeting_, &GreetingPage::importRequested, this, &DashboardWindow::askForRecordings);
   connect(attempt_, &AttemptPage::sheetWritten, this,
           [this](const QString& text) { statusBar()->showMessage(text, noticeFor); });
+  connect(attempt_, &AttemptPage::normRequested, this, &DashboardWindow::askForNorm);
+  connect(attempts_, &AttemptsPage::groupEdited, this, &DashboardWindow::changeGroup);
   connect(rating_, &RatingPage::nextWanted, attempts_, &AttemptsPage::selectNext);
   connect(attempts_, &AttemptsPage::selectionChanged, this, [this] {
     const analytics::AttemptRow* attempt = attempts_->selected();
@@ -212,6 +225,8 @@ void DashboardWindow::setDocument(std::shared_ptr<const CohortDocument> document
   problem_->hide();
   const QString name = QFileInfo(QString::fromStdString(document_->path())).fileName();
   setWindowTitle(name + " – Calot");
+  settings::rememberCohort(QString::fromStdString(document_->path()));
+  fillRecent();
   // The list is last: its selection goes to the others.
   for (CohortPage* page : std::initializer_list<CohortPage*>{study_, trainee_, pair_, rating_, compare_, attempts_})
     page->setDocument(document_);

@@ -13,6 +13,7 @@
 class QAction;
 class QDockWidget;
 class QLabel;
+class QMenu;
 class QStackedWidget;
 class QTabWidget;
 class QTimer;
@@ -60,6 +61,10 @@ class DashboardWindow : public QMainWindow {
   void excludeOrInclude(const QString& reason, const QString& by);
   /// Puts a tag on the selected attempts, or takes it off. Can be undone. @pre tag as analytics::checkTag()
   void tagSelected(const QString& tag, bool add, const QString& by);
+  /// Gives a participant another group. Can be undone.
+  void changeGroup(const QString& participant, const QString& group);
+  /// Writes the list of attempts as it is shown, as CSV.
+  void exportList(const QString& file);
   /// Simulates the selected attempts' recordings again; progress as of an import.
   void verifySelected();
   /// Puts two selected attempts side by side.
@@ -83,6 +88,7 @@ class DashboardWindow : public QMainWindow {
   void dropEvent(QDropEvent* event) override;
 
  private:
+  static constexpr int noticeFor = 8000;  ///< ms that the status bar shows a notice
   void buildMenus();
   void buildImport();
   void connectPages();
@@ -97,6 +103,10 @@ class DashboardWindow : public QMainWindow {
   void askForExclusion();
   void askForTag(bool add);
   void askForNorm();
+  void askForList();
+  void print();  ///< what the page shows
+  void showManual();
+  void fillRecent();
   [[nodiscard]] std::vector<analytics::AttemptRow> chosenAttempts() const;  ///< selected, or the current one
 
   std::shared_ptr<const CohortDocument> document_;
@@ -114,6 +124,8 @@ class DashboardWindow : public QMainWindow {
   RatingPage* rating_;
   QUndoStack* undo_;
   QAction* exclude_ = nullptr;
+  QMenu* recent_ = nullptr;
+  std::vector<std::filesystem::path> assetFolders_;
   QDockWidget* importDock_ = nullptr;
   QTimer* refresh_ = nullptr;  ///< while an import runs
   ImportQueue imports_;

@@ -69,6 +69,8 @@ constexpr const char* explanation =
     "a person sets: calot norm create.";
 
 constexpr int maxFolders = 20;
+constexpr int maxRecent = 9;
+constexpr const char* recentKey = "cohorts/recent";
 constexpr const char* foldersKey = "recordings/folders";
 constexpr const char* programKey = "import/program";
 constexpr const char* threadsKey = "import/threads";
@@ -280,6 +282,14 @@ void rememberRecordingFolder(const QString& folder) {
   folders.removeAll(folder);
   folders.prepend(folder);
   setRecordingFolders(folders);
+}
+
+QStringList recentCohorts() { return store().value(recentKey).toStringList(); }
+void rememberCohort(const QString& file) {
+  QStringList files = recentCohorts();
+  files.removeAll(file);
+  files.prepend(file);
+  store().setValue(recentKey, files.mid(0, maxRecent));
 }
 
 QString chosenCalotProgram() { return store().value(programKey).toString(); }

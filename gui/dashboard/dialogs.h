@@ -85,6 +85,10 @@ void setRecordingFolders(const QStringList& folders);
 /// Puts a folder first; adds it where it is new.
 void rememberRecordingFolder(const QString& folder);
 
+/// Cohorts that were opened, the newest first.
+[[nodiscard]] QStringList recentCohorts();
+void rememberCohort(const QString& file);
+
 /// The program that assesses recordings: as set; else `calot` beside this program; else on the search path; else empty.
 [[nodiscard]] QString calotProgram();
 void setCalotProgram(const QString& file);   ///< empty: looked for as said

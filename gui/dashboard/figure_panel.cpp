@@ -5,9 +5,10 @@
 #include <cmath>
 #include <QTabWidget>
 
-#include "analytics/assessment/norm.h"
+#include "analytics/report/key_figures.h"
 #include "gui/attempt/figure_text.h"
 #include "gui/dashboard/page_parts.h"
+#include "gui/dashboard/plot_view.h"
 
 namespace calot::gui {
 namespace {
@@ -33,7 +34,8 @@ FigurePanel::FigurePanel()
     : norm_(parts::named("norm", new QComboBox)),
       verdict_(parts::plainLabel("verdict-of-norm")),
       sheet_(parts::named("grade-sheet", new QPushButton("Gr&ade sheet …"))),
-      onePage_(parts::named("one-page", new QPushButton("&One page …"))),
+      makeNorm_(parts::named("make-norm", new QPushButton("&Make one …"))),
+      bars_(new PlotView("figure-bars", "Figures that count against their pass marks")),
       figureTable_(makeTree(families_, "attempt-checkpoints", "Checkpoints of the attempt, by family")),
       eventTable_(makeTree(events_, "events", "Events of the attempt, by kind")) {
   figureTable_->setItemDelegateForColumn(CheckpointTableModel::normColumn, new BandDelegate(figureTable_));
@@ -47,13 +49,15 @@ FigurePanel::FigurePanel()
   tabs->addTab(figureTable_, "&Checkpoints");
   tabs->addTab(eventTable_, "Even&ts");
   norm_->setAccessibleName("Norm that the attempt is held against");
-  sheet_->setToolTip("Write the attempt against this norm as a PDF");
-  onePage_->setToolTip("Write the attempt on one page, with pictures of its worst moments, as a PDF");
-  QBoxLayout* const head = parts::row({{"&Norm", norm_}, {verdict_, 1}, sheet_, onePage_});
-  setLayout(parts::bare(parts::column({head, {tabs, 1}})));
+  sheet_->setToolTip("Write one page for the trainee, with pictures of the gravest moments and all figures behind it");
+  QBoxLayout* const head = parts::row({{"&Norm", norm_}, {verdict_, 1}, makeNorm_, sheet_});
+  setLayout(parts::bare(parts::column({head, bars_, {tabs, 1}})));
 
-  connect(sheet_, &QPushButton::clicked, this, [this] { emit sheetRequested(false); });
-  connect(onePage_, &QPushButton::clicked, this, [this] { emit sheetRequested(true); });
+  connect(sheet_, &QPushButton::clicked, this, &FigurePanel::sheetRequested);
+  connect(makeNorm_, &QPushButton::clicked, this, &FigurePanel::normRequested);
+  connect(bars_, &PlotView::attemptChosen, this, [this](const QString& key) {
+    goToFigure(key.section(' ', 0, 0).toStdString(), key.section(' ', 1).toStdString());
+  });
   connect(norm_, &QComboBox::currentIndexChanged, this, [this] { showStanding(); });
   const auto figureAt = [this](const QModelIndex& at) {
     if (const int row = families_.sourceRow(at); row >= 0) showFigure(row);
@@ -72,39 +76,18 @@ void FigurePanel::setTrack(const std::vector<TrackEvent>& events, const std::vec
   eventTable_->expandAll();
 }
 
-AttemptSummary FigurePanel::summary() const {
-  return summaryOf(*attempt_, values_, standing_ && standing_->grade ? &*standing_->grade : nullptr);
+AttemptSummary FigurePanel::summary() const { return summaryOf(*attempt_, values_, grade()); }
+
+std::vector<analytics::SheetMoment> FigurePanel::worstMoments() const {
+  std::vector<analytics::FigureMoments> figures;
+  for (int row = 0; row < figures_.rowCount(); ++row) {
+    if (const analytics::FigureMoments* found = figures_.moments(row)) figures.push_back(*found);
+  }
+  return analytics::worstMoments(errors_, figures, grade());
 }
 
-std::vector<WorstMoment> FigurePanel::worstMoments() const {
-  constexpr double apart = 1.0;  // s: two pictures of one moment tell no more than one
-  std::vector<WorstMoment> worst;
-  for (const analytics::ErrorLine& error : errors_) {
-    if (error.severity == Severity::minor || worst.size() == maxWorstMoments) break;
-    worst.push_back({error.time, std::string(analytics::nameOf(error.severity)) + ": " + error.counted()});
-  }
-  enum class Tier { weak, counts, any };
-  for (const Tier tier : {Tier::weak, Tier::counts, Tier::any}) {
-    for (int row = 0; row < figures_.rowCount() && worst.size() < maxWorstMoments; ++row) {
-      const analytics::FigureMoments* found = figures_.moments(row);
-      const analytics::CheckpointValue& value = figures_.value(row);
-      if (found == nullptr || found->moments.empty()) continue;
-      if (tier == Tier::weak && !isWeak(figures_.standing(row))) continue;
-      if (tier == Tier::counts && !analytics::countsByDefault(value.name)) continue;
-      const analytics::Moment& most = worstOf(found->moments);
-      const double time = 0.5 * (most.begin + most.end);
-      if (std::any_of(worst.begin(), worst.end(),
-                      [&](const WorstMoment& w) { return std::abs(w.time - time) < apart; }))
-        continue;
-      worst.push_back({time, figureTitle(value.name, value.subject).toStdString()});
-    }
-  }
-  std::sort(worst.begin(), worst.end(), [](const WorstMoment& a, const WorstMoment& b) { return a.time < b.time; });
-  return worst;
-}
-
-const analytics::Norm* FigurePanel::norm() const {
-  return standing_ && standing_->grade ? &standing_->grade->norm : nullptr;
+const analytics::Grade* FigurePanel::grade() const {
+  return standing_ && standing_->grade ? &*standing_->grade : nullptr;
 }
 
 void FigurePanel::setAttempt(std::shared_ptr<const CohortDocument> document, const analytics::AttemptRow& attempt) {
@@ -117,7 +100,6 @@ void FigurePanel::setAttempt(std::shared_ptr<const CohortDocument> document, con
   });
   if (!fault.isEmpty()) emit problem(fault);
   figures_.setValues(values_, intervals_);
-  figureTable_->expandAll();
   figureTable_->setColumnHidden(CheckpointTableModel::intervalColumn, intervals_.empty());
   {
     const QSignalBlocker quiet(norm_);
@@ -145,7 +127,7 @@ void FigurePanel::clear() {
   verdict_->clear();
   standing_.reset();
   sheet_->setEnabled(false);
-  onePage_->setEnabled(false);
+  showBars();
 }
 
 void FigurePanel::setMoments(const std::vector<analytics::FigureMoments>& moments) {
@@ -159,7 +141,7 @@ void FigurePanel::showStanding() {
   figureTable_->setColumnHidden(CheckpointTableModel::normColumn, norms.empty());
   const int at = norm_->currentIndex();
   if (at < 0 || static_cast<std::size_t>(at) >= norms.size()) {
-    verdict_->setText("No norm for this task yet (calot norm create).");
+    verdict_->setText(attempt_ ? "none for this task yet" : "");
     standing_.reset();
     figures_.setStandings({});
   } else {
@@ -167,9 +149,19 @@ void FigurePanel::showStanding() {
     verdict_->setText(standing_->judged ? QString() : QString::fromStdString(standing_->verdict));
     figures_.setStandings(standing_->figures);
   }
-  sheet_->setEnabled(norm() != nullptr);
-  onePage_->setEnabled(attempt_.has_value());
+  makeNorm_->setVisible(attempt_ && norms.empty());
+  norm_->setVisible(!norms.empty());
+  sheet_->setEnabled(attempt_.has_value());
+  showBars();
   if (attempt_) emit summaryChanged();
+}
+
+void FigurePanel::showBars() {
+  const std::vector<analytics::KeyFigure> figures = analytics::keyFigures(values_, grade());
+  bars_->setVisible(!figures.empty());
+  bars_->keepHeight(analytics::drawKeyFigures(figures, analytics::plotWidth, 1).height);
+  bars_->show(
+      {}, [figures](const analytics::PlotFrame& frame) { return analytics::drawKeyFigures(figures, frame.width, 1); });
 }
 
 void FigurePanel::showFigure(int row) {
@@ -202,6 +194,10 @@ void FigurePanel::goToFigure(const std::string& checkpoint, const std::string& s
 }
 
 void FigurePanel::showWorst() {
+  if (!errors_.empty()) {
+    emit timeChosen(errors_.front().time);
+    return;
+  }
   int chosen = -1;
   for (int row = 0; row < figures_.rowCount(); ++row) {
     const analytics::FigureMoments* found = figures_.moments(row);

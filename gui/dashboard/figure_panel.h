@@ -7,6 +7,7 @@
 #include <string>
 
 #include "analytics/assessment/grade.h"
+#include "analytics/report/attempt_sheet.h"
 #include "gui/dashboard/checkpoint_table_model.h"
 #include "gui/dashboard/cohort_document.h"
 #include "gui/words/attempt_summary.h"
@@ -18,12 +19,7 @@ class QTreeView;
 
 namespace calot::gui {
 
-/// A moment that is worth a picture.
-struct WorstMoment {
-  double time = 0.0;  ///< s
-  std::string caption;
-};
-inline constexpr std::size_t maxWorstMoments = 3;
+class PlotView;
 
 /// Clicks on figures to moments of the replay: a figure's first click goes to the moment that made most of it, each
 /// further one to the next in time, around.
@@ -41,8 +37,8 @@ class MomentCycle {
   std::size_t at_ = 0;  ///< its moment
 };
 
-/// The checkpoints of one attempt, held against a norm and folded by family, and its events, in groups: choosing a row
-/// asks for its moment.
+/// The figures of one attempt that count, as bars against the pass marks of a norm; all of them folded by family; and
+/// its events, in groups. Choosing one asks for its moment.
 class FigurePanel : public QWidget {
   Q_OBJECT
  public:
@@ -58,28 +54,31 @@ class FigurePanel : public QWidget {
 
   [[nodiscard]] const std::vector<analytics::CheckpointValue>& values() const { return values_; }
   [[nodiscard]] AttemptSummary summary() const;  ///< @pre an attempt is shown
-  /// Moments worth a picture: of figures that fall short of the norm, then of those that count, apart in time.
-  [[nodiscard]] std::vector<WorstMoment> worstMoments() const;
+  /// Moments worth a picture, by what is known of the recording.
+  [[nodiscard]] std::vector<analytics::SheetMoment> worstMoments() const;
   [[nodiscard]] const std::vector<analytics::ErrorLine>& errors() const { return errors_; }
-  /// Norm used; null if none is selected or the attempt is not judged.
-  [[nodiscard]] const analytics::Norm* norm() const;
+  /// Against the norm that is chosen; null if none is, or the attempt is not judged.
+  [[nodiscard]] const analytics::Grade* grade() const;
   [[nodiscard]] const CheckpointTableModel& figures() const { return figures_; }
   /// Goes to the moments of a figure as soon as they are known.
   void goToFigure(const std::string& checkpoint, const std::string& subject);
-  /// Goes to the moments of the first figure that falls short of the norm, else of the first that has any.
+  /// Goes to the gravest error; without errors to the moments of the first figure that falls short of the norm, else of
+  /// the first that has any.
   void showWorst();
 
  signals:
   void problem(const QString& message);
   void timeChosen(double seconds);
   void summaryChanged();
-  /// The attempt is to be written: on one page, or against the norm that is chosen.
-  void sheetRequested(bool onePage);
+  /// The attempt is to be written as a sheet.
+  void sheetRequested();
+  void normRequested();
   /// Intervals in which a figure arose: beginnings and ends (s).
   void windowsChosen(const std::vector<std::pair<double, double>>& windows);
 
  private:
   void showStanding();
+  void showBars();
   void showFigure(int row);
   void selectFigure(int row);
 
@@ -95,8 +94,9 @@ class FigurePanel : public QWidget {
   MomentCycle cycle_;
   QComboBox* norm_;
   QLabel* verdict_;
-  QPushButton *sheet_, *onePage_;
+  QPushButton *sheet_, *makeNorm_;
   std::optional<AttemptStanding> standing_;
+  PlotView* bars_;
   QTreeView* figureTable_;
   QTreeView* eventTable_;
 };

@@ -17,6 +17,7 @@
 #include <utility>
 #include <vector>
 
+#include "analytics/report/report_document.h"
 #include "analytics/report/study.h"
 #include "gui/attempt/widget_parts.h"
 #include "gui/dashboard/cohort_document.h"
@@ -71,6 +72,10 @@ class CohortPage : public QWidget {
  public:
   /// @pre not null
   virtual void setDocument(std::shared_ptr<const CohortDocument> document);
+  using Taker = std::function<void(const analytics::ReportDocument&)>;
+  /// Makes what the page shows into a document for paper, and hands it over, now or later.
+  /// @return false: there is nothing to print
+  virtual bool makeDocument(const Taker& /*take*/) { return false; }
   /// Puts the keyboard where one begins. No focus proxy: Tab would pass over what stands before it.
   void focusBegin();
 

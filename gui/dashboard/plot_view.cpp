@@ -17,10 +17,10 @@
 namespace calot::gui {
 namespace {
 
-constexpr double usualScale = 1.15;                    // pixels of a unit: letters of 11 units are as high as a label's
-constexpr double leastWidth = 300, leastHeight = 180;  // units: a smaller plot would cut its letters off
-constexpr double markReach = 8.0;                      // pixels from a mark that still count as on it
-constexpr double ring = 9.0;                           // pixels: radius around the chosen mark
+constexpr double usualScale = 1.15;  // pixels of a unit: letters of 11 units are as high as a label's
+constexpr double leastWidth = 300;   // units: a smaller plot would cut its letters off
+constexpr double markReach = 8.0;    // pixels from a mark that still count as on it
+constexpr double ring = 9.0;         // pixels: radius around the chosen mark
 
 }  // namespace
 
@@ -52,8 +52,13 @@ void PlotView::show(const QString& title, Draw draw, bool synthetic) {
   update();
 }
 
+void PlotView::keepHeight(double units) {
+  leastHeight_ = units;
+  setFixedHeight(static_cast<int>(std::ceil(usualScale * theme::typeScale() * units)));
+}
+
 double PlotView::pixelsPerUnit() const {
-  return std::min({usualScale * theme::typeScale(), width() / leastWidth, height() / leastHeight});
+  return std::min({usualScale * theme::typeScale(), width() / leastWidth, height() / leastHeight_});
 }
 
 const analytics::Drawing& PlotView::drawing() {

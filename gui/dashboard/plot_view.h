@@ -21,6 +21,8 @@ class PlotView : public QWidget {
   PlotView(const char* name, const char* spokenName);
   /// @param draw called again when size or letters change; without a drawing, the title stands alone
   void show(const QString& title, Draw draw, bool synthetic = false);
+  /// Makes the widget as high as this (units of the drawing), for a drawing whose height follows from what it shows.
+  void keepHeight(double units);
   /// Title alone.
   void clear(const QString& title) { show(title, {}); }
 
@@ -55,6 +57,7 @@ class PlotView : public QWidget {
   std::optional<analytics::Drawing> drawing_;  ///< none: to be drawn
   QPixmap painted_;                            ///< null: to be painted
   int chosen_ = -1;                            ///< index of a mark, or -1
+  double leastHeight_ = 180.0;                 ///< units: a smaller plot would cut its letters off
 };
 
 /// The colour on the screen of a drawing's colour, which is meant for white paper.

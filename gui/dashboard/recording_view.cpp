@@ -2,6 +2,7 @@
 #include "gui/dashboard/recording_view.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "gui/attempt/widget_parts.h"
 #include "gui/dashboard/dialogs.h"
@@ -20,12 +21,22 @@ auto stepsOf(LongWork::Control& control) {
 
 RecordingView::RecordingView(Parts with)
     : reads_(with.timeline),
-      picture_(new ScenePictureWidget),
+      picture_(new ScenePictureWidget(2)),
+      free_(new FreeView),
+      toggle_(parts::named("free-view-toggle", new QPushButton("Free vie&w"))),
       timeline_(new TimelineBar),
-      replay_(std::make_unique<Replay>(
-          [picture = picture_](std::shared_ptr<const SceneView> view) { picture->showView(std::move(view)); })) {
-  QBoxLayout* const rows = parts::bare(parts::column({{picture_, 1}}));
-  if (with.transport) rows->addWidget(new TransportBar(*replay_));
+      replay_(std::make_unique<Replay>([picture = picture_, free = free_](std::shared_ptr<const SceneView> view) {
+        free->follow(view);
+        picture->showView(std::move(view));
+      })) {
+  free_->hide();
+  QBoxLayout* const rows = parts::bare(parts::column({{parts::row({{picture_, 1}, {free_, 1}}), 1}}));
+  toggle_->setCheckable(true);
+  toggle_->setToolTip("A second picture beside the endoscope's, from anywhere (V): drag it to turn it");
+  connect(toggle_, &QPushButton::toggled, free_, &QWidget::setVisible);
+  QBoxLayout* const controls = parts::bare(parts::row({{new TransportBar(*replay_), 1}, toggle_}));
+  rows->addWidget(parts::boxed(controls));
+  if (!with.transport) rows->itemAt(rows->count() - 1)->widget()->hide();
   rows->addWidget(timeline_);
   setLayout(rows);
   if (!with.timeline) timeline_->hide();
@@ -73,12 +84,17 @@ void RecordingView::close(const QString& text, const QString& timelineText) {
   file_.clear();
   track_.reset();
   picture_->showText(text);
+  free_->forget({});
   timeline_->setText(timelineText);
 }
 
 bool RecordingView::settled() const {
-  return !busy_ && (!isOpen() || (replay_->position().settled && !picture_->picture().isNull()));
+  if (busy_ || !isOpen()) return !busy_;
+  const PlayerPosition& at = replay_->position();
+  return at.settled && std::abs(picture_->time() - at.time) < 1e-6;
 }
+
+void RecordingView::toggleFreeView() { toggle_->toggle(); }
 
 void RecordingView::hideEvent(QHideEvent* event) {
   QWidget::hideEvent(event);

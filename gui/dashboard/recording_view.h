@@ -15,12 +15,14 @@
 #include "gui/attempt/replay_transport.h"
 #include "gui/dashboard/cohort_document.h"
 #include "gui/dashboard/timeline.h"
-#include "gui/view/scene_picture_widget.h"
+#include "gui/view/free_view.h"
+
+class QPushButton;
 
 namespace calot::gui {
 
-/// The recording of an attempt: the picture of its replay and its timeline. The recording is read on a worker thread:
-/// its timeline, then the moments of figures. Pauses where it is not seen.
+/// The recording of an attempt: the picture of its replay, beside it one from anywhere on request, and its timeline.
+/// The recording is read on a worker thread: its timeline, then the moments of figures. Pauses where it is not seen.
 class RecordingView : public QWidget {
   Q_OBJECT
  public:
@@ -40,6 +42,7 @@ class RecordingView : public QWidget {
   void close(const QString& text, const QString& timelineText = {});
 
   [[nodiscard]] Replay& replay() const { return *replay_; }
+  void toggleFreeView();
   [[nodiscard]] bool isOpen() const { return replay_->isOpen(); }
   [[nodiscard]] TimelineBar& timeline() const { return *timeline_; }
   [[nodiscard]] const std::filesystem::path& file() const { return file_; }          ///< that was opened last, or empty
@@ -67,6 +70,8 @@ class RecordingView : public QWidget {
   bool reads_;
   bool busy_ = false;  ///< something is still to come of the recording
   ScenePictureWidget* picture_;
+  FreeView* free_;  ///< beside the endoscope's, where it is asked for
+  QPushButton* toggle_;
   TimelineBar* timeline_;
   std::unique_ptr<Replay> replay_;
   std::function<void()> take_;  ///< what work_ reads

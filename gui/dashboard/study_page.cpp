@@ -322,6 +322,12 @@ void StudyPage::write(const QString& target, bool html) {
   });
 }
 
+bool StudyPage::makeDocument(const Taker& take) {
+  if (!study_) return false;
+  take(analytics::studyDocument(*study_, analytics::StudyDetail::first));
+  return true;
+}
+
 void StudyPage::saveAs(bool html) {
   if (!study_) return;
   const QString target =

@@ -19,6 +19,7 @@ class StudyPage : public CohortPage {
   StudyPage();
   /// Writes what is shown, on another thread: as HTML, or CSV into a folder; what is there is replaced.
   void write(const QString& target, bool html);
+  bool makeDocument(const Taker& take) override;
   [[nodiscard]] bool busy() const { return work_.busy(); }  ///< computing, or writing
   [[nodiscard]] bool ready() const { return study_ != nullptr; }
 

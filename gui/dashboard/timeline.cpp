@@ -18,8 +18,13 @@ namespace {
 
 int phaseTop() { return 4; }
 int phaseHeight() { return theme::inType(20); }
-int eventTop() { return phaseTop() + phaseHeight() + 6; }
-int eventHeight() { return theme::inType(18); }
+// Lanes below the phases: errors by severity, the gravest first, then what else happened.
+constexpr int laneCount = static_cast<int>(severityCount) + 1;
+int laneHeight() { return theme::inType(14); }
+int laneTop(int lane) { return phaseTop() + phaseHeight() + 4 + lane * laneHeight(); }
+int laneOf(const TrackEvent& event) {
+  return event.severity ? static_cast<int>(Severity::critical) - static_cast<int>(*event.severity) : laneCount - 1;
+}
 constexpr double reach = 5.0;  // pixels from an event that still count as on it
 
 /// Okabe and Ito's colours, distinguished by people with any of the common colour-vision deficiencies; the name stands
@@ -33,24 +38,33 @@ QColor colourOf(Phase phase) {
   return at != colours.end() ? at->second : QColor(0xd8, 0xd8, 0xd8);
 }
 
+QColor colourOf(const TrackEvent& event) {
+  if (!event.severity) return event.error ? theme::second() : theme::first();
+  return *event.severity == Severity::critical ? theme::trouble()
+         : *event.severity == Severity::major  ? theme::second()
+                                               : theme::muted();
+}
+
 void paintEvents(QPainter& painter, const TimeScale& scale, const std::vector<TrackEvent>& events) {
-  // Errors last, so that nothing covers them.
-  for (const bool errors : {false, true}) {
-    for (const TrackEvent& event : events) {
-      if (event.error != errors) continue;
-      const double x = scale.x(event.time);
-      if (errors) {
-        painter.setPen(QPen(theme::surface(), 0.8));
-        painter.setBrush(theme::second());
-        const QPolygonF triangle{
-            {QPointF(x, eventTop() + 2), QPointF(x - 6, eventTop() + 15), QPointF(x + 6, eventTop() + 15)}};
-        painter.drawPolygon(triangle);
-      } else {
-        painter.setPen(QPen(theme::first(), 2.0));
-        painter.drawLine(QPointF(x, eventTop() + 4), QPointF(x, eventTop() + 15));
-      }
+  const double height = laneHeight();
+  for (const TrackEvent& event : events) {
+    const double x = scale.x(event.time), top = laneTop(laneOf(event));
+    if (event.severity) {
+      painter.setPen(QPen(theme::surface(), 0.8));
+      painter.setBrush(colourOf(event));
+      painter.drawPolygon(QPolygonF{{QPointF(x, top + 1.0), QPointF(x - 0.45 * height, top + height - 1.0),
+                                     QPointF(x + 0.45 * height, top + height - 1.0)}});
+    } else {
+      painter.setPen(QPen(colourOf(event), 2.0));
+      painter.drawLine(QPointF(x, top + 2.0), QPointF(x, top + height - 2.0));
     }
   }
+}
+
+/// "1:20": minutes and seconds.
+QString clockText(double seconds) {
+  const int whole = static_cast<int>(std::lround(seconds));
+  return QString("%1:%2").arg(whole / 60).arg(whole % 60, 2, 10, QChar('0'));
 }
 
 double topMargin() { return theme::inType(18); }
@@ -58,12 +72,15 @@ double bottomMargin() { return theme::inType(16); }
 constexpr double headroom = 1.15;  // of the highest number, so that a line along it is seen
 
 double timeInterval(double seconds) {
+  if (seconds > 1200.0) return 300.0;
   if (seconds > 240.0) return 60.0;
   if (seconds > 60.0) return 20.0;
   return seconds > 20.0 ? 5.0 : 1.0;
 }
 
 }  // namespace
+
+QSize TimelineBar::sizeHint() const { return {600, laneTop(laneCount) + 4}; }
 
 TimelineBar::TimelineBar() {
   setObjectName("timeline");
@@ -120,10 +137,17 @@ void TimelineBar::paintEvent(QPaintEvent*) {
   painter.setPen(theme::muted());
   painter.drawText(QRectF(4, phaseTop(), TimeScale::leftMargin() - 10, phaseHeight()),
                    Qt::AlignVCenter | Qt::AlignRight, "Phases");
-  painter.drawText(QRectF(4, eventTop(), TimeScale::leftMargin() - 10, eventHeight() - 4),
-                   Qt::AlignVCenter | Qt::AlignRight, "Events");
+  for (int lane = 0; lane < laneCount; ++lane) {
+    static constexpr const char* titles[laneCount] = {"Critical", "Major", "Minor", "Events"};
+    painter.setPen(theme::muted());
+    painter.drawText(QRectF(4, laneTop(lane), TimeScale::leftMargin() - 10, laneHeight()),
+                     Qt::AlignVCenter | Qt::AlignRight, titles[lane]);
+    painter.setPen(QPen(theme::grid(), 1.0));
+    painter.drawLine(QPointF(s.x(0.0), laneTop(lane) + laneHeight()),
+                     QPointF(s.x(track_.seconds), laneTop(lane) + laneHeight()));
+  }
   for (const auto& [begin, end] : marked_) {
-    painter.fillRect(QRectF(s.x(begin), eventTop() - 4, std::max(3.0, s.x(end) - s.x(begin)), eventHeight() + 4),
+    painter.fillRect(QRectF(s.x(begin), laneTop(0), std::max(3.0, s.x(end) - s.x(begin)), laneCount * laneHeight()),
                      QColor(0xcc, 0x79, 0xa7, 120));
   }
   paintEvents(painter, s, track_.events);
@@ -154,19 +178,16 @@ void TimelineBar::keyPressEvent(QKeyEvent* event) {
 }
 
 const TrackEvent* TimelineBar::eventAt(const QPoint& at) const {
-  if (at.y() < eventTop() - 4) return nullptr;
+  const int lane = (at.y() - laneTop(0)) / laneHeight();
+  if (at.y() < laneTop(0) || lane >= laneCount) return nullptr;
   const TimeScale s = scale();
   const TrackEvent* best = nullptr;
-  double nearest = reach + 1.0;
+  double nearest = reach;
   for (const TrackEvent& event : track_.events) {
     const double away = std::abs(s.x(event.time) - at.x());
-    // Among marks that stand together, the error is chosen.
-    const bool better =
-        away < nearest - 1.0 || (away < nearest + 1.0 && event.error && best != nullptr && !best->error);
-    if (away <= reach && (best == nullptr || better)) {
-      best = &event;
-      nearest = away;
-    }
+    if (laneOf(event) != lane || away > nearest) continue;
+    best = &event;
+    nearest = away;
   }
   return best;
 }
@@ -260,8 +281,7 @@ void TraceChart::paintAxes(QPainter& painter) const {
     painter.setPen(grid);
     painter.drawLine(QPointF(x, box.top()), QPointF(x, box.bottom()));
     painter.setPen(theme::text());
-    painter.drawText(QRectF(x - 40.0, box.bottom(), 80.0, bottomMargin()), Qt::AlignCenter,
-                     QLocale().toString(n * interval, 'f', 0));
+    painter.drawText(QRectF(x - 40.0, box.bottom(), 80.0, bottomMargin()), Qt::AlignCenter, clockText(n * interval));
   }
 }
 

@@ -30,8 +30,8 @@ struct TimeScale {
   [[nodiscard]] double time(double x) const { return std::clamp((x - leftMargin()) / span(), 0.0, 1.0) * seconds; }
 };
 
-/// Phases as named stretches, events below them (errors as filled triangles, others as bars), and where the replay
-/// stands. A click goes to that moment, on an event to it.
+/// Phases as named stretches; below them, each in a lane, errors by severity (triangles) and other events (bars); and
+/// where the replay stands. A click goes to that moment, on an event to it.
 class TimelineBar : public QWidget {
   Q_OBJECT
  public:
@@ -43,8 +43,8 @@ class TimelineBar : public QWidget {
   /// Windows to be marked: a figure's moments.
   void setMarked(std::vector<std::pair<double, double>> windows);
 
-  [[nodiscard]] QSize sizeHint() const override { return {600, theme::inType(52)}; }
-  [[nodiscard]] QSize minimumSizeHint() const override { return {200, theme::inType(52)}; }
+  [[nodiscard]] QSize sizeHint() const override;
+  [[nodiscard]] QSize minimumSizeHint() const override { return {200, sizeHint().height()}; }
 
  signals:
   void timeChosen(double time);

@@ -5,14 +5,22 @@
 #include <filesystem>
 #include <map>
 #include <QCoreApplication>
+#include <QDesktopServices>
 #include <QElapsedTimer>
 #include <QEventLoop>
 #include <QFileDialog>
+#include <QFileInfo>
 #include <QInputDialog>
+#include <QMenu>
+#include <QPrintDialog>
+#include <QPrinter>
 #include <QStackedWidget>
+#include <QStatusBar>
 #include <QTabWidget>
 #include <QUndoCommand>
 #include <QUndoStack>
+#include <QUrl>
+#include <system_error>
 
 #include "gui/attempt/replay_player.h"
 #include "gui/dashboard/attempt_page.h"
@@ -25,6 +33,9 @@
 #include "gui/dashboard/pair_page.h"
 #include "gui/dashboard/ratings_page.h"
 #include "gui/dashboard/study_page.h"
+#include "gui/report/pdf_report.h"
+#include "recorder/base/csv.h"
+#include "recorder/base/files.h"
 
 namespace calot::gui {
 namespace {
@@ -154,6 +165,66 @@ void DashboardWindow::tagSelected(const QString& tag, bool add, const QString& b
   if (attempts_->selected() == nullptr) return;
   const Decision decision{document_->path(), by.toStdString(), chosenAttempts()};
   undo_->push(tagCommand(writer_, decision, add, tag.toStdString()));
+}
+
+void DashboardWindow::changeGroup(const QString& participant, const QString& group) {
+  const auto current =
+      std::ranges::find(document_->attempts(), participant.toStdString(), &analytics::AttemptRow::participant);
+  if (current == document_->attempts().end()) return;
+  const auto change = [name = participant.toStdString()](const std::string& to) -> DecisionCommand::Change {
+    return [name, to](analytics::CohortDatabase& cohort) {
+      analytics::ParticipantChange made;
+      made.group = to;
+      cohort.setParticipant(name, made);
+    };
+  };
+  undo_->push(new DecisionCommand(writer_, document_->path(), "change of group", change(group.toStdString()),
+                                  change(current->group)));
+}
+
+void DashboardWindow::exportList(const QString& file) {
+  std::string text;
+  for (const std::vector<std::string>& cells : attempts_->shownCells()) text += csvLine(cells);
+  if (tryTo([&] { recorder::writeText(file.toStdString(), text, true); }))
+    statusBar()->showMessage("Written: " + file, noticeFor);
+}
+
+void DashboardWindow::askForList() {
+  if (!document_) return;
+  const QString file = QFileDialog::getSaveFileName(this, "Export the list of attempts", "attempts.csv", "CSV (*.csv)");
+  if (!file.isEmpty()) exportList(file);
+}
+
+void DashboardWindow::print() {
+  const auto take = [this](const analytics::ReportDocument& document) {
+    QPrinter printer(QPrinter::HighResolution);
+    printer.setDocName(QString::fromStdString(document.title));
+    if (QPrintDialog(&printer, this).exec() == QDialog::Accepted) tryTo([&] { paintReport(document, printer); });
+  };
+  if (!document_ || !static_cast<CohortPage*>(tabs_->currentWidget())->makeDocument(take))
+    showProblem("There is nothing to print here: the pages Attempts, Attempt and Study are printed.");
+}
+
+void DashboardWindow::fillRecent() {
+  recent_->clear();
+  for (const QString& file : settings::recentCohorts())
+    recent_->addAction(QFileInfo(file).fileName() + " in " + QFileInfo(file).absolutePath(), this,
+                       [this, file] { openLater(file); });
+  recent_->setEnabled(!recent_->isEmpty());
+}
+
+void DashboardWindow::showManual() {
+  std::error_code ignored;
+  for (const std::filesystem::path& assets : assetFolders_) {
+    for (const char* place :
+         {"../../doc/calot-doc/html/index.html", "../../doc/calot-doc/docs/index.md", "../docs/index.md"}) {
+      const std::filesystem::path file = assets / place;
+      if (!std::filesystem::is_regular_file(file, ignored)) continue;
+      QDesktopServices::openUrl(QUrl::fromLocalFile(QString::fromStdString(file.lexically_normal().string())));
+      return;
+    }
+  }
+  showProblem("The manual is not installed: it is in the package calot-doc.");
 }
 
 void DashboardWindow::verifySelected() {

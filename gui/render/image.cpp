@@ -13,24 +13,28 @@
 
 namespace calot::gui {
 
-void writePng(const Image& image, const std::string& file) {
-  recorder::NewFile made(file, true, fmt::format(".{}.part", ::getpid()));
-  const auto fail = [&](const std::string& why) {
-    throw Error(ErrorKind::failure, Where{file}, fmt::format("cannot write the picture: {}", why));
+std::string pngBytes(const Image& image) {
+  const auto fail = [](const std::string& why) {
+    throw Error(ErrorKind::failure, fmt::format("cannot make the picture: {}", why));
   };
   if (image.width <= 0 || image.height <= 0 ||
       image.rgba.size() != 4 * static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height))
     fail("the image is empty or its size does not fit its bytes");
-
   png_image header{};
   header.version = PNG_IMAGE_VERSION;
   header.width = static_cast<png_uint_32>(image.width);
   header.height = static_cast<png_uint_32>(image.height);
   header.format = PNG_FORMAT_RGBA;
-  if (png_image_write_to_file(&header, made.path().c_str(), 0, image.rgba.data(), 0, nullptr) == 0)
+  png_alloc_size_t size = 0;
+  if (png_image_write_get_memory_size(header, size, 0, image.rgba.data(), 0, nullptr) == 0) fail(header.message);
+  std::string bytes(size, '\0');
+  if (png_image_write_to_memory(&header, bytes.data(), &size, 0, image.rgba.data(), 0, nullptr) == 0)
     fail(header.message);
-  made.publish();
+  bytes.resize(size);
+  return bytes;
 }
+
+void writePng(const Image& image, const std::string& file) { recorder::writeText(file, pngBytes(image), true); }
 
 std::optional<PictureSize> readSize(const std::string& text) {
   PictureSize size;

@@ -23,8 +23,11 @@ struct Image {
   }
 };
 
-/// Writes an image as PNG (8-bit RGBA, sRGB chunk, no time stamp: equal images give equal files). Writes to a temporary
-/// name beside the file and renames; an existing file is replaced.
+/// The bytes of a PNG (8-bit RGBA, sRGB chunk, no time stamp: equal images give equal bytes).
+/// @throws calot::Error (failure) for an image whose size does not fit its bytes
+std::string pngBytes(const Image& image);
+
+/// Writes an image as PNG. Writes to a temporary name beside the file and renames; an existing file is replaced.
 /// @throws calot::Error naming the file: as recorder::refuseOutput(), or (failure) if it cannot be written.
 void writePng(const Image& image, const std::string& file);
 

@@ -1,17 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "gui/report/pdf_report.h"
 
-#include <algorithm>
 #include <clocale>
 #include <QAbstractTextDocumentLayout>
 #include <QBuffer>
 #include <QFont>
 #include <QGuiApplication>
-#include <QImage>
 #include <QPainter>
 #include <QPainterPath>
 #include <QPdfWriter>
-#include <QTextBlock>
 
 #include "gui/report/drawing_painter.h"
 #include "gui/report/text_document.h"
@@ -88,84 +85,33 @@ std::string pdfOf(const QString& title, const std::string& maker, int dots, doub
 
 }  // namespace
 
-std::string pdfReport(const analytics::ReportDocument& document, const std::string& maker) {
+void paintReport(const analytics::ReportDocument& document, QPagedPaintDevice& device) {
   const QString title = titleOf(document);
-  return pdfOf(title, maker, dotsPerInch, marginMillimetres, [&](QPdfWriter& writer, const QFont& font) {
-    const double footHeight = footMillimetres * dotsPerInch / 25.4;
-    const QSizeF whole(writer.width(), writer.height()), page(whole.width(), whole.height() - footHeight);
-    ReportTextDocument text(document, &writer, page);
-    const int pages = text.pageCount();
-    QPainter painter(&writer);
-    for (int i = 0; i < pages; ++i) {
-      if (i > 0) writer.newPage();
-      if (document.synthetic) paintMark(painter, whole, font);
-      const QRectF seen(0.0, i * page.height(), page.width(), page.height());
-      painter.save();
-      painter.translate(0.0, -seen.top());
-      painter.setClipRect(seen);
-      QAbstractTextDocumentLayout::PaintContext context;
-      context.clip = seen;
-      context.palette.setColor(QPalette::Text, Qt::black);
-      text.documentLayout()->draw(&painter, context);
-      painter.restore();
-      paintFoot(painter, QRectF(0.0, page.height(), whole.width(), footHeight), font, title, i + 1, pages);
-    }
-  });
-}
-
-namespace {
-
-constexpr double betweenPictures = 4.0, captionHeight = 10.0, captionPoints = 7.5;  // mm; points
-constexpr int columns = 3;
-
-double dots(double millimetres) { return millimetres * dotsPerInch / 25.4; }
-
-/// @return height that the pictures take (dots)
-double paintPictures(QPainter& painter, const std::vector<CaptionedPicture>& pictures, const QSizeF& page, QFont font) {
-  if (pictures.empty()) return 0.0;
-  const double width = (page.width() - (columns - 1) * dots(betweenPictures)) / columns;
-  const double height = 0.75 * width, top = page.height() - height - dots(captionHeight);
-  font.setPointSizeF(captionPoints);
-  painter.setFont(font);
-  painter.setPen(Qt::black);
-  painter.setRenderHint(QPainter::SmoothPixmapTransform);
-  double left = 0.0;
-  for (const CaptionedPicture& picture : pictures) {
-    const Image& image = picture.image;
-    const QImage shown(image.rgba.data(), image.width, image.height, 4 * image.width, QImage::Format_RGBA8888);
-    const QSizeF fitted = QSizeF(shown.size()).scaled(QSizeF(width, height), Qt::KeepAspectRatio);
-    painter.drawImage(QRectF(QPointF(left + (width - fitted.width()) / 2.0, top), fitted),
-                      shown.convertToFormat(QImage::Format_RGB32));
-    painter.drawText(QRectF(left, top + height + dots(1.0), width, dots(captionHeight - 1.0)),
-                     Qt::AlignTop | Qt::AlignLeft | Qt::TextWordWrap, QString::fromStdString(picture.caption));
-    left += width + dots(betweenPictures);
-  }
-  return height + dots(captionHeight + betweenPictures);
-}
-
-}  // namespace
-
-std::string onePagePdf(const analytics::ReportDocument& document, const std::vector<CaptionedPicture>& pictures,
-                       const std::string& maker) {
-  return pdfOf(titleOf(document), maker, dotsPerInch, marginMillimetres, [&](QPdfWriter& writer, const QFont& font) {
-    const QSizeF page(writer.width(), writer.height());
-    QPainter painter(&writer);
-    const double room = page.height() - paintPictures(painter, pictures, page, font);
-    // Laid out on one long page, which is then made as small as it has to be.
-    constexpr double longPage = 20.0;
-    ReportTextDocument text(document, &writer, QSizeF(page.width(), longPage * page.height()));
-    const double height = text.documentLayout()->documentSize().height();
-    double used = 0.0;
-    for (QTextBlock block = text.begin(); block.isValid(); block = block.next())
-      used = std::max(used, text.documentLayout()->blockBoundingRect(block).bottom());
-    used = used > 0.0 ? std::min(used, height) : height;
-    const double scale = std::min(1.0, room / used);
-    painter.scale(scale, scale);
+  const QFont font = reportFont();
+  const double footHeight = footMillimetres * device.logicalDpiX() / 25.4;
+  const QSizeF whole(device.width(), device.height()), page(whole.width(), whole.height() - footHeight);
+  ReportTextDocument text(document, &device, page);
+  const int pages = text.pageCount();
+  QPainter painter(&device);
+  for (int i = 0; i < pages; ++i) {
+    if (i > 0) device.newPage();
+    if (document.synthetic) paintMark(painter, whole, font);
+    const QRectF seen(0.0, i * page.height(), page.width(), page.height());
+    painter.save();
+    painter.translate(0.0, -seen.top());
+    painter.setClipRect(seen);
     QAbstractTextDocumentLayout::PaintContext context;
+    context.clip = seen;
     context.palette.setColor(QPalette::Text, Qt::black);
-    context.clip = QRectF(0.0, 0.0, page.width(), used);
     text.documentLayout()->draw(&painter, context);
-  });
+    painter.restore();
+    paintFoot(painter, QRectF(0.0, page.height(), whole.width(), footHeight), font, title, i + 1, pages);
+  }
+}
+
+std::string pdfReport(const analytics::ReportDocument& document, const std::string& maker) {
+  return pdfOf(titleOf(document), maker, dotsPerInch, marginMillimetres,
+               [&](QPdfWriter& writer, const QFont&) { paintReport(document, writer); });
 }
 
 namespace {

@@ -2,8 +2,11 @@
 #include "gui/report/text_document.h"
 
 #include <algorithm>
+#include <cmath>
 #include <QAbstractTextDocumentLayout>
 #include <QFontMetricsF>
+#include <QImage>
+#include <QPainter>
 #include <QTextBlock>
 #include <QTextCursor>
 #include <QTextFrame>
@@ -17,10 +20,11 @@ namespace {
 
 using analytics::Paragraph;
 
-constexpr int figureObject = QTextFormat::UserObject + 1, figureNumber = QTextFormat::UserProperty + 1;
+constexpr int drawnObject = QTextFormat::UserObject + 1, objectNumber = QTextFormat::UserProperty + 1;
 constexpr double textPoints = 8.5, tablePoints = 7.5, headingPoints = 11.0, titlePoints = 15.0;
 constexpr double figureMillimetres = 84.0;  // of a figure as wide as a box plot: two stand side by side
 constexpr double usualWidth = 320.0;        // in the drawing's units
+constexpr double picturesInLine = 3.0, captionHeight = 10.0, pictureGap = 2.0;  // mm
 // In millimetres: between text and border; what a line needs beyond its letters; the narrowest column of words.
 constexpr double cellPadding = 0.6, aroundText = 1.0, minWidth = 12.0;
 
@@ -179,16 +183,32 @@ struct ReportTextDocument::Writer {
     inside.insertText(QString::fromStdString(text), letters(tablePoints, bold));
   }
 
+  /// Something drawn, in the line of the cursor.
+  template <class Drawn>
+  void object(const Drawn& drawn) {
+    QTextCharFormat format;
+    format.setObjectType(drawnObject);
+    format.setProperty(objectNumber, static_cast<int>(document.objects_.size()));
+    document.objects_.emplace_back(&drawn);
+    cursor.insertText(QString(QChar::ObjectReplacementCharacter), format);
+  }
+
   void operator()(const analytics::Figures& figures) {
     begin(block(1.0, 1.0), letters(textPoints));
     for (const analytics::Drawing& drawing : figures.drawings) {
-      QTextCharFormat format;
-      format.setObjectType(figureObject);
-      format.setProperty(figureNumber, static_cast<int>(document.drawings_.size()));
-      document.drawings_.push_back(&drawing);
-      cursor.insertText(QString(QChar::ObjectReplacementCharacter), format);
+      object(drawing);
       cursor.insertText(" ", letters(textPoints));
     }
+  }
+
+  void operator()(const analytics::Pictures& pictures) {
+    begin(block(1.0, 1.0), letters(textPoints));
+    for (const analytics::Picture& picture : pictures.pictures) object(picture);
+  }
+
+  void operator()(const analytics::Blank& blank) {
+    begin(block(2.5, 1.0), letters(textPoints));
+    object(blank);
   }
 };
 
@@ -199,7 +219,7 @@ ReportTextDocument::ReportTextDocument(const analytics::ReportDocument& report, 
   setDefaultFont(reportFont());
   setDocumentMargin(0.0);
   documentLayout()->setPaintDevice(device);
-  documentLayout()->registerHandler(figureObject, this);
+  documentLayout()->registerHandler(drawnObject, this);
   Writer writer{*this};
   writer.cursor.beginEditBlock();
   if (report.synthetic) writer.banner();
@@ -211,16 +231,52 @@ ReportTextDocument::ReportTextDocument(const analytics::ReportDocument& report, 
 }
 
 QSizeF ReportTextDocument::intrinsicSize(QTextDocument*, int, const QTextFormat& format) {
-  const analytics::Drawing& drawing = *drawings_.at(static_cast<std::size_t>(format.intProperty(figureNumber)));
   const double dotsPerMillimetre = device_->logicalDpiX() / 25.4;
+  const auto& object = objects_.at(static_cast<std::size_t>(format.intProperty(objectNumber)));
+  if (const auto* blank = std::get_if<const analytics::Blank*>(&object))
+    return {page_.width(), (*blank)->millimetres * dotsPerMillimetre};
+  if (std::holds_alternative<const analytics::Picture*>(object)) {
+    const double width = std::floor(page_.width() / picturesInLine);
+    return {width, 0.75 * (width - pictureGap * dotsPerMillimetre) + captionHeight * dotsPerMillimetre};
+  }
+  const analytics::Drawing& drawing = *std::get<const analytics::Drawing*>(object);
   const double width = std::min(figureMillimetres * dotsPerMillimetre * drawing.width / usualWidth, page_.width());
   return {width, width * drawing.height / drawing.width};
 }
 
 void ReportTextDocument::drawObject(QPainter* painter, const QRectF& rect, QTextDocument*, int,
                                     const QTextFormat& format) {
-  paintDrawing(*painter, *drawings_.at(static_cast<std::size_t>(format.intProperty(figureNumber))), rect,
-               {reportFont()});
+  const double dotsPerMillimetre = device_->logicalDpiX() / 25.4;
+  const auto& object = objects_.at(static_cast<std::size_t>(format.intProperty(objectNumber)));
+  if (const auto* drawing = std::get_if<const analytics::Drawing*>(&object)) {
+    paintDrawing(*painter, **drawing, rect, {reportFont()});
+    return;
+  }
+  painter->save();
+  QFont font = reportFont();
+  font.setPointSizeF(tablePoints);
+  painter->setFont(font);
+  if (const auto* blank = std::get_if<const analytics::Blank*>(&object)) {
+    const double inside = dotsPerMillimetre;
+    painter->setPen(QPen(QColor("#57606a"), 0.2 * dotsPerMillimetre));
+    painter->drawRect(rect.adjusted(0.0, 0.0, -inside, -inside));
+    painter->drawText(rect.adjusted(inside, inside, -inside, -inside), Qt::AlignTop | Qt::AlignLeft,
+                      QString::fromStdString((*blank)->label));
+  } else {
+    const analytics::Picture& picture = *std::get<const analytics::Picture*>(object);
+    const QImage image = QImage::fromData(reinterpret_cast<const uchar*>(picture.png.data()),
+                                          static_cast<int>(picture.png.size()), "PNG")
+                             .convertToFormat(QImage::Format_RGB32);
+    const QRectF space = rect.adjusted(0.0, 0.0, -pictureGap * dotsPerMillimetre, -captionHeight * dotsPerMillimetre);
+    const QSizeF fitted = QSizeF(image.size()).scaled(space.size(), Qt::KeepAspectRatio);
+    painter->setRenderHint(QPainter::SmoothPixmapTransform);
+    painter->drawImage(QRectF(space.topLeft(), fitted), image);
+    painter->setPen(Qt::black);
+    painter->drawText(QRectF(space.left(), space.bottom() + dotsPerMillimetre, space.width(),
+                             (captionHeight - 1.0) * dotsPerMillimetre),
+                      Qt::AlignTop | Qt::AlignLeft | Qt::TextWordWrap, QString::fromStdString(picture.caption));
+  }
+  painter->restore();
 }
 
 }  // namespace calot::gui

@@ -5,13 +5,15 @@
 #include <QPagedPaintDevice>
 #include <QTextDocument>
 #include <QTextObjectInterface>
+#include <variant>
 #include <vector>
 
 #include "analytics/report/report_document.h"
 
 namespace calot::gui {
 
-/// A report as Qt lays it out: headings, paragraphs with links, lists, tables whose heads are repeated, figures. Sizes
+/// A report as Qt lays it out: headings, paragraphs with links, lists, tables whose heads are repeated, figures,
+/// pictures, boxes to write in. Sizes
 /// are those of the device that it is laid out for.
 class ReportTextDocument : public QTextDocument, public QTextObjectInterface {
   Q_OBJECT
@@ -32,7 +34,8 @@ class ReportTextDocument : public QTextDocument, public QTextObjectInterface {
 
   QPagedPaintDevice* device_;
   QSizeF page_;
-  std::vector<const analytics::Drawing*> drawings_;
+  using Object = std::variant<const analytics::Drawing*, const analytics::Picture*, const analytics::Blank*>;
+  std::vector<Object> objects_;  ///< what is drawn between the words
 };
 
 }  // namespace calot::gui

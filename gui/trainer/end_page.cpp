@@ -12,6 +12,7 @@
 #include "analytics/checkpoints/checkpoint.h"
 #include "analytics/checkpoints/collector.h"
 #include "analytics/checkpoints/replay_words.h"
+#include "analytics/report/key_figures.h"
 #include "gui/attempt/figure_text.h"
 #include "gui/attempt/widget_parts.h"
 #include "gui/trainer/run_panel.h"
@@ -168,16 +169,15 @@ AttemptReport reportOf(AttemptFacts now, const std::optional<AttemptFacts>& prev
                              : QString("No earlier attempt at this task to compare with.");
   const bool judges = now.attempt.outcome == recorder::Outcome::completed && previous &&
                       previous->attempt.outcome == recorder::Outcome::completed;
-  for (const KeyFigure& figure : report.summary.figures) {
-    for (const analytics::CheckpointValue& value : figure.values) {
-      FigureReport& line = report.figures.emplace_back();
-      line.title = figureTitle(value.name, value.subject);
-      line.now = value.value ? valueText(value) : QString::fromStdString(value.reason);
-      const FigureStanding* const stands = standing ? entryOf(standing->figures, value) : nullptr;
-      if (stands != nullptr) line.norm = normWords(*stands, displayedValue(value).unit);
-      const analytics::CheckpointValue* const then = previous ? sameFigure(previous->values, value) : nullptr;
-      if (then != nullptr) line.before = beforeWords(value, *then, judges);
-    }
+  for (const analytics::KeyFigure& figure : analytics::keyFigures(now.values, nullptr)) {
+    const analytics::CheckpointValue& value = figure.value;
+    FigureReport& line = report.figures.emplace_back();
+    line.title = QString::fromStdString(figure.title);
+    line.now = value.value ? valueText(value) : QString::fromStdString(value.reason);
+    const FigureStanding* const stands = standing ? entryOf(standing->figures, value) : nullptr;
+    if (stands != nullptr) line.norm = normWords(*stands, displayedValue(value).unit);
+    const analytics::CheckpointValue* const then = previous ? sameFigure(previous->values, value) : nullptr;
+    if (then != nullptr) line.before = beforeWords(value, *then, judges);
   }
   report.facts = std::move(now);
   return report;
@@ -323,7 +323,8 @@ void EndPage::showReport(const AttemptReport& report) {
   reading_ = false;
   shown_ = report.facts;
   inCohort_ = report.facts.inCohort;
-  QStringList verdict{QString::fromStdString(report.summary.errors)};
+  QStringList verdict;
+  for (const std::string& sentence : report.summary.errors) verdict += QString::fromStdString(sentence);
   if (!report.summary.criticalView.empty()) verdict.prepend(QString::fromStdString(report.summary.criticalView));
   say(verdict_, verdict.join('\n'));
   say(norm_, report.norm);

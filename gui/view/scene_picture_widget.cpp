@@ -47,10 +47,10 @@ constexpr std::chrono::milliseconds moment(250);
 Graphics chosen = Graphics::automatic;  // of the GUI thread
 
 PictureLoop::Draw drawWith(const std::shared_ptr<Renderer>& renderer, bool ready) {
-  RenderSettings settings;
-  settings.quality = Quality::interactive;
-  settings.ready = ready;
-  return [renderer, settings](const SceneView& view, int width, int height) {
+  return [renderer, ready](const SceneView& view, int width, int height, bool still) {
+    RenderSettings settings;
+    settings.quality = still ? Quality::film : Quality::interactive;
+    settings.ready = ready;
     return renderer->render(view, width, height, settings);
   };
 }
@@ -67,8 +67,8 @@ QSize pictureSize(const QSize& size, double ratio) {
 
 }  // namespace
 
-PictureLoop::PictureLoop(MakeDraw make, Receiver receiver, std::size_t drawers, double rate)
-    : make_(std::move(make)), receiver_(std::move(receiver)), scale_(rate, drawers) {
+PictureLoop::PictureLoop(MakeDraw make, Receiver receiver, std::size_t drawers, double rate, bool refine)
+    : make_(std::move(make)), receiver_(std::move(receiver)), refine_(refine), scale_(rate, drawers) {
   for (std::size_t d = 0; d < drawers; ++d) threads_.emplace_back([this] { run(); });
 }
 
@@ -104,28 +104,29 @@ void PictureLoop::resize(int width, int height) {
 void PictureLoop::clear() {
   const std::lock_guard lock(mutex_);
   newest_.reset();
-  stale_ = reduced_ = false;
+  stale_ = rough_ = false;
 }
 
 bool PictureLoop::take(bool warm, Work& work) {
   std::unique_lock lock(mutex_);
   const auto due = [&] { return stop_ || (newest_ != nullptr && width_ > 0 && height_ > 0 && (stale_ || !warm)); };
-  bool rests = false;  // no view came for a moment after one that was drawn smaller
+  bool rests = false;  // no view came for a moment after one that was drawn roughly
   while (!due() && !rests) {
-    if (!reduced_)
+    if (!rough_)
       wake_.wait(lock);
     else
-      rests = wake_.wait_for(lock, moment) == std::cv_status::timeout && reduced_;
+      rests = wake_.wait_for(lock, moment) == std::cv_status::timeout && rough_;
   }
   if (stop_) return false;
   work.view = newest_;
-  work.side = rests && !stale_ ? 1.0 : scale_.side();
+  work.still = rests && !stale_;
+  work.side = work.still ? 1.0 : scale_.side();
   if (work.side * std::min(width_, height_) < minSide) work.side = 1.0;
   work.width = static_cast<int>(std::lround(work.side * width_));
   work.height = static_cast<int>(std::lround(work.side * height_));
   const bool wanted = std::exchange(stale_, false) || rests;
   work.number = wanted ? ++taken_ : 0;
-  if (wanted) reduced_ = work.side < 1.0;
+  if (wanted) rough_ = !work.still && (refine_ || work.side < 1.0);
   return true;
 }
 
@@ -142,11 +143,11 @@ void PictureLoop::run() {
     const Clock::time_point begin = Clock::now();
     try {
       if (!draw) draw = make_();
-      picture.image = draw(*picture.view, work.width, work.height);
+      picture.image = draw(*picture.view, work.width, work.height, work.still);
     } catch (const std::exception& error) {
       fault = error.what();
     }
-    if (warm) {
+    if (warm && !work.still) {
       const std::lock_guard lock(mutex_);
       scale_.drew(work.side, std::chrono::duration<double>(Clock::now() - begin).count());
     }
@@ -186,7 +187,7 @@ ScenePictureWidget::ScenePictureWidget(std::size_t drawers, double rate) {
                               QMetaObject::invokeMethod(
                                   this, [this, text] { takeFailure(text); }, Qt::QueuedConnection);
                             }},
-      drawers, rate);
+      drawers, rate, true);
 }
 
 ScenePictureWidget::~ScenePictureWidget() { loop_.reset(); }
@@ -229,6 +230,7 @@ void ScenePictureWidget::takePicture() {
                  .convertToFormat(QImage::Format_RGB32);
   text_.clear();
   ++shown_;
+  time_ = taken.view->time;
   update();
   emit pictureShown(taken.view->step, taken.view->time);
 }

@@ -61,13 +61,14 @@ struct ScenePicture {
 /// waits. The last view given is always rendered eventually, in the last size given.
 ///
 /// Where a rate is wanted, pictures are drawn smaller while the machine cannot keep it (PictureScale): whoever shows
-/// them scales them up. What no view follows for a moment is drawn once more, whole.
+/// them scales them up. What no view follows for a moment is drawn once more, whole, and as what stands still.
 ///
 /// Two drawers render two views at a time, since much of a picture is single-threaded work. Pictures are delivered in
 /// the order of their views; one overtaken by a newer one is dropped.
 class PictureLoop {
  public:
-  using Draw = std::function<Image(const SceneView&, int width, int height)>;
+  /// @param still nothing follows it for a moment: time does not press
+  using Draw = std::function<Image(const SceneView&, int width, int height, bool still)>;
   /// Makes what draws; called once a drawer, on its own thread, before its first picture.
   using MakeDraw = std::function<Draw()>;
   struct Receiver {
@@ -76,7 +77,8 @@ class PictureLoop {
   };
 
   /// @param rate pictures a second that are worth a smaller size; 0: all are drawn in the size given
-  PictureLoop(MakeDraw make, Receiver receiver, std::size_t drawers = 1, double rate = 0.0);
+  /// @param refine what stands still is drawn once more, though its size was whole
+  PictureLoop(MakeDraw make, Receiver receiver, std::size_t drawers = 1, double rate = 0.0, bool refine = false);
   /// Waits for pictures in progress and drops waiting views.
   ~PictureLoop();
 
@@ -92,6 +94,7 @@ class PictureLoop {
     std::shared_ptr<const SceneView> view;
     int width = 0, height = 0;
     double side = 1.0;         ///< share of the size given
+    bool still = false;        ///< no other view came for a moment
     std::uint64_t number = 0;  ///< 0: nobody waits for it; what draws is made ready
   };
 
@@ -106,7 +109,8 @@ class PictureLoop {
   std::shared_ptr<const SceneView> newest_;
   int width_ = 0, height_ = 0;  ///< 0: none is wanted yet
   bool stale_ = false;          ///< the newest view was not taken yet in this size
-  bool reduced_ = false;        ///< it was taken, to be drawn smaller than the size given
+  bool rough_ = false;          ///< it was taken, and is to be drawn better once it stands still
+  bool refine_;
   PictureScale scale_;
   bool stop_ = false;
   std::uint64_t taken_ = 0;      ///< pictures begun
@@ -115,8 +119,9 @@ class PictureLoop {
   std::vector<std::thread> threads_;  // last: they use what is above
 };
 
-/// Shows scene views, rendered off screen in interactive quality at the widget's size on a separate thread: the GUI
-/// thread only copies finished pictures to the screen. Views that arrive faster than they can be rendered are skipped.
+/// Shows scene views, rendered off screen at the widget's size on a separate thread, in interactive quality, and in
+/// that of films what stands still: the GUI thread only copies finished pictures to the screen. Views that arrive
+/// faster than they can be rendered are skipped.
 class ScenePictureWidget : public QWidget {
   Q_OBJECT
  public:
@@ -140,6 +145,8 @@ class ScenePictureWidget : public QWidget {
 
   /// The picture on the screen; null before the first one.
   [[nodiscard]] const QImage& picture() const { return picture_; }
+  /// The time of its view (s); negative before the first one.
+  [[nodiscard]] double time() const { return time_; }
   /// Its share of the size that it is shown in; 1 before the first one.
   [[nodiscard]] double side() const;
 
@@ -161,6 +168,7 @@ class ScenePictureWidget : public QWidget {
   QImage picture_;
   QString text_;
   quint64 shown_ = 0;
+  double time_ = -1.0;
   bool awaits_ = false;  ///< a view was given after the last text
 
   mutable std::mutex mutex_;

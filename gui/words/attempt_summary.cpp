@@ -10,6 +10,7 @@
 
 #include "analytics/assessment/verdict.h"
 #include "analytics/checkpoints/checkpoint.h"
+#include "analytics/report/key_figures.h"
 #include "analytics/report/report_document.h"
 
 namespace calot::gui {
@@ -40,7 +41,7 @@ std::string verdictOf(const analytics::AttemptRow& attempt, const analytics::Gra
 }
 
 std::string viewOf(const analytics::CheckpointValue* view) {
-  if (view == nullptr || sceneLacks(*view)) return {};
+  if (view == nullptr || analytics::sceneLacks(*view)) return {};
   if (!view->value) return fmt::format("Critical view: not judged, {}.", view->reason);
   const bool reached = *view->value >= JudgementRules().satisfactory;
   return fmt::format("Critical view: {}, {:.0f} of 6 points ({}).", reached ? "satisfactory" : "not reached",
@@ -48,24 +49,19 @@ std::string viewOf(const analytics::CheckpointValue* view) {
 }
 
 /// The verdict: a sentence a severity. One that is not known is said to be so, never to be none.
-std::string errorsOf(const std::vector<analytics::CheckpointValue>& values) {
-  std::string text;
+std::vector<std::string> errorsOf(const std::vector<analytics::CheckpointValue>& values) {
+  std::vector<std::string> sentences;
+  bool missing = false;
   for (const auto& [severity, name] : analytics::errorCheckpoints()) {
     const analytics::CheckpointValue* const value = find(values, name);
-    if (!text.empty()) text += ' ';
-    text += analytics::errorSentence(severity, value);
+    const bool known = value != nullptr && value->value;
+    if (known || !missing) sentences.push_back(analytics::errorSentence(severity, value));
+    missing = missing || !known;
   }
-  return text;
+  return sentences;
 }
 
 }  // namespace
-
-bool sceneLacks(const analytics::CheckpointValue& value) {
-  if (value.availability != analytics::Availability::notApplicable) return false;
-  const std::string& reason = value.reason;
-  return reason.starts_with("the scene has no ") || reason.starts_with("the scene gives this organ no ") ||
-         reason.ends_with("in this scene");
-}
 
 AttemptSummary summaryOf(const analytics::AttemptRow& attempt, const std::vector<analytics::CheckpointValue>& values,
                          const analytics::Grade* grade) {
@@ -73,15 +69,9 @@ AttemptSummary summaryOf(const analytics::AttemptRow& attempt, const std::vector
   summary.verdict = verdictOf(attempt, grade);
   summary.criticalView = viewOf(find(values, criticalView));
   summary.errors = errorsOf(values);
-  for (const std::string_view name : analytics::countingCheckpoints()) {
-    if (name == criticalView) continue;
-    const analytics::CheckpointDefinition* definition = analytics::findCheckpoint(name);
-    KeyFigure figure{std::string(name), definition != nullptr ? definition->title : std::string(name), {}};
-    for (const analytics::CheckpointValue& v : values) {
-      if (v.name == name && !sceneLacks(v)) figure.values.push_back(v);
-    }
-    if (!figure.values.empty()) summary.figures.push_back(std::move(figure));
-  }
+  if (const analytics::CheckpointValue* const critical = find(values, analytics::criticalErrors);
+      critical != nullptr && critical->value)
+    summary.safety = *critical->value > 0.0 ? AttemptSummary::Safety::notSafe : AttemptSummary::Safety::noCriticalError;
   return summary;
 }
 

@@ -12,26 +12,17 @@
 
 namespace calot::gui {
 
-/// A checkpoint that counts (countingCheckpoints()), with its values: one, or one for each hand or organ.
-struct KeyFigure {
-  std::string checkpoint, title;
-  std::vector<analytics::CheckpointValue> values;  ///< in the order of the attempt's
-};
-
 struct AttemptSummary {
-  std::string verdict;             ///< how it ended and what verification found; with a grade, its verdict
-  std::string criticalView;        ///< empty: the scene has none
-  std::string errors;              ///< critical errors first, then what else went wrong
-  std::vector<KeyFigure> figures;  ///< the five that count beside the critical view, those that the scene has
+  enum class Safety { notAssessed, notSafe, noCriticalError };
+  Safety safety = Safety::notAssessed;
+  std::string verdict;              ///< how it ended and what verification found; with a grade, its verdict
+  std::string criticalView;         ///< empty: the scene has none
+  std::vector<std::string> errors;  ///< a sentence a severity, the gravest first; of those not assessed the first alone
 };
 
 /// @param grade of the attempt; null: it was not held against a norm
 AttemptSummary summaryOf(const analytics::AttemptRow& attempt, const std::vector<analytics::CheckpointValue>& values,
                          const analytics::Grade* grade);
-
-/// True if a value is missing because the scene lacks its subject ("the scene has no fat"): true of
-/// every attempt on this scene.
-bool sceneLacks(const analytics::CheckpointValue& value);
 
 /// A goal for the next attempt: the first figure that counts and that this attempt did not pass, critical errors and
 /// fixed marks before others, then the one that fewest competent people fall behind.

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "analytics/report/attempt_sheet.h"
 #include "analytics/report/grade_sheet.h"
 #include "analytics/report/report_document.h"
 #include "tests/analytics/cohort/support/cohort_support.h"
@@ -363,7 +364,9 @@ TEST_F(Grades, aSheetIsFormativeUntilThereIsEvidence) {
   grade = graded(20, database.norm("clinic"));
   addMoments(grade, {{{"path-length", "left", {{12.0, 13.0, 0.5}}, ""}},
                      {{Severity::critical, 1, 100.2, "cystic duct left open"}, {Severity::minor, 2, 5.0, "bed torn"}}});
-  const std::string html = pageHtml(gradeDocument(grade, "a&b.h5", "A & B draws it."));
+  const AttemptSheet sheet{grade.attempt,    database.values(grade.attempt.uuid), &grade, {}, {}, "", "a&b.h5",
+                           "A & B draws it."};
+  const std::string html = pageHtml(sheetDocument(sheet));
   EXPECT_EQ(html.find("FORMATIVE"), std::string::npos);
   EXPECT_NE(html.find("Agrees with raters"), std::string::npos);
   expectHolds(html, {"href=\"a&amp;b.h5#t=12.00,13.00\">0:12.0", "0:13.0 (50 %"});

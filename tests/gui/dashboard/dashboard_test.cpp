@@ -97,7 +97,7 @@ TEST_F(Dashboard, OpensACohortAndListsItsAttempts) {
   ASSERT_EQ(table.model()->rowCount(), 9);
   // Newest first.
   EXPECT_EQ(cell(table, 0, AttemptTableModel::operatorColumn), "P07");
-  EXPECT_EQ(cell(table, 0, AttemptTableModel::startColumn), "2026-04-02 08:30 UTC");
+  EXPECT_EQ(cell(table, 0, AttemptTableModel::startColumn), startText("2026-04-02T08:30:00Z"));
   EXPECT_EQ(cell(table, 0, AttemptTableModel::verificationColumn), QString::fromUtf8("≠ diverged"));
   EXPECT_EQ(cell(table, 0, AttemptTableModel::syntheticColumn), "");
   EXPECT_EQ(cell(table, 1, AttemptTableModel::syntheticColumn), "synthetic");
@@ -284,7 +284,8 @@ TEST_F(Dashboard, TenThousandAttemptsAreSortedAndSearched) {
   const analytics::CheckpointValue unsafe =
       makeValue(*analytics::findCheckpoint("critical-errors"), "", analytics::Origin::resimulated, 1.0,
                 "cystic duct left open, 1:40.2");
-  model.setLines(std::make_shared<const AttemptLines>(rows, std::map{std::pair{rows[7].uuid, unsafe}}));
+  model.setLines(std::make_shared<const AttemptLines>(
+      rows, AttemptLines::Figures{{AttemptLines::Values{{rows[7].uuid, unsafe}}, {}, {}}, {}}));
   filter.sort(AttemptTableModel::startColumn, Qt::DescendingOrder);
   filter.set({.search = "unskilled 2026-03-05"});
   EXPECT_EQ(filter.rowCount(), 0) << "the fifth of the month is an even number";

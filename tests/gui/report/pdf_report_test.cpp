@@ -5,14 +5,17 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <clocale>
 #include <QBuffer>
 #include <QByteArray>
 #include <QGuiApplication>
+#include <QImage>
 #include <QPdfWriter>
 #include <regex>
 #include <string>
 
+#include "analytics/report/attempt_sheet.h"
 #include "analytics/report/plots.h"
 #include "gui/report/text_document.h"
 
@@ -74,6 +77,50 @@ TEST(PdfReport, longTablesGoOverAsManyPagesAsTheyNeed) {
   const std::string pdf = pdfReport(report(400), "calot test");
   EXPECT_GE(pagesOf(pdf), 5U);
   EXPECT_LE(pagesOf(pdf), 12U);
+}
+
+/// A sheet's first page with as much on it as there can be.
+ReportDocument fullFront() {
+  std::string errors;
+  for (int i = 0; i < 30; ++i)
+    errors += fmt::format("{}cystic duct left open towards the specimen, 1:{}.0", i > 0 ? "; " : "", 10 + i);
+  const auto of = [](const char* name, const char* subject, double si, const std::string& note = "") {
+    return analytics::makeValue(*analytics::findCheckpoint(name), subject, analytics::Origin::resimulated, si, note);
+  };
+  QImage image(640, 480, QImage::Format_RGB32);
+  image.fill(Qt::darkRed);
+  QBuffer png;
+  image.save(&png, "PNG");
+  analytics::AttemptSheet sheet;
+  sheet.attempt.scene = "cholecystectomy";
+  sheet.attempt.synthetic = true;
+  sheet.values = {of("critical-errors", "", 30.0, errors),
+                  of("major-errors", "", 30.0, errors),
+                  of("minor-errors", "", 9.0),
+                  of("critical-view", "", 3.0),
+                  of("clip-errors", "", 2.0),
+                  of("organ-burned", "liver", 0.1),
+                  of("organ-burned", "gallbladder", 0.1),
+                  of("organ-perforations", "liver", 1),
+                  of("elapsed-time", "", 200.0),
+                  of("path-length", "left", 1.0),
+                  of("path-length", "right", 4.0)};
+  for (int i = 0; i < 3; ++i)
+    sheet.pictures.push_back(
+        {png.data().toStdString(), "1:40.2  critical: cystic duct burned through instead of cut, 18 times"});
+  ReportDocument document = analytics::sheetDocument(sheet);
+  const auto appendix = std::find_if(document.parts.begin(), document.parts.end(), [](const auto& part) {
+    const auto* heading = std::get_if<analytics::Heading>(&part);
+    return heading != nullptr && heading->newPage;
+  });
+  document.parts.erase(appendix, document.parts.end());
+  return document;
+}
+
+TEST(PdfReport, theFirstPageOfASheetIsOnePageWithItsPictures) {
+  const std::string pdf = pdfReport(fullFront(), "calot test");
+  EXPECT_EQ(pagesOf(pdf), 1U);
+  EXPECT_GE(countOf(pdf, "/Subtype /Image"), 1U);
 }
 
 TEST(PdfReport, figuresAreVectors) {

@@ -25,19 +25,21 @@ std::shared_ptr<const SceneView> viewOfStep(std::uint64_t step) {
 class HeldLoop {
  public:
   explicit HeldLoop(std::uint64_t faulty = ~0ULL)
-      : loop_([this,
-               faulty] { return [this, faulty](const SceneView& v, int w, int h) { return draw(v, w, h, faulty); }; },
-              {[this](ScenePicture p) {
-                 const std::lock_guard lock(mutex_);
-                 shown_.push_back(p.view->step);
-                 sizes_.push_back(p.image.width);
-                 changed_.notify_all();
-               },
-               [this](const std::string& fault) {
-                 const std::lock_guard lock(mutex_);
-                 faults_.push_back(fault);
-                 changed_.notify_all();
-               }}) {}
+      : loop_(
+            [this, faulty] {
+              return [this, faulty](const SceneView& v, int w, int h, bool) { return draw(v, w, h, faulty); };
+            },
+            {[this](ScenePicture p) {
+               const std::lock_guard lock(mutex_);
+               shown_.push_back(p.view->step);
+               sizes_.push_back(p.image.width);
+               changed_.notify_all();
+             },
+             [this](const std::string& fault) {
+               const std::lock_guard lock(mutex_);
+               faults_.push_back(fault);
+               changed_.notify_all();
+             }}) {}
   ~HeldLoop() { allow(1000); }
 
   PictureLoop& loop() { return loop_; }
@@ -129,7 +131,7 @@ TEST(PictureLoop, DrawsSmallerWhereTheRateIsNotKeptAndWholeWhatStands) {
   // A picture takes longer than the rate leaves it, whatever the machine.
   PictureLoop loop(
       [] {
-        return [](const SceneView&, int width, int height) {
+        return [](const SceneView&, int width, int height, bool) {
           std::this_thread::sleep_for(std::chrono::milliseconds(30));
           Image image;
           image.width = width;
@@ -158,6 +160,32 @@ TEST(PictureLoop, DrawsSmallerWhereTheRateIsNotKeptAndWholeWhatStands) {
   }
   EXPECT_EQ(widths.front(), 640);
   changed.wait(lock, [&] { return newest() == 640; });  // no view comes any more
+}
+
+TEST(PictureLoop, WhatStandsStillIsDrawnOnceMoreAndRefined) {
+  std::mutex mutex;
+  std::condition_variable changed;
+  std::vector<bool> refined;
+  PictureLoop loop(
+      [&] {
+        return [&](const SceneView&, int, int, bool still) {
+          const std::lock_guard lock(mutex);
+          refined.push_back(still);
+          return Image{1, 1, {}};
+        };
+      },
+      {[&](const ScenePicture&) { changed.notify_all(); }, [](const std::string& fault) { ADD_FAILURE() << fault; }}, 1,
+      0.0, true);
+  loop.resize(640, 480);
+  loop.show(viewOfStep(1));
+  {
+    std::unique_lock lock(mutex);
+    ASSERT_TRUE(changed.wait_for(lock, std::chrono::minutes(1), [&] { return refined.size() >= 2; }));
+    EXPECT_EQ(refined, (std::vector<bool>{false, true}));
+  }
+  std::this_thread::sleep_for(std::chrono::milliseconds(600));
+  const std::lock_guard lock(mutex);
+  EXPECT_EQ(refined.size(), 2U) << "once is enough";
 }
 
 TEST(PictureLoop, WhatWasClearedIsNotDrawn) {
@@ -191,7 +219,7 @@ TEST(PictureLoop, TwoDrawersDrawTwoViewsAtATimeAndOneThatIsOvertakenIsDropped) {
   };
   PictureLoop loop(
       [&] {
-        return [&](const SceneView& view, int, int) {
+        return [&](const SceneView& view, int, int, bool) {
           std::unique_lock lock(mutex);
           begun.push_back(view.step);
           changed.notify_all();
@@ -233,7 +261,7 @@ TEST(PictureLoop, EndsWhileOneIsDrawnAndOthersWait) {
   int drawn = 0;
   auto loop = std::make_unique<PictureLoop>(
       [&] {
-        return [&, allowed](const SceneView&, int, int) {
+        return [&, allowed](const SceneView&, int, int, bool) {
           if (drawn++ == 0) begun.set_value();
           allowed.wait();
           return Image{};
