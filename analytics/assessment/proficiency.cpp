@@ -8,7 +8,7 @@
 #include <tuple>
 #include <utility>
 
-#include "analytics/interchange/bundle_names.h"
+#include "recorder/base/dates.h"
 
 namespace calot::analytics {
 namespace {
@@ -17,7 +17,7 @@ std::string dayOf(const std::string& utc) { return utc.substr(0, 10); }
 
 /// @param utc a date, whose time of the day does not count
 std::string laterDay(const std::string& utc, std::uint32_t days) {
-  return dayOf(shiftedUtc(dayOf(utc) + "T00:00:00Z", std::int64_t{86400} * days));
+  return dayOf(recorder::shiftedDate(dayOf(utc) + "T00:00:00Z", std::int64_t{86400} * days));
 }
 
 /// Moves the standing on by one attempt.

@@ -25,7 +25,7 @@ def motion(seed, tremor, seconds=2):
     return "\n".join(lines) + "\n"
 
 
-class Course(program.ProgramTest):
+class Trainees(program.ProgramTest):
     """A norm on each of two tasks, and trainees."""
 
     def setUp(self):
@@ -63,6 +63,8 @@ class Course(program.ProgramTest):
         file.write_text(json.dumps({"format": "calot-course", "formatVersion": 1, "name": "c", "title": "C", "tasks": tasks, **more}))
         return file
 
+
+class Course(Trainees):
     def progress(self, *arguments, **more):
         said = json.loads(self.well("course", self.cohort, "--course", self.course(**more), "--json", *arguments).out)
         self.assertEqual((said["schema"], said["version"], said["day"]), ("calot-course-progress", 1, str(TODAY)))
