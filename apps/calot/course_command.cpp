@@ -88,16 +88,16 @@ Json progressJson(const CourseProgress& progress) {
           {"synthetic", progress.synthetic}, {"tasks", tasksJson(progress)},   {"participants", people}};
 }
 
-/// "1/2", "proficient", "lapsed, 0/2"; of a task without a criterion the tries.
+/// "1/2", "0/2, behind", "proficient", "lapsed, 0/2"; of a task without a criterion the tries.
 std::string cellOf(const CourseTask& task, const TaskStanding& s) {
-  if (s.state == TaskState::notBegun) return s.behind ? "behind" : "-";
+  if (s.state == TaskState::notBegun && !s.behind) return "-";
   if (!task.criterion) return recorder::counted(s.attempts.size(), "try", "tries");
   if (isProficient(s.state)) return nameOf(s.state);
   return fmt::format("{}{}/{}{}", s.state == TaskState::lapsed ? "lapsed, " : "", s.run, task.criterion->passes,
                      s.behind ? ", behind" : "");
 }
 
-/// "P3: Carve since 2026-02-01", a line each; nothing where nobody is concerned.
+/// "Behind: P3, Carve (due on 2026-02-01).", a sentence for each person whom it concerns.
 void printWho(const CourseProgress& progress, const std::string& heading, std::ostream& out,
               std::string (*sinceOf)(const TaskStanding&)) {
   for (const CoursePerson& person : progress.people) {
@@ -107,7 +107,9 @@ void printWho(const CourseProgress& progress, const std::string& heading, std::o
         tasks.push_back(fmt::format("{} ({})", progress.course.tasks[t].title, since));
     }
     if (!tasks.empty())
-      analytics::printWrapped(fmt::format("{}: {}, {}.", heading, person.participant, fmt::join(tasks, ", ")), out);
+      out << wrappedText(fmt::format("{}: {}, {}.", heading, person.participant, fmt::join(tasks, ", ")),
+                         terminalColumns(), 2)
+          << '\n';
   }
 }
 
