@@ -8,18 +8,17 @@ import math
 import program
 
 TODAY = datetime.datetime.now(datetime.timezone.utc).date()
-GOOD, BAD = 0.001, 0.02  # m of tremor
+GOOD, BAD = 0.03, 0.09  # m: how far hands reach
 
 
-def motion(seed, tremor, seconds=2):
+def motion(seed, reach, seconds=2):
     """Two hands that reach to and fro, as 76 columns of text."""
     lines = []
     for row in range(30 * seconds + 1):
         t = row / 30
         cells = []
         for group in range(4):
-            place = [0.04 + 0.03 * (group % 2) + 0.05 * math.sin(2.5 * t + seed + axis) + tremor * math.sin(25 * t + seed * axis)
-                     for axis in range(3)]
+            place = [0.04 + 0.03 * (group % 2) + reach * math.sin(2.5 * t + 0.1 * seed + axis) for axis in range(3)]
             cells += [*place, 1, 0, 0, 0, 1, 0, 0, 0, 1, *[0] * 7]
         lines.append(" ".join(f"{c:.6g}" for c in cells))
     return "\n".join(lines) + "\n"
@@ -33,13 +32,13 @@ class Trainees(program.ProgramTest):
         self.cohort, self.rows, self.made = self.path("c.db"), [], 0
         for task in ("reaching", "knots"):
             for person in range(6):
-                for group, tremor in (("expert", GOOD), ("novice", BAD)):
-                    self.attempt(f"{group}{person}", group, task, tremor * (1 + person / 40), "2025-12-01")
+                for group, reach in (("expert", GOOD), ("novice", BAD)):
+                    self.attempt(f"{group}{person}", group, task, reach * (1 + person / 40), "2025-12-01")
 
-    def attempt(self, who, group, task, tremor, day, **more):
+    def attempt(self, who, group, task, reach, day, **more):
         self.made += 1
         name = f"m{self.made}.txt"
-        self.path(name).write_text(motion(self.made, tremor))
+        self.path(name).write_text(motion(self.made, reach))
         self.rows.append({"file": name, "participant": who, "group": group, "task": task, "start": f"{day}T09:{self.made % 60:02}:00Z",
                           "outcome": "completed", "mode": "assessment", **more})
 
@@ -71,8 +70,8 @@ class Course(Trainees):
         return {p["participant"]: p for p in said["participants"]}
 
     def test_a_trainee_who_passes_at_the_third_try(self):
-        for day, tremor in ((5, BAD), (6, GOOD), (7, GOOD)):
-            self.attempt("T1", "trainee", "reaching", tremor, f"2026-01-{day:02}")
+        for day, reach in ((5, BAD), (6, GOOD), (7, GOOD)):
+            self.attempt("T1", "trainee", "reaching", reach, f"2026-01-{day:02}")
         self.attempt("T2", "trainee", "reaching", GOOD, "2026-01-05")
         self.attempt("T2", "trainee", "reaching", BAD, "2026-01-06")
         self.store()
@@ -101,8 +100,8 @@ class Course(Trainees):
 
     def test_days_decide_too(self):
         ago = lambda days: str(TODAY - datetime.timedelta(days))  # noqa: E731
-        for days, tremor in ((50, GOOD), (49, GOOD), (43, GOOD), (5, BAD)):
-            self.attempt("T1", "trainee", "reaching", tremor, ago(days))
+        for days, reach in ((50, GOOD), (49, GOOD), (43, GOOD), (5, BAD)):
+            self.attempt("T1", "trainee", "reaching", reach, ago(days))
         for days in (50, 43):
             self.attempt("T2", "trainee", "reaching", GOOD, ago(days))
         self.attempt("T3", "trainee", "reaching", BAD, ago(20))

@@ -149,8 +149,8 @@ class Xapi(StatementTest):
 
 class XapiOfACourse(course_test.Trainees, StatementTest):
     def test_passed_failed_and_mastered(self):
-        for day, tremor in ((5, course_test.BAD), (6, course_test.GOOD), (7, course_test.GOOD)):
-            self.attempt("T1", "trainee", "reaching", tremor, f"2026-01-{day:02}")
+        for day, reach in ((5, course_test.BAD), (6, course_test.GOOD), (7, course_test.GOOD)):
+            self.attempt("T1", "trainee", "reaching", reach, f"2026-01-{day:02}")
         self.store()
         home, progress = "https://training.example.org", self.path("progress.json")
         progress.write_text(self.well("course", self.cohort, "--course", self.course(groups=["trainee"]), "--json").out)
