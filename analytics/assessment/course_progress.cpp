@@ -79,8 +79,10 @@ std::string failedFigure(const GradedFigure& f) {
 
 /// @pre the attempt did not pass
 std::string failureOf(const Grade& grade) {
-  if (grade.criticalErrors.value_or(0.0) > 0.0)
-    return grade.criticalNote.empty() ? "a critical error" : grade.criticalNote;
+  if (grade.criticalErrors.value_or(0.0) > 0.0) {
+    const std::string& note = grade.criticalNote;  // behind the errors: what is not assessed, as wordsOf() writes it
+    return note.empty() ? "a critical error" : note.substr(0, note.find("; not assessed: "));
+  }
   if (grade.attempt.outcome != recorder::Outcome::completed)
     return fmt::format("not completed ({})", recorder::wordFor(grade.attempt.outcome));
   std::vector<std::string> figures;

@@ -117,10 +117,15 @@ void printEverybody(const CourseProgress& progress, std::ostream& out) {
   std::vector<std::string> columns{"=participant", "=group"};
   for (const CourseTask& task : progress.course.tasks) columns.push_back("=" + task.title);
   analytics::ReportTable table = analytics::tableOf("", columns);
+  const bool alike = std::all_of(progress.people.begin(), progress.people.end(),
+                                 [&](const CoursePerson& p) { return p.group == progress.people.front().group; });
+  std::size_t uncounted = 0;
   for (const CoursePerson& person : progress.people) {
-    std::vector<std::string>& row = table.rows.emplace_back(std::vector{person.participant, person.group});
-    for (std::size_t t = 0; t < person.tasks.size(); ++t)
+    std::vector<std::string>& row = table.rows.emplace_back(std::vector{person.participant, alike ? "" : person.group});
+    for (std::size_t t = 0; t < person.tasks.size(); ++t) {
       row.push_back(cellOf(progress.course.tasks[t], person.tasks[t]));
+      for (const auto& [reason, count] : person.uncounted[t]) uncounted += count;
+    }
   }
   if (!progress.people.empty()) table.print(out, terminalColumns());
   printWho(progress, "Behind", out,
@@ -128,6 +133,8 @@ void printEverybody(const CourseProgress& progress, std::ostream& out) {
   printWho(progress, "Retention test", out, [](const TaskStanding& s) {
     return s.state == TaskState::retentionDue ? "due since " + s.retentionDay : std::string();
   });
+  if (uncounted > 0)
+    out << fmt::format("{} not counted; --participant gives the reasons\n", recorder::counted(uncounted, "attempt"));
 }
 
 /// The attempts of one person, and what is missing.

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "analytics/assessment/norm.h"
+#include "analytics/checkpoints/error_words.h"
 #include "tests/analytics/cohort/support/cohort_support.h"
 #include "tests/support/fault.h"
 #include "tests/support/message.h"
@@ -42,7 +43,9 @@ class CourseCohort : public testing::Test {
     if (!support::findParticipant(cohort_, a.participant))
       cohort_.addParticipant({a.participant, group, "", "", {}, {}});
     CheckpointValue critical = makeValue(*findCheckpoint("critical-errors"), "", Origin::resimulated, errors);
-    if (errors > 0.0) critical.note = "cystic duct left open, 1:40.2";
+    if (errors > 0.0)
+      critical.note =
+          wordsOf({{Severity::critical, 1, 100.2, "cystic duct left open"}}, Severity::critical, {"bleeding"}).lines;
     cohort_.storeAttempt(a, {makeValue(*findCheckpoint("elapsed-time"), "", Origin::resimulated, seconds), critical});
   }
 
@@ -79,6 +82,7 @@ TEST_F(CourseCohort, aCriticalErrorEndsTheRunWhateverTheFigures) {
   add(attempt(61, "T1"), "trainee", 50.0, 1.0);
   EXPECT_EQ(standing().run, 0U);
   expectNames(standing().missing, {"cystic duct left open, 1:40.2"});
+  EXPECT_FALSE(holdsToken(standing().missing, "bleeding")) << "which is not assessed";
 }
 
 TEST_F(CourseCohort, whoDoesNotCompleteTheTaskDoesNotPass) {
@@ -126,10 +130,14 @@ TEST_F(CourseCohort, attemptsThatProveNothingDoNotCount) {
 
 TEST_F(CourseCohort, practiceAndResearchDoNotDecideWhoIsTrained) {
   course_.groups = {"expert"};
-  cohort_.setParticipant("N0", {.consent = {{"research", "2026-01-01"}}});  // the experts gave none
+  cohort_.setParticipant("N0", {{}, {}, {}, {}, {{"research", "2026-01-01"}}});  // the experts gave none
+  AttemptRecord practised = attempt(60, "E0");
+  practised.mode = recorder::Mode::practice;
+  add(practised, "expert", 50.0);
   const CourseProgress p = progress();
   ASSERT_EQ(p.people.size(), 6U);
-  for (const CoursePerson& person : p.people) EXPECT_EQ(person.tasks[0].run, 1U) << person.participant;
+  for (const CoursePerson& person : p.people)
+    EXPECT_EQ(person.tasks[0].run, person.participant == "E0" ? 2U : 1U) << person.participant;
 }
 
 TEST_F(CourseCohort, performersCountOnlyWhereTheyAreAskedFor) {

@@ -116,9 +116,9 @@ TEST(Proficiency, AttemptsCountInTheOrderOfTheirStarts) {
 TEST(Proficiency, AgreesWithASearchForARun) {
   std::mt19937 generator(7);
   for (int round = 0; round < 400; ++round) {
-    const std::uint32_t needed = 1 + generator() % 4;
+    const auto needed = static_cast<std::uint32_t>(1 + generator() % 4);
     std::string marks, text;
-    for (unsigned i = 0, length = generator() % 12; i < length; ++i) {
+    for (std::size_t i = 0, length = generator() % 12; i < length; ++i) {
       marks += generator() % 3 == 0 ? '-' : '+';
       text += fmt::format("{}{} ", i + 1, marks.back());
     }
