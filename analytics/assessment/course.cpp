@@ -22,10 +22,10 @@ std::vector<Field> CourseCriterion::fields() {
       {"norm", at<S, &S::norm>, plainName, "Name of a norm of the cohort, made on the task's scene"},
       optional("normVersion", at<S, &S::normVersion>, "", within(0, 1000000), "Its version; 0: the newest"),
       optional("passes", at<S, &S::passes>, "", within(1, 20), "Passes in a row"),
-      optional("retentionDays", at<S, &S::retentionDays>, "d", within(0, longestDays),
-               "Time from proficiency to the retention test; 0: there is no test"),
-      optional("dueDays", at<S, &S::dueDays>, "d", within(0, longestDays),
-               "Time from the begin of the course in which to become proficient; 0: no limit"),
+      optional("retentionDays", at<S, &S::retentionDays>, "", within(0, longestDays),
+               "Days from proficiency to the retention test; 0: there is no test"),
+      optional("dueDays", at<S, &S::dueDays>, "", within(0, longestDays),
+               "Days from the begin of the course in which to become proficient; 0: no limit"),
   };
 }
 
@@ -55,8 +55,8 @@ std::vector<Field> Course::fields() {
       optional("begins", at<S, &S::begins>,
                TextRule{10, "^[0-9]{4}-[0-9]{2}-[0-9]{2}$", "a day as 2026-01-31 is expected"},
                "Day from which due days count; a person's first attempt at one of the tasks if absent"),
-      optional("daysBetween", at<S, &S::daysBetween>, "d", within(0, longestDays),
-               "Fewest days (UTC) from a pass to the next that counts; 1: on another day"),
+      optional("daysBetween", at<S, &S::daysBetween>, "", within(0, longestDays),
+               "Fewest days from a pass to the next that counts, by the calendar in UTC; 1: on another day"),
       Field("tasks", at<S, &S::tasks>, "The easiest first; no scene twice").items(1, 50),
   };
 }

@@ -64,7 +64,7 @@ class CourseCohort : public testing::Test {
 TEST_F(CourseCohort, aTraineePassesAtTheThirdTry) {
   add(attempt(60, "T1"), "trainee", 120.0);
   EXPECT_EQ(standing().state, TaskState::practising);
-  expectNames(standing().missing, {"Touch", "0", "2", "elapsed-time", "120 s"});
+  expectNames(standing().missing, {"Touch", "0", "2", "elapsed-time", "120.0 s"});
   add(attempt(61, "T1"), "trainee", 50.0);
   expectNames(standing().missing, {"1", "2"});
   add(attempt(62, "T1"), "trainee", 50.0);
@@ -88,7 +88,7 @@ TEST_F(CourseCohort, aCriticalErrorEndsTheRunWhateverTheFigures) {
 TEST_F(CourseCohort, whoDoesNotCompleteTheTaskDoesNotPass) {
   add(attempt(60, "T1"), "trainee", 50.0);
   for (const recorder::Outcome outcome :
-       {recorder::Outcome::abandoned, recorder::Outcome::stopped, recorder::Outcome::timeLimit}) {
+       {recorder::Outcome::timeLimit, recorder::Outcome::abandoned, recorder::Outcome::stopped}) {
     AttemptRecord a = attempt(61 + static_cast<unsigned>(outcome), "T1");
     a.outcome = outcome;
     add(a, "trainee", 50.0);

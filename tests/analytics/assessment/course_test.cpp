@@ -76,7 +76,7 @@ TEST(CourseFiles, FaultsAreNamedWithTheirPlace) {
       {"[" + taskOf("a", R"({"norm": "n", "passes": 0})") + "]", "", "/tasks/0/criterion/passes", {"1", "20"}},
       {"[" + taskOf("a", R"({"norm": "n", "passes": 1.5})") + "]", "", "/tasks/0/criterion/passes", {}},
       {"[" + taskOf("a", R"({"norm": "n", "dueDays": -1})") + "]", "", "/tasks/0/criterion/dueDays", {}},
-      {"[" + taskOf("a", R"({"norm": "n", "days": 1})") + "]", "", "/tasks/0/criterion", {"\"days\""}},
+      {"[" + taskOf("a", R"({"norm": "n", "days": 1})") + "]", "", "/tasks/0/criterion/days", {"dueDays"}},
       {one, R"("groups": [], )", "/groups", {"0"}},
       {one, R"("groups": ["g", "h", "g"], )", "/groups/2", {}},
       {one, R"("begins": "1.9.2026", )", "/begins", {"2026-01-31"}},
