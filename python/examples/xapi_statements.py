@@ -13,7 +13,8 @@
 #
 # Whether an attempt was passed is a matter of a norm: success is stated where a course names it. PROGRESS.json is what `calot course --json`
 # prints; each attempt that counts for a task with a criterion then has a second statement, "passed" or "failed", and the one by which its
-# participant became proficient a third, "mastered". Their ids follow from course, task, norm and attempt.
+# participant became proficient a third, "mastered". Their ids follow from what they state: sent twice, they are stored once, and another
+# judgement is another statement.
 
 # %%
 import argparse
@@ -94,15 +95,16 @@ def course_statements(course: dict, attempts: dict[str, dict], home: str) -> lis
                 if attempt is None:
                     continue
                 place = f"{address}/tasks/{urllib.parse.quote(task['scene'], safe='')}"
-                norm = f"{task['criterion']['norm']} {task['criterion']['norm_version']}"
+                criterion = {"norm": f"{task['criterion']['norm']} {task['criterion']['norm_version']}", "passes": task["criterion"]["passes"],
+                             "passes_in_row": judged["passes_in_row"], "effect": judged["effect"], "failure": judged["failure"],
+                             "synthetic": attempt["synthetic"]}
                 for verb in ["passed" if judged["passed"] else "failed"] + ["mastered"] * (judged["effect"] == "proficient"):
+                    content = json.dumps([place, judged["attempt"], verb, criterion])
                     statements.append({
-                        "id": str(uuid.uuid5(uuid.NAMESPACE_URL, f"{place}/{norm}/{judged['attempt']}/{verb}")),
+                        "id": str(uuid.uuid5(uuid.NAMESPACE_URL, content)),
                         **who_did(attempt, verb, home),
                         "object": activity(place, "assessment", task["title"]),
-                        "result": {"success": judged["passed"], "extensions": {f"{home}/extensions/criterion": {
-                            "norm": norm, "passes_in_row": judged["passes_in_row"], "passes": task["criterion"]["passes"],
-                            "effect": judged["effect"], "failure": judged["failure"]}}},
+                        "result": {"success": judged["passed"], "extensions": {f"{home}/extensions/criterion": criterion}},
                         "context": {"platform": f"calot {calot.__version__}",
                                     "contextActivities": {"parent": [activity(address, "course", course["title"])]},
                                     "statement": {"objectType": "StatementRef", "id": judged["attempt"]}}})
