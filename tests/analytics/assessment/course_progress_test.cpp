@@ -6,6 +6,7 @@
 
 #include "analytics/assessment/norm.h"
 #include "analytics/checkpoints/error_words.h"
+#include "analytics/cohort/withdraw.h"
 #include "tests/analytics/cohort/support/cohort_support.h"
 #include "tests/support/fault.h"
 #include "tests/support/message.h"
@@ -133,11 +134,18 @@ TEST_F(CourseCohort, practiceAndResearchDoNotDecideWhoIsTrained) {
   cohort_.setParticipant("N0", {{}, {}, {}, {}, {{"research", "2026-01-01"}}});  // the experts gave none
   AttemptRecord practised = attempt(60, "E0");
   practised.mode = recorder::Mode::practice;
+  practised.purpose = "training";
   add(practised, "expert", 50.0);
   const CourseProgress p = progress();
   ASSERT_EQ(p.people.size(), 6U);
   for (const CoursePerson& person : p.people)
     EXPECT_EQ(person.tasks[0].run, person.participant == "E0" ? 2U : 1U) << person.participant;
+  withdraw(path_, planWithdrawal(path_, "E0", WithdrawalScope::research));
+  course_.groups.clear();  // a withdrawal takes the study group away
+  const CoursePerson withdrawn = progress().people[0];
+  EXPECT_EQ(withdrawn.participant, "E0");
+  ASSERT_EQ(withdrawn.tasks[0].attempts.size(), 1U) << "the one of a study is gone";
+  EXPECT_EQ(withdrawn.tasks[0].attempts[0].uuid, practised.uuid);
 }
 
 TEST_F(CourseCohort, performersCountOnlyWhereTheyAreAskedFor) {
