@@ -14,9 +14,6 @@ namespace calot::analytics {
 /// Seconds of 30 to 365 days, earlier or later, from the system's source of randomness.
 std::int64_t drawShift();
 
-/// "2026-01-01T00:00:00Z" moved, in whole seconds (parts of one are cut off); empty where that is no such time.
-std::string shiftedUtc(const std::string& utc, std::int64_t seconds);
-
 /// Names that must not occur in an export, searched for as whole cells and whole words of a file.
 class OriginalNames {
  public:

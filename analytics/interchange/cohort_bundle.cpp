@@ -19,6 +19,7 @@
 #include "analytics/interchange/bundle_names.h"
 #include "analytics/interchange/export_tables.h"
 #include "recorder/base/csv.h"
+#include "recorder/base/dates.h"
 #include "recorder/base/errors.h"
 #include "recorder/base/text_words.h"
 #include "recorder/loop.h"
@@ -235,8 +236,8 @@ class Writer {
     for (const AttemptRow* a : taken) {
       const std::string& whose = a->participant.empty() ? a->uuid : a->participant;
       if (shift.count(whose) == 0) shift[whose] = drawShift();
-      handed_.push_back(
-          {a, names_.random("A", a->uuid), names_.random("P", a->participant), shiftedUtc(a->startUtc, shift[whose])});
+      handed_.push_back({a, names_.random("A", a->uuid), names_.random("P", a->participant),
+                         recorder::shiftedDate(a->startUtc, shift[whose])});
       nameOfAttempt_[a->uuid] = handed_.back().name;
       if (!a->participant.empty())
         people_[names_.random("P", a->participant)] = &source.participants.at(a->participant);

@@ -264,7 +264,7 @@ void addSpans(std::string& text, const char* hand, const Motion& motion) {
   }
 }
 
-nlohmann::ordered_json summaryOf(const Motion& motion) {
+nlohmann::ordered_json treeOfMotion(const Motion& motion) {
   nlohmann::ordered_json summary{{"mounted", motion.mounted}};
   const std::optional<double> share = motion.coverage.share();
   summary["coverage"] = share ? nlohmann::ordered_json(*share) : nlohmann::ordered_json(nullptr);
@@ -288,7 +288,7 @@ std::vector<std::filesystem::path> writeMotionTables(const std::array<Motion, ha
     const char* hand = handNames[h];
     output.add(fmt::format("motion_{}.csv", hand), pointsTable(motion[h]));
     addSpans(spans, hand, motion[h]);
-    summary[hand] = summaryOf(motion[h]);
+    summary[hand] = treeOfMotion(motion[h]);
   }
   output.add("spans.csv", spans);
   output.add("motion.json", summary.dump(2) + "\n");

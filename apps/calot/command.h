@@ -52,6 +52,7 @@ using Run = std::function<int()>;
   X(Rate)                     \
   X(Norm)                     \
   X(Grade)                    \
+  X(Course)                   \
   X(Dossier)                  \
   X(Participant)              \
   X(Attempt)                  \

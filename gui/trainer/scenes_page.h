@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "analytics/cohort/cohort_database.h"
-#include "gui/trainer/course.h"
+#include "gui/trainer/scene_choices.h"
 
 class QLabel;
 class QListWidget;

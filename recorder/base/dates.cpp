@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <regex>
 
 #include "recorder/base/errors.h"
@@ -28,6 +29,23 @@ bool isDate(const std::string& text) {
 std::string presentDate() {
   return fmt::format("{:%Y-%m-%dT%H:%M:%S}Z",
                      fmt::gmtime(std::chrono::system_clock::to_time_t(std::chrono::system_clock::now())));
+}
+
+std::string shiftedDate(const std::string& utc, std::int64_t seconds) {
+  using namespace std::chrono;
+  int y = 0, h = 0, m = 0, s = 0, used = 0;
+  unsigned mo = 0, d = 0;
+  if (std::sscanf(utc.c_str(), "%4d-%2u-%2uT%2d:%2d:%2d%n", &y, &mo, &d, &h, &m, &s, &used) != 6) return {};
+  if (utc.back() != 'Z' || h > 23 || m > 59 || s > 60) return {};
+  const year_month_day date{year(y), month(mo), day(d)};
+  if (!date.ok()) return {};
+  const sys_seconds moved = sys_days(date) + hours(h) + minutes(m) + std::chrono::seconds(s + seconds);
+  const auto midnight = floor<days>(moved);
+  const year_month_day to(midnight);
+  const hh_mm_ss clock(moved - midnight);
+  return fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}Z", static_cast<int>(to.year()),
+                     static_cast<unsigned>(to.month()), static_cast<unsigned>(to.day()), clock.hours().count(),
+                     clock.minutes().count(), clock.seconds().count());
 }
 
 namespace {

@@ -2,6 +2,7 @@
 // Dates as files hold them: ISO 8601 in UTC, to the second; and as people and spreadsheets write them.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -13,6 +14,9 @@ bool isDate(const std::string& text);
 
 /// Now.
 std::string presentDate();
+
+/// "2026-01-01T00:00:00Z" moved, in whole seconds (parts of one are cut off); empty where that is no such time.
+std::string shiftedDate(const std::string& utc, std::int64_t seconds);
 
 /// Completes dates that do not say all themselves; where it is lacking and matters, they are refused.
 struct DateStyle {

@@ -13,6 +13,7 @@ import subprocess
 import sys
 from contextlib import closing
 
+import course_test
 import h5py
 import program
 from program import SOURCE, recording
@@ -97,7 +98,18 @@ class Bids(ExampleTest):
         self.assertFalse(out.exists())
 
 
-class Xapi(ExampleTest):
+class StatementTest(ExampleTest):
+    def judged_valid(self):
+        if VALIDATORS:
+            script = ("const v = require('@learninglocker/xapi-validation'); const list = JSON.parse(require('fs').readFileSync(process.argv[1]));"
+                      "const check = v.default; let n = 0;"
+                      "for (const s of list) { const w = check(s); n += w.length; for (const one of w) console.error(String(one)); }"
+                      "process.exit(n === 0 ? 0 : 1);")
+            done = subprocess.run(["node", "-e", script, str(self.file)], cwd=VALIDATORS, capture_output=True, text=True, check=False)
+            self.assertEqual((done.returncode, done.stderr), (0, ""))
+
+
+class Xapi(StatementTest):
     def setUp(self):
         super().setUp()
         self.cohort = self.path("c.db")
@@ -125,13 +137,7 @@ class Xapi(ExampleTest):
             self.assertEqual(len(s["result"]["extensions"][home + "/extensions/checkpoints"]), values[s["id"]])
             about = s["context"]["extensions"][home + "/extensions/attempt"]
             self.assertEqual((about["verification"], about["synthetic"]), ("verified", True))
-        if VALIDATORS:
-            script = ("const v = require('@learninglocker/xapi-validation'); const list = JSON.parse(require('fs').readFileSync(process.argv[1]));"
-                      "const check = v.default; let n = 0;"
-                      "for (const s of list) { const w = check(s); n += w.length; for (const one of w) console.error(String(one)); }"
-                      "process.exit(n === 0 ? 0 : 1);")
-            done = subprocess.run(["node", "-e", script, str(self.file)], cwd=VALIDATORS, capture_output=True, text=True, check=False)
-            self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.judged_valid()
 
     def test_what_is_refused(self):
         for home in ("", "training", "ftp://a.b", "https://", "https://a b"):
@@ -139,6 +145,48 @@ class Xapi(ExampleTest):
         self.file.write_text("kept")
         self.fails("xapi_statements.py", self.cohort, "https://a.example", self.file, "--include-synthetic", names=(str(self.file),))
         self.assertEqual(self.file.read_text(), "kept")
+
+
+class XapiOfACourse(course_test.Trainees, StatementTest):
+    def test_passed_failed_and_mastered(self):
+        for day, reach in ((5, course_test.BAD), (6, course_test.GOOD), (7, course_test.GOOD)):
+            self.attempt("T1", "trainee", "reaching", reach, f"2026-01-{day:02}")
+        self.store()
+        home, progress = "https://training.example.org", self.path("progress.json")
+        progress.write_text(self.well("course", self.cohort, "--course", self.course(groups=["trainee"]), "--json").out)
+        self.file = self.path("s.json")
+        ask = ("xapi_statements.py", self.cohort, home)
+        self.done(*ask, self.file, "--course", progress)
+        statements = json.loads(self.file.read_text())
+        own = {s["id"]: s for s in statements if "statement" not in s["context"]}
+        course = [s for s in statements if "statement" in s["context"]]
+        self.assertEqual(len({s["id"] for s in statements}), len(statements))
+        self.assertEqual([s["verb"]["display"]["en"] for s in course], ["failed", "passed", "passed", "mastered"])
+        self.assertEqual([s["result"]["success"] for s in course], [False, True, True, True])
+        for s in course:
+            attempt = own[s["context"]["statement"]["id"]]
+            self.assertEqual((s["actor"], s["timestamp"]), (attempt["actor"], attempt["timestamp"]))
+            self.assertEqual(s["actor"]["account"]["name"], "T1")
+            self.assertEqual(s["object"]["id"], home + "/courses/c/tasks/reaching")
+            self.assertEqual(s["context"]["contextActivities"]["parent"][0]["id"], home + "/courses/c")
+            self.assertTrue(s["verb"]["id"].endswith("/" + s["verb"]["display"]["en"]))
+            criterion = s["result"]["extensions"][home + "/extensions/criterion"]
+            self.assertEqual((criterion["norm"], criterion["failure"] is None), ("reaching 1", s["result"]["success"]))
+        self.judged_valid()
+        # The same ids again, and none of attempts that stay out.
+        self.well("attempt", "exclude", course[0]["context"]["statement"]["id"], "--cohort", self.cohort, "--reason", "x", "--by", "me")
+        again = self.path("again.json")
+        self.done(*ask, again, "--course", progress)
+        self.assertEqual([s["id"] for s in json.loads(again.read_text()) if "statement" in s["context"]], [s["id"] for s in course[1:]])
+
+    def test_what_is_refused(self):
+        self.store()
+        for text in ("", "[]", '{"schema": "calot-grade", "version": 1}'):
+            self.path("p.json").write_text(text)
+            self.fails("xapi_statements.py", self.cohort, "https://a.example", self.path("s.json"), "--course", self.path("p.json"),
+                       names=("p.json",))
+        self.fails("xapi_statements.py", self.cohort, "https://a.example", self.path("s.json"), "--course")
+        self.assertFalse(self.path("s.json").exists())
 
 
 if __name__ == "__main__":

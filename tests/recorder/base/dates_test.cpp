@@ -23,6 +23,16 @@ TEST(Dates, AreOfDaysThatThereAre) {
   EXPECT_TRUE(isDate(presentDate())) << presentDate();
 }
 
+TEST(Dates, MoveOverMonthsLeapDaysAndYears) {
+  EXPECT_EQ(shiftedDate("2024-02-28T23:59:59Z", 1), "2024-02-29T00:00:00Z");
+  EXPECT_EQ(shiftedDate("2025-02-28T23:59:59Z", 1), "2025-03-01T00:00:00Z");
+  EXPECT_EQ(shiftedDate("2026-01-01T00:00:00Z", -1), "2025-12-31T23:59:59Z");
+  EXPECT_EQ(shiftedDate("2026-01-01T00:00:00.75Z", 60), "2026-01-01T00:01:00Z");
+  for (const char* bad : {"", "2026-01-01", "2026-02-30T00:00:00Z", "2026-01-01T24:00:00Z", "2026-01-01T00:00:00",
+                          "yesterday at noon, by the clock Z"})
+    EXPECT_EQ(shiftedDate(bad, 1), "") << bad;
+}
+
 using Order = DateStyle::Order;
 
 TEST(Dates, AreReadAsSpreadsheetsWriteThem) {

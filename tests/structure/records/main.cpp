@@ -12,9 +12,9 @@
 #include <utility>
 #include <vector>
 
+#include "analytics/assessment/course.h"
 #include "analytics/assessment/protocol.h"
 #include "analytics/assessment/rating_form.h"
-#include "gui/trainer/course.h"
 #include "recorder/formats/scene_assets.h"
 #include "recorder/sources/column_map.h"
 #include "recorder/sources/devices/calibration.h"
@@ -52,7 +52,7 @@ Texts texts() {
       {"schemas/columns.schema.json",
        file(jsonSchema("Calot column map", "docs/explanation/sources.md", recordOf<recorder::ColumnMap>()))},
       {"schemas/course.schema.json",
-       file(jsonSchema("Calot course", "docs/how-to/course.md", recordOf<gui::Course>()))},
+       file(jsonSchema("Calot course", "docs/how-to/course.md", recordOf<analytics::Course>()))},
       {"schemas/form.schema.json",
        file(jsonSchema("Calot form", "docs/how-to/ratings.md", recordOf<analytics::RatingForm>()))},
       {"schemas/performer.schema.json",

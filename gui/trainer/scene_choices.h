@@ -1,36 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A course: tasks of rising difficulty, each on a scene (assets/curricula/*.json, schemas/course.schema.json).
+// Scenes that can be chosen, in the order of the course (assets/curricula).
 #pragma once
 
 #include <filesystem>
 #include <string>
 #include <vector>
 
-#include "sim/math/record.h"
+#include "analytics/assessment/course.h"
 
 namespace calot::gui {
 
-struct CourseTask {
-  std::string scene;  ///< name of the scene
-  std::string title;  ///< "Clip and cut"
-  std::string goal;   ///< one sentence: what is to be reached
-
-  static std::vector<Field> fields();
-};
-
-struct Course {
-  std::string name, title;
-  std::vector<CourseTask> tasks;  ///< the easiest first
-
-  static std::vector<Field> fields();
-};
-
-/// @throws Error (damaged), naming file and JSON pointer, where anything is unknown, missing or out of its range.
-Course readCourse(const std::filesystem::path& file);
-
 /// The course "basic" of the first root that has it; empty where none has.
-/// @throws Error as readCourse
-Course findCourse(const std::vector<std::filesystem::path>& roots);
+/// @throws Error as analytics::readCourse()
+analytics::Course findCourse(const std::vector<std::filesystem::path>& roots);
 
 /// The small picture of a scene beside the course: `curricula/pictures/SCENE.png` of the first root that has it, or
 /// empty.
