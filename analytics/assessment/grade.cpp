@@ -98,7 +98,7 @@ void conclude(Grade& grade) {
   if (grade.criticalErrors.value_or(0.0) > 0.0) {
     grade.passed = false;
     grade.certain = !grade.criticalUndecided;
-    grade.verdict = fmt::format("Not passed: {}, of which one fails an attempt{}. {}",
+    grade.verdict = fmt::format("Not passed: {}, and a single one fails the attempt{}. {}",
                                 recorder::counted(std::llround(*grade.criticalErrors), "critical error"),
                                 grade.certain ? "" : "; not decided by this simulation", grade.safety.front());
     return;
@@ -169,7 +169,7 @@ Expected<double> percentile(const std::vector<double>& members, double value, Di
     equal += m == value ? 1 : 0;
   }
   const double of = static_cast<double>(n + 1);
-  const std::string supported = fmt::format("{} members tell percentiles from {:.0f} to {:.0f}", n, 100.0 / of,
+  const std::string supported = fmt::format("{} members support percentiles from {:.0f} to {:.0f}", n, 100.0 / of,
                                             100.0 * static_cast<double>(n) / of);
   if (worse == n) return NoResult{fmt::format("better than all; {}", supported)};
   if (worse == 0 && equal == 0) return NoResult{fmt::format("worse than all; {}", supported)};
@@ -262,7 +262,7 @@ void addMoments(Grade& grade, AttemptMoments found) {
 
 std::string useOf(const Norm& norm) {
   if (norm.evidence.empty())
-    return "FORMATIVE: for learning alone. No evidence is attached that judgements by this norm are valid at this "
+    return "FORMATIVE: for learning only. No evidence is attached that judgements by this norm are valid at this "
            "site.";
   const NormEvidence& e = norm.evidence.back();
   return fmt::format("Validity evidence of the site: {} ({}, SHA-256 {}), attached on {} by {}.", e.statement,

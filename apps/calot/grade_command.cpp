@@ -45,12 +45,12 @@ fs::path recordingOf(const analytics::AttemptRow& attempt, const GradeOptions& o
   return fs::is_regular_file(beside, ignored) && beside.extension() == ".h5" ? beside : fs::path();
 }
 
-void lookAtRecording(analytics::Grade& grade, const fs::path& file, const GradeOptions& o) {
+void lookAtRecording(analytics::Grade& grade, const fs::path& file, Progress& progress) {
   const auto figures = analytics::weakFigures(grade);
   if (file.empty()) {
     if (figures.empty() && !(grade.criticalErrors.value_or(0.0) > 0.0)) return;
     grade.momentsMissing =
-        fmt::format("the recording {} is not beside the database (--recording)", grade.attempt.fileName);
+        fmt::format("the recording {} is not beside the database: name it with --recording", grade.attempt.fileName);
     return;
   }
   if (const recorder::ChainVerdict chain = recorder::probe(file); !chain.intact())
@@ -64,7 +64,7 @@ void lookAtRecording(analytics::Grade& grade, const fs::path& file, const GradeO
     grade.momentsMissing = "a golden recording holds no results of its steps";
     return;
   }
-  Progress progress("looking for moments, steps", o.json);
+  progress.next("Looking for moments", "steps");
   analytics::addMoments(grade, analytics::findMoments(recording, figures, [&](std::uint64_t done, std::uint64_t of) {
                           progress.show(done, of);
                         }));
@@ -88,6 +88,7 @@ void grade(const GradeOptions& o) {
   for (const std::string& file : {o.html, o.pdf}) {
     if (!file.empty()) recorder::refuseOutput(file, o.force);
   }
+  Progress progress("Grading", o.json);
   analytics::refuseUnsound(o.database);
   const analytics::CohortDatabase cohort(o.database, Access::read);
   const std::vector<analytics::AttemptRow> attempts = cohort.listAttempts();
@@ -95,7 +96,7 @@ void grade(const GradeOptions& o) {
   const analytics::Norm norm = normOf(cohort, o);
   analytics::Grade result = analytics::gradeAttempt(attempt, attempts, cohort.allValues(), norm, o.mixKeys, o.database);
   const fs::path recording = recordingOf(attempt, o);
-  lookAtRecording(result, recording, o);
+  lookAtRecording(result, recording, progress);
   const std::string name = recording.filename().string();
   const std::string howToDraw = fmt::format("calot render {} --at SECONDS -o F.png draws a moment.", name);
   const std::vector<std::byte> carried = o.withReplay ? carriedRecording(attempt, recording) : std::vector<std::byte>{};

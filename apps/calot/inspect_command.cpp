@@ -137,6 +137,7 @@ std::string headingOf(const std::string& member) {
 
 std::string shownValue(const Json& value) {
   if (value.is_string()) return value.get<std::string>();
+  if (value.is_number_float()) return fmt::format("{:.10g}", value.get<double>());
   if (!value.is_array()) return value.dump(-1, ' ', false, Json::error_handler_t::replace);
   std::string list;
   for (const Json& each : value) list += (list.empty() ? "" : ", ") + shownValue(each);
@@ -192,6 +193,7 @@ struct InspectOptions {
 };
 
 void inspect(const InspectOptions& o) {
+  Progress progress("Reading the recording", o.json);
   const recorder::ChainVerdict chain = recorder::probe(o.file);
   recorder::Recording recording(o.file);
   const Json d = describe(recording, chain);
@@ -209,7 +211,9 @@ struct RecoverOptions {
 };
 
 void recoverRecording(const RecoverOptions& o) {
+  Progress progress("Recovering");
   const recorder::Recovered saved = recorder::recover(o.in, o.out, o.force);
+  Progress::erase();
   fmt::print("{}: {}, {} saved, {}\n", o.out, recorder::counted(saved.steps, "step"),
              recorder::counted(saved.ticks, "tick"), saved.complete ? "complete" : "incomplete");
   if (!saved.lost.empty()) fmt::print("the rest is lost: {}\n", saved.lost);

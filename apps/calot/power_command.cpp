@@ -262,10 +262,10 @@ void printPower(const PowerOptions& o, const PlannedStudy& planned, const std::v
 
 void power(PowerOptions& o) {
   const std::vector<std::size_t> sizes = sizesOf(o.sizes);
+  Progress progress("Simulating studies", o.json, "sizes");
   PlannedStudy planned = planOf(o);
   std::vector<Sized> results;
   std::size_t enough = 0;  // none yet
-  Progress progress("simulating, sizes", o.json);
   for (const std::size_t n : sizes) {
     planned.plan.nx = n;
     planned.plan.ny = std::clamp(static_cast<std::size_t>(std::lround(o.allocation * static_cast<double>(n))),
