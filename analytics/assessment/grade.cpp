@@ -119,7 +119,7 @@ void conclude(Grade& grade) {
         "; not certain, as figures within the intervals of their pass marks and figures that this simulation does "
         "not decide can turn it together";
   grade.verdict =
-      fmt::format("{}: {} of {} figures in the rule passed, {} wanted{}.", grade.passed ? "Passed" : "Not passed",
+      fmt::format("{}: {} of {} figures in the rule passed, {} needed{}.", grade.passed ? "Passed" : "Not passed",
                   grade.passedCount, grade.inRule, grade.needed, doubt);
 }
 
@@ -162,7 +162,7 @@ void addHistory(GradedFigure& figure, const std::vector<const AttemptRow*>& past
 Expected<double> percentile(const std::vector<double>& members, double value, Direction direction) {
   const std::size_t n = members.size();
   if (n < leastForPercentile)
-    return NoResult{fmt::format("{}, {} wanted", recorder::counted(n, "member"), leastForPercentile)};
+    return NoResult{fmt::format("{}, {} needed", recorder::counted(n, "member"), leastForPercentile)};
   std::size_t worse = 0, equal = 0;
   for (const double m : members) {
     worse += (direction == Direction::lower ? m > value : m < value) ? 1 : 0;

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "analytics/assessment/norm.h"
 #include "analytics/report/figure_number.h"
@@ -119,6 +120,27 @@ ReportTable figuresTable(const Grade& g) {
   return table;
 }
 
+/// Gaps of the figures, a line for each reason: "path-length left, path-length right: no percentile, 3 members".
+std::vector<std::string> gaps(const Grade& g) {
+  std::vector<std::pair<std::string, std::string>> namesOf;  // by reason
+  const auto add = [&](const GradedFigure& f, const std::string& reason) {
+    const auto same = [&](const auto& entry) { return entry.first == reason; };
+    const auto known = std::find_if(namesOf.begin(), namesOf.end(), same);
+    if (known == namesOf.end()) {
+      namesOf.emplace_back(reason, nameOf(f));
+    } else {
+      known->second += ", " + nameOf(f);
+    }
+  };
+  for (const GradedFigure& f : g.figures) {
+    if (!f.missing.empty()) add(f, "not judged, " + f.missing);
+    if (f.value && f.passed && !f.rank) add(f, "no percentile, " + f.rank.reason());
+  }
+  std::vector<std::string> lines;
+  for (const auto& [reason, names] : namesOf) lines.push_back(fmt::format("{}: {}.", names, reason));
+  return lines;
+}
+
 std::vector<std::string> notes(const Grade& g) {
   std::vector<std::string> lines{
       "pass mark: the value at which an attempt passes, from contrasting groups with its bootstrap interval, or fixed "
@@ -138,11 +160,7 @@ std::vector<std::string> notes(const Grade& g) {
                                   f.mark.version, f.mark.metric->sha256));
   }
   for (std::string& warning : normWarnings(g.norm)) lines.push_back(std::move(warning));
-  for (const GradedFigure& f : g.figures) {
-    if (!f.missing.empty()) lines.push_back(fmt::format("{}: not judged, {}", nameOf(f), f.missing));
-    if (f.value && f.passed && !f.rank)
-      lines.push_back(fmt::format("{}: no percentile, {}", nameOf(f), f.rank.reason()));
-  }
+  for (std::string& line : gaps(g)) lines.push_back(std::move(line));
   lines.insert(lines.end(), g.remarks.begin(), g.remarks.end());
   return lines;
 }

@@ -22,11 +22,11 @@ namespace calot::analytics {
 /// that are not UTF-8 become U+FFFD.
 std::string escaped(std::string_view text);
 
-/// Warning about an interval whose published coverage is low at these sizes: "g: with 40 a group an interval at 95 %
+/// Warning about an interval whose published coverage is low at these sizes: "g: with 40 in a group an interval at 95 %
 /// covers 92.4 % (population: exponential, 0.8)"; empty where it isn't.
-/// @param name as the report calls the interval. @param unit of the sizes: "a group", "attempts", "people".
+/// @param name as the report calls the interval. @param unit of the sizes: "in a group", "attempts", "people".
 std::string coverageWarning(CoveredInterval interval, const std::string& name, std::size_t nx, std::size_t ny,
-                            const std::string& unit = "a group");
+                            const std::string& unit = "in a group");
 
 enum class Align { left, right };
 

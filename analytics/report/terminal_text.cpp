@@ -212,7 +212,7 @@ void printLeftOut(const ReportTable& table, const std::vector<bool>& left, std::
   }
   if (names.empty()) return;
   printWrapped(
-      fmt::format("Columns left out to fit {} characters: {}. A wider terminal or a pipe (| less -S) shows them.",
+      fmt::format("Columns left out to fit {} characters: {}. A wider terminal shows them, and so does a file.",
                   columns, names),
       out);
 }

@@ -49,7 +49,7 @@ TEST(TerminalTable, leavesOutColumnsByItsRuleAndSaysWhich) {
     const std::string text = printed(sheet(), columns);
     EXPECT_LE(longestLine(text), columns) << text;
     std::vector<std::string> missing;
-    for (const std::string& number : {"1234.1", "1234.2", "[1234.3, 1234.4]"}) {
+    for (const char* number : {"1234.1", "1234.2", "[1234.3, 1234.4]"}) {
       if (!has(text, number)) missing.push_back(number);
     }
     EXPECT_TRUE(has(text, "1234.1")) << "the value stays: " << text;
