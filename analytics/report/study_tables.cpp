@@ -42,6 +42,7 @@ std::string sizesText(const ValueTree& groups) {
   return fmt::format("{} + {}", groups[0]["n"].dump(), groups[1]["n"].dump());
 }
 std::string wholeOrDash(const ValueTree& n) { return n.is_null() ? "-" : n.dump(); }
+std::string displayedUnit(const StudyRow& row) { return row.unit == "1" ? "" : row.unit; }
 std::string share(double a) { return fmt::format("{:.3f}", a); }
 
 ReportTable valuesTable(const Study& study, const std::string& title, const ShownRows& rows) {
@@ -58,10 +59,10 @@ ReportTable valuesTable(const Study& study, const std::string& title, const Show
       std::string paper;
       if (row.publishedExpert)
         paper = g == 0 ? fmt::format("E {}", *row.publishedExpert) : fmt::format("N {}", *row.publishedNovice);
-      table.rows.push_back({g == 0 ? rowName(row) : "", g == 0 ? row.unit : "", study.groups[g], fmt::format("{}", s.n),
-                            s.missing == 0 ? "" : fmt::format("{}", s.missing), number(s.median),
-                            number(s.lowerQuartile), number(s.upperQuartile), significantOrDash(s.mean),
-                            significantOrDash(s.standardDeviation), paper});
+      table.rows.push_back({g == 0 ? rowName(row) : "", g == 0 ? displayedUnit(row) : "", study.groups[g],
+                            fmt::format("{}", s.n), s.missing == 0 ? "" : fmt::format("{}", s.missing),
+                            number(s.median), number(s.lowerQuartile), number(s.upperQuartile),
+                            significantOrDash(s.mean), significantOrDash(s.standardDeviation), paper});
     }
   }
   return table;
@@ -121,7 +122,8 @@ ReportTable simulationTable(const Study& study) {
       range = turned ? fmt::format("[{}, {}]", share(1.0 - s.area->second), share(1.0 - s.area->first))
                      : fmt::format("[{}, {}]", share(s.area->first), share(s.area->second));
     }
-    table.rows.push_back({rowName(row), row.unit, significant(s.halfWidth, 3), share(row.area->value.a), range,
+    table.rows.push_back({rowName(row), displayedUnit(row), significant(s.halfWidth, 3), share(row.area->value.a),
+                          range,
                           !s.area       ? fmt::format("{} of {} values have an interval", s.known, s.values)
                           : s.decided() ? "decided"
                                         : "not decided by this simulation"});
@@ -248,7 +250,7 @@ ReportTable resultTable(const Study& study, const std::string& title, const Tree
                                  {"smallest", "/attainable_p", adjustedText}});
   if (isDirected(study)) columns.push_back({"=supported", "/support", plain});
   ReportTable table = tableOf(title, rows, columns);
-  table.leastNeeded = {"smallest", "n", "95 %", "95 %"};
+  table.leastNeeded = {"smallest", "n", "95 %", "95 %", "A", "shift"};
   dropEmptyColumns(table);
   return table;
 }

@@ -13,7 +13,9 @@
 namespace calot::analytics {
 namespace {
 
-constexpr std::size_t narrowest = 10, fileColumns = 120, readable = 24;
+constexpr std::size_t narrowest = 10, fileColumns = 120;
+/// On a terminal, texts of more columns than the first are not given fewer than the second.
+constexpr std::size_t prose = 40, readable = 24;
 
 /// The slot in which a stream keeps its terminal's columns; 0: there is none.
 int columnsIndex() {
@@ -136,7 +138,7 @@ class TableLayout {
         least_[c] = std::max(least_[c], longestWord(row[c]));
         shown_[c] = shown_[c] || !row[c].empty();
       }
-      if (onTerminal) least_[c] = std::max(least_[c], std::min(natural_[c], readable));
+      if (onTerminal && natural_[c] > prose) least_[c] = std::max(least_[c], readable);
     }
     width = natural_;
   }

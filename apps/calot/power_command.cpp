@@ -254,9 +254,11 @@ void printPower(const PowerOptions& o, const PlannedStudy& planned, const std::v
   }
   if (untestable > 0) out << fmt::format("{} tests had no answer and count as not rejected.\n", untestable);
   out << (enough > 0
-              ? fmt::format("From n = {} ({}) on all effects together reach {:g} with the whole interval.\n", enough,
-                            planned.groups[0], o.target)
-              : fmt::format("None of these sizes reaches {:g} for all effects together with the whole interval.\n",
+              ? fmt::format(
+                    "From n = {} ({}) on, the power for all effects together reaches {:g} with its whole interval.\n",
+                    enough, planned.groups[0], o.target)
+              : fmt::format("At none of these sizes does the power for all effects together reach {:g} with its whole "
+                            "interval.\n",
                             o.target));
 }
 

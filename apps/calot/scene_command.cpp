@@ -153,7 +153,7 @@ void checkScene(const SceneCheckOptions& o) {
   if (!check.faults.empty())
     throw Error(ErrorKind::damaged,
                 fmt::format("{}: {}", file.string(), recorder::counted(check.faults.size(), "fault")));
-  if (!o.json) fmt::print("{}: sound, {}\n", file.string(), recorder::counted(check.notes.size(), "note"));
+  if (!o.json) printText(fmt::format("{}: sound, {}\n", file.string(), recorder::counted(check.notes.size(), "note")));
 }
 
 struct SceneTemplate {
