@@ -36,7 +36,8 @@ struct AssessSettings {
   double cutoff = motionCutoff;  ///< of the motion filter (Hz); values that are stored are of the default
   recorder::EngineRequest engine = {};
   const std::vector<MetricScript>* metrics = nullptr;  ///< users' own, computed as well; null: none
-  /// May throw, which ends it: what is thrown leaves assessRecording().
+  /// For judgeAll() it counts thousandths of all recordings, from any of its threads. May throw, which ends it: what is
+  /// thrown leaves assessRecording().
   std::function<void(std::uint64_t step, std::uint64_t of)> progress = {};
 };
 

@@ -4,8 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <exception>
 #include <map>
+#include <numeric>
 #include <utility>
 
 #include "analytics/checkpoints/replay_words.h"
@@ -97,6 +99,8 @@ void judgeAll(const std::vector<std::string>& files, recorder::WorkerPool& pool,
   };
   // A batch is simulated in parallel and consumed in its order before the next one begins.
   const std::size_t batch = pool.threadCount() == 1 ? 1 : std::size_t{4} * pool.threadCount();
+  constexpr std::uint64_t parts = 1000;  // of a recording
+  std::vector<std::atomic<std::uint64_t>> done(files.size());
   for (std::size_t begin = 0; begin < files.size(); begin += batch) {
     std::vector<Work> works(std::min(batch, files.size() - begin));
     // With fewer recordings than threads, each has several.
@@ -104,8 +108,15 @@ void judgeAll(const std::vector<std::string>& files, recorder::WorkerPool& pool,
     if (pool.threadCount() > 1)
       own.threads = static_cast<unsigned>(std::max<std::size_t>(1, pool.threadCount() / works.size()));
     const auto judge = [&](std::size_t i) {
+      AssessSettings mine = own;
+      if (settings.progress) {
+        mine.progress = [&, i](std::uint64_t step, std::uint64_t of) {
+          done[begin + i] = of > 0 ? parts * step / of : 0;
+          settings.progress(std::accumulate(done.begin(), done.end(), std::uint64_t{0}), parts * files.size());
+        };
+      }
       try {
-        works[i].judged = assessRecording(files[begin + i], own);
+        works[i].judged = assessRecording(files[begin + i], mine);
       } catch (...) {
         works[i].failure = std::current_exception();
       }

@@ -98,7 +98,7 @@ void conclude(Grade& grade) {
   if (grade.criticalErrors.value_or(0.0) > 0.0) {
     grade.passed = false;
     grade.certain = !grade.criticalUndecided;
-    grade.verdict = fmt::format("Not passed: {}, of which one fails an attempt{}. {}",
+    grade.verdict = fmt::format("Not passed: {}, and a single one fails the attempt{}. {}",
                                 recorder::counted(std::llround(*grade.criticalErrors), "critical error"),
                                 grade.certain ? "" : "; not decided by this simulation", grade.safety.front());
     return;
@@ -119,7 +119,7 @@ void conclude(Grade& grade) {
         "; not certain, as figures within the intervals of their pass marks and figures that this simulation does "
         "not decide can turn it together";
   grade.verdict =
-      fmt::format("{}: {} of {} figures in the rule passed, {} wanted{}.", grade.passed ? "Passed" : "Not passed",
+      fmt::format("{}: {} of {} figures in the rule passed, {} needed{}.", grade.passed ? "Passed" : "Not passed",
                   grade.passedCount, grade.inRule, grade.needed, doubt);
 }
 
@@ -162,14 +162,14 @@ void addHistory(GradedFigure& figure, const std::vector<const AttemptRow*>& past
 Expected<double> percentile(const std::vector<double>& members, double value, Direction direction) {
   const std::size_t n = members.size();
   if (n < leastForPercentile)
-    return NoResult{fmt::format("{}, {} wanted", recorder::counted(n, "member"), leastForPercentile)};
+    return NoResult{fmt::format("{}, {} needed", recorder::counted(n, "member"), leastForPercentile)};
   std::size_t worse = 0, equal = 0;
   for (const double m : members) {
     worse += (direction == Direction::lower ? m > value : m < value) ? 1 : 0;
     equal += m == value ? 1 : 0;
   }
   const double of = static_cast<double>(n + 1);
-  const std::string supported = fmt::format("{} members tell percentiles from {:.0f} to {:.0f}", n, 100.0 / of,
+  const std::string supported = fmt::format("{} members support percentiles from {:.0f} to {:.0f}", n, 100.0 / of,
                                             100.0 * static_cast<double>(n) / of);
   if (worse == n) return NoResult{fmt::format("better than all; {}", supported)};
   if (worse == 0 && equal == 0) return NoResult{fmt::format("worse than all; {}", supported)};
@@ -262,7 +262,7 @@ void addMoments(Grade& grade, AttemptMoments found) {
 
 std::string useOf(const Norm& norm) {
   if (norm.evidence.empty())
-    return "FORMATIVE: for learning alone. No evidence is attached that judgements by this norm are valid at this "
+    return "FORMATIVE: for learning only. No evidence is attached that judgements by this norm are valid at this "
            "site.";
   const NormEvidence& e = norm.evidence.back();
   return fmt::format("Validity evidence of the site: {} ({}, SHA-256 {}), attached on {} by {}.", e.statement,

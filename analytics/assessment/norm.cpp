@@ -329,8 +329,9 @@ std::size_t neededPasses(const Norm& norm) { return norm.leastPassed > 0 ? norm.
 std::string ruleText(const Norm& norm) {
   const auto [competent, others] = passRates(norm);
   return fmt::format(
-      "no critical error, and {} of {} figures. By it {} of {} competent members pass, and {} of {} others; the marks "
-      "were made of these members: of people who are new to it fewer are judged right.",
+      "no critical error, and {} of {} figures passed. By this rule {} of {} competent members pass, and {} of {} "
+      "others. The pass marks come from these same members, so people new to the norm will be judged correctly less "
+      "often.",
       neededPasses(norm), figuresInRule(norm), competent.passed, competent.members, others.passed, others.members);
 }
 
@@ -348,8 +349,9 @@ std::string passMarkWarning(const Norm& norm) {
 std::string ownFailureWarning(const Norm& norm) {
   const auto [competent, others] = passRates(norm);
   if (competent.passed == competent.members) return {};
-  return fmt::format("Warning: {} of the {} competent members fail by the norm's own rule.",
-                     competent.members - competent.passed, competent.members);
+  const std::uint64_t failed = competent.members - competent.passed;
+  return fmt::format("Warning: {} of the {} competent members {} by the norm's own rule.", failed, competent.members,
+                     failed == 1 ? "fails" : "fail");
 }
 
 namespace {

@@ -105,7 +105,7 @@ std::string uncountedWarning(const Norm& norm) {
     if (reasons.find(mark.reason) == std::string::npos) reasons += (reasons.empty() ? "" : "; ") + mark.reason;
   }
   if (names.empty()) return {};
-  return fmt::format("Warning: harm that does not count, for want of a pass mark ({}): {}.", reasons, names);
+  return fmt::format("Warning: harm that the rule does not count, for lack of a pass mark ({}): {}.", reasons, names);
 }
 
 AngoffJudgement readAngoff(const CsvTable& table) {

@@ -77,7 +77,7 @@ std::vector<std::string> groupsOfDesign(const std::map<std::string, std::uint64_
       throw Error(ErrorKind::invalid, fmt::format("study: group \"{}\" is named twice", recorder::shown(name)));
     if (present.count(name) == 0) {
       throw Error(ErrorKind::refused, Where{path},
-                  fmt::format("nothing for the study in group \"{}\" (there are: {}){}", recorder::shown(name),
+                  fmt::format("no attempt for the study in group \"{}\" (there are: {}){}", recorder::shown(name),
                               commaList(there), left));
     }
   }

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "analytics/report/study_people.h"
+#include "analytics/report/terminal_text.h"
 #include "analytics/statistics/rank_tests.h"
 #include "recorder/base/counted.h"
 #include "recorder/base/errors.h"

@@ -17,9 +17,9 @@ namespace calot::analytics {
 namespace {
 
 /// Median and quartiles of a group.
-std::string quartilesText(const ValueTree& group) {
-  return fmt::format("{} [{}, {}]", digits4(group["median"]), digits4(group["lower_quartile"]),
-                     digits4(group["upper_quartile"]));
+std::string quartilesText(const ValueTree& group, const ValueTree& row) {
+  return fmt::format("{} [{}, {}]", figure4(group["median"], row), figure4(group["lower_quartile"], row),
+                     figure4(group["upper_quartile"], row));
 }
 
 ValueTree medianTree(const std::string& group, const std::vector<double>& values) {
@@ -238,8 +238,8 @@ void analyseRepeated(const DesignData& data, const DesignChoices& choices, Desig
                {"=of", "/of", plain},
                {data.groups[0], "/groups/0", quartilesText},
                {data.groups[1], "/groups/1", quartilesText},
-               {"shift", "/shift", digits4},
-               {"95 %", "/shift_interval", range4},
+               {"shift", "/shift", figure4},
+               {"95 %", "/shift_interval", figureRange4},
                {"A", "/a", share3},
                {"p", "/p", pValue},
                {"Holm", "/p_holm", pValue},

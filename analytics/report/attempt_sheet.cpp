@@ -8,6 +8,7 @@
 
 #include "analytics/assessment/norm.h"
 #include "analytics/assessment/verdict.h"
+#include "analytics/report/figure_number.h"
 #include "analytics/report/grade_sheet.h"
 #include "analytics/report/key_figures.h"
 
@@ -64,7 +65,7 @@ ReportTable valuesTable(const std::vector<CheckpointValue>& values) {
     const double factor = definition != nullptr ? definition->displayFactor : 1.0;
     const std::string unit = definition != nullptr ? definition->displayUnit : v.unit;
     table.rows.push_back({figureName(title, v.subject.empty() ? "" : "(" + v.subject + ")"),
-                          v.value ? significant(*v.value * factor) : "-", unit == "1" ? "" : unit,
+                          v.value ? figureNumber(definition, *v.value * factor) : "-", unit == "1" ? "" : unit,
                           v.value ? v.note : v.reason});
   }
   return table;

@@ -4,9 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "analytics/assessment/norm.h"
+#include "analytics/report/figure_number.h"
 #include "analytics/report/plots.h"
+#include "analytics/report/terminal_text.h"
 
 namespace calot::analytics {
 namespace {
@@ -63,7 +66,7 @@ std::vector<std::string> opening(const Grade& g) {
   // Critical errors are in the verdict.
   lines.insert(lines.end(), g.safety.begin() + (g.criticalErrors.value_or(0.0) > 0.0 ? 1 : 0), g.safety.end());
   lines.push_back(
-      fmt::format("Attempt {} of {} on {}: {}, {}, {}.", g.attempt.uuid,
+      fmt::format("Attempt {} by {} on {}: {}, {}, {}.", g.attempt.uuid,
                   g.attempt.participant.empty() ? recorder::wordFor(g.attempt.operatorKind) : g.attempt.participant,
                   g.attempt.startUtc.empty() ? "an unknown day" : g.attempt.startUtc, g.attempt.comparabilityKey,
                   recorder::wordFor(g.attempt.outcome), analytics::nameOf(g.attempt.verification.verdict)));
@@ -74,7 +77,8 @@ std::vector<std::string> opening(const Grade& g) {
 // Texts of cells.
 std::string unitText(const ValueTree& unit) { return unit == "1" ? "" : plain(unit); }
 std::string markText(const ValueTree& f) {
-  return f["cut_lower"].is_null() ? "-" : fmt::format("[{}, {}]", digits4(f["cut_lower"]), digits4(f["cut_upper"]));
+  return f["cut_lower"].is_null() ? "-"
+                                  : fmt::format("[{}, {}]", figure4(f["cut_lower"], f), figure4(f["cut_upper"], f));
 }
 std::string percentileText(const ValueTree& rank) {
   return rank.is_null() ? "-" : fmt::format("{:.0f}", rank.get<double>());
@@ -90,7 +94,7 @@ std::string simulationText(const GradedFigure& f, const ValueTree& tree) {
   if (!f.interval) return "";
   if (!f.interval->lower) return "not known";
   if (*f.interval->lower == *f.interval->upper) return "exact";
-  return fmt::format("[{}, {}]", digits4(tree["simulation_lower"]), digits4(tree["simulation_upper"]));
+  return fmt::format("[{}, {}]", figure4(tree["simulation_lower"], tree), figure4(tree["simulation_upper"], tree));
 }
 
 /// @param titled figures by their titles, for people; else by the names that options take
@@ -102,32 +106,54 @@ ReportTable figuresTable(const Grade& g, bool titled = false) {
     row["rule"] = f.mark.inRule ? "counts" : "";
     row["name"] = titled ? figureName(f.title, f.mark.subject.empty() ? "" : "(" + f.mark.subject + ")") : nameOf(f);
   }
-  return tableOf("Figures", rows,
-                 {{titled ? "=figure" : "=checkpoint", "/name", plain},
-                  {"=unit", "/unit", unitText},
-                  {"=better", "/direction", plain},
-                  {"value", "/value", digits4},
-                  {"simulation", "/simulation", plain},
-                  {"pass mark", "/cut", digits4},
-                  {"95 %", "", markText},
-                  {"=passed", "", passedText},
-                  {"=rule", "/rule", plain},
-                  {"percentile", "/percentile", percentileText}});
+  ReportTable table = tableOf("Figures", rows,
+                              {{titled ? "=figure" : "=checkpoint", "/name", plain},
+                               {"=unit", "/unit", unitText},
+                               {"=better", "/direction", plain},
+                               {"value", "/value", figure4},
+                               {"simulation", "/simulation", plain},
+                               {"pass mark", "/cut", figure4},
+                               {"95 %", "", markText},
+                               {"=passed", "", passedText},
+                               {"=rule", "/rule", plain},
+                               {"percentile", "/percentile", percentileText}});
+  table.leastNeeded = {"percentile", "95 %", "simulation", "better", "rule", "unit"};
+  return table;
+}
+
+/// Gaps of the figures, a line for each reason: "path-length left, path-length right: no percentile, 3 members".
+std::vector<std::string> gaps(const Grade& g) {
+  std::vector<std::pair<std::string, std::string>> namesOf;  // by reason
+  const auto add = [&](const GradedFigure& f, const std::string& reason) {
+    const auto same = [&](const auto& entry) { return entry.first == reason; };
+    const auto known = std::find_if(namesOf.begin(), namesOf.end(), same);
+    if (known == namesOf.end()) {
+      namesOf.emplace_back(reason, nameOf(f));
+    } else {
+      known->second += ", " + nameOf(f);
+    }
+  };
+  for (const GradedFigure& f : g.figures) {
+    if (!f.missing.empty()) add(f, "not judged, " + f.missing);
+    if (f.value && f.passed && !f.rank) add(f, "no percentile, " + f.rank.reason());
+  }
+  std::vector<std::string> lines;
+  for (const auto& [reason, names] : namesOf) lines.push_back(fmt::format("{}: {}.", names, reason));
+  return lines;
 }
 
 std::vector<std::string> notes(const Grade& g) {
   std::vector<std::string> lines{
-      "pass mark: the cut of contrasting groups, at which one passes, with its bootstrap interval, or a mark that was "
-      "fixed, without one. open: the value "
-      "lies within that interval. near: the value lies within one standard error of the mark: of measurement, from the "
-      "repeated attempts of five people or more, else of the mark itself. percentile: among the competent members; "
-      "higher is better."};
+      "pass mark: the value at which an attempt passes, from contrasting groups with its bootstrap interval, or fixed "
+      "by a person without one. open: the value lies within that interval. near: the value lies within one standard "
+      "error of the mark: that of measurement, from the repeated attempts of five people or more, else that of the "
+      "mark "
+      "itself. percentile: among the competent members; higher is better."};
   if (std::any_of(g.figures.begin(), g.figures.end(), [](const GradedFigure& f) { return f.interval.has_value(); })) {
     lines.emplace_back(
-        "simulation: where the value may lie for an exact simulation with the right constants. undecided: the pass "
-        "mark lies within it, so that the figure is not decided by this simulation. exact: no simulation changes it. "
-        "not "
-        "known: the figure does not exist in one of the runs.");
+        "simulation: where the value would lie in an exact simulation with the right constants. undecided: the pass "
+        "mark lies within this range, so this simulation does not decide the figure. exact: no simulation changes it. "
+        "not known: one of the runs has no such figure.");
   }
   for (const GradedFigure& f : g.figures) {
     if (f.mark.metric)
@@ -135,11 +161,7 @@ std::vector<std::string> notes(const Grade& g) {
                                   f.mark.version, f.mark.metric->sha256));
   }
   for (std::string& warning : normWarnings(g.norm)) lines.push_back(std::move(warning));
-  for (const GradedFigure& f : g.figures) {
-    if (!f.missing.empty()) lines.push_back(fmt::format("{}: not judged, {}", nameOf(f), f.missing));
-    if (f.value && f.passed && !f.rank)
-      lines.push_back(fmt::format("{}: no percentile, {}", nameOf(f), f.rank.reason()));
-  }
+  for (std::string& line : gaps(g)) lines.push_back(std::move(line));
   lines.insert(lines.end(), g.remarks.begin(), g.remarks.end());
   return lines;
 }
@@ -167,9 +189,14 @@ std::string errorWords(const ErrorLine& error) {
   return std::string(analytics::nameOf(error.severity)) + ", " + error.counted();
 }
 
-/// The weak figures with their moments, or the reason why the list is empty.
+/// The weak figures with their moments, or the reason why there are none.
 std::vector<Paragraph> weakFigures(const Grade& g, const std::string& recording) {
   std::vector<Paragraph> items;
+  if (!g.momentsMissing.empty()) {
+    if (std::any_of(g.figures.begin(), g.figures.end(), [](const GradedFigure& f) { return f.weak(); }))
+      items.push_back({{"weak figures: no moments, " + g.momentsMissing, {}}});
+    return items;
+  }
   for (const GradedFigure& f : g.figures) {
     if (!f.weak()) continue;
     Paragraph& item = items.emplace_back(Paragraph{{nameOf(f) + ": ", {}}});
@@ -177,8 +204,7 @@ std::vector<Paragraph> weakFigures(const Grade& g, const std::string& recording)
       if (item.size() > 1) item.push_back({", ", {}});
       item.push_back(link(recording, momentText(m), m.begin, m.end));
     }
-    if (item.size() == 1)
-      item.push_back({"no moments, " + (g.momentsMissing.empty() ? f.moments.none : g.momentsMissing), {}});
+    if (item.size() == 1) item.push_back({"no moments, " + f.moments.none, {}});
   }
   return items;
 }
@@ -197,10 +223,11 @@ ReportTable historyTable(const Grade& g) {
   ReportTable table = tableOf("History", {"=checkpoint", "=unit", "attempts", "first", "this", "plateau", "se"});
   for (const GradedFigure& f : g.figures) {
     if (f.history.size() < 2) continue;
-    table.rows.push_back({nameOf(f), f.unit == "1" ? "" : f.unit, fmt::format("{}", f.history.size()),
-                          significant(f.history.front().value), significant(f.history.back().value),
-                          f.curve ? significant(f.curve->plateau) : "-",
-                          f.curve ? significant(f.curve->plateauError) : "-"});
+    const CheckpointDefinition* const definition = f.mark.metric ? nullptr : findCheckpoint(f.mark.checkpoint);
+    table.rows.push_back(
+        {nameOf(f), f.unit == "1" ? "" : f.unit, fmt::format("{}", f.history.size()),
+         figureNumber(definition, f.history.front().value), figureNumber(definition, f.history.back().value),
+         f.curve ? significant(f.curve->plateau) : "-", f.curve ? significant(f.curve->plateauError) : "-"});
   }
   return table;
 }

@@ -3,22 +3,21 @@
 
 #include <fmt/format.h>
 #include <algorithm>
-#include <cmath>
 
 #include "analytics/assessment/norm.h"
+#include "analytics/report/figure_number.h"
 #include "analytics/report/report_document.h"
 
 namespace calot::analytics {
 namespace {
 
-/// A number of this checkpoint as people read it: counts whole, the unit behind it.
+/// A number of this checkpoint as people read it, with its unit.
 std::string shown(const CheckpointValue& value, double si) {
   const CheckpointDefinition* const definition = definitionOf(value);
   const bool known = definition != nullptr && definition->version == value.version;
-  const double number = si * (known ? definition->displayFactor : 1.0);
   const std::string& unit = known ? definition->displayUnit : value.unit;
-  const bool whole = known && definition->domain == Domain::whole && number == std::round(number);
-  return (whole ? fmt::format("{:.0f}", number) : significant(number)) + (unit == "1" ? "" : " " + unit);
+  return figureNumber(known ? definition : nullptr, si * (known ? definition->displayFactor : 1.0)) +
+         (unit == "1" ? "" : " " + unit);
 }
 
 }  // namespace

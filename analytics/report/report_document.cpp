@@ -4,9 +4,7 @@
 
 #include <fmt/format.h>
 #include <algorithm>
-#include <cassert>
 #include <cmath>
-#include <sstream>
 #include <vector>
 
 #include "recorder/base/files.h"
@@ -74,136 +72,14 @@ std::string coverageWarning(CoveredInterval interval, const std::string& name, s
                      doubt.percent, doubt.population);
 }
 
-namespace {
-
-/// Columns on the terminal: code points, so that a degree sign counts once.
-std::size_t widthOf(const std::string& text) {
-  return static_cast<std::size_t>(
-      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
-}
-
-constexpr std::size_t narrowest = 10, terminalWidth = 120;
-
-/// How far columns are made narrower, one after the other.
-enum class Narrowing { wholeWords, othersCut, allCut };
-
-/// With the two blanks before it that a line below has.
-std::size_t longestWord(const std::string& text) {
-  std::size_t longest = 0;
-  std::istringstream words(text);
-  bool first = true;
-  for (std::string word; words >> word; first = false) longest = std::max(longest, widthOf(word) + (first ? 0 : 2));
-  return longest;
-}
-
-/// The text broken at blanks into lines, those below the first indented; a word longer than a line is cut.
-std::vector<std::string> wrapped(const std::string& text, std::size_t width) {
-  if (widthOf(text) <= width) return {text};
-  std::vector<std::string> lines;
-  std::string line(std::min(text.find_first_not_of(' '), text.size()), ' ');  // what is indented stays so
-  bool empty = true;
-  std::istringstream words(text);
-  for (std::string word; words >> word;) {
-    const std::string longer = empty ? line + word : line + " " + word;
-    if (empty || widthOf(longer) <= width) {
-      line = cutTo(longer, width);
-    } else {
-      lines.push_back(line);
-      line = cutTo("  " + word, width);
-    }
-    empty = false;
-  }
-  lines.push_back(line);
-  return lines;
-}
-
-}  // namespace
-
 ReportTable tableOf(const std::string& title, const std::vector<std::string>& columns) {
-  ReportTable table{title, {}, {}};
+  ReportTable table;
+  table.title = title;
   for (const std::string& column : columns) {
     const bool left = column.rfind('=', 0) == 0;
     table.columns.emplace_back(column.substr(left ? 1 : 0), left ? Align::left : Align::right);
   }
   return table;
-}
-
-void ReportTable::print(std::ostream& out, std::size_t most) const {
-  std::vector<std::size_t> width(columns.size(), 0);
-  std::vector<bool> shown(columns.size(), false);
-  for (std::size_t c = 0; c < columns.size(); ++c) {
-    width[c] = widthOf(columns[c].first);
-    for (const auto& row : rows) {
-      width[c] = std::max(width[c], widthOf(row[c]));
-      shown[c] = shown[c] || !row[c].empty();
-    }
-  }
-  const auto total = [&] {
-    std::size_t sum = 0;
-    for (std::size_t c = 0; c < columns.size(); ++c) sum += shown[c] ? width[c] + (sum == 0 ? 0 : 2) : 0;
-    return sum;
-  };
-  // Words are cut where nothing else helps, and those that say what a row is of last.
-  std::vector<std::size_t> wholeWords(columns.size(), narrowest);
-  for (const auto& row : rows) {
-    for (std::size_t c = 0; c < columns.size(); ++c) wholeWords[c] = std::max(wholeWords[c], longestWord(row[c]));
-  }
-  for (const Narrowing to : {Narrowing::wholeWords, Narrowing::othersCut, Narrowing::allCut}) {
-    while (total() > most) {
-      std::size_t widest = columns.size();
-      for (std::size_t c = 0; c < columns.size(); ++c) {
-        const bool whole = to == Narrowing::wholeWords || (to == Narrowing::othersCut && c == 0);
-        if (!shown[c] || columns[c].second != Align::left || width[c] <= (whole ? wholeWords[c] : narrowest)) continue;
-        if (widest == columns.size() || width[c] > width[widest]) widest = c;
-      }
-      if (widest == columns.size()) break;
-      --width[widest];
-    }
-  }
-  const auto line = [&](const auto& cell, char fill) {
-    std::string text;
-    bool first = true;
-    for (std::size_t c = 0; c < columns.size(); ++c) {
-      if (!shown[c]) continue;
-      if (!first) text += "  ";
-      first = false;
-      const std::string content = cutTo(cell(c), width[c]);
-      const std::string padding(width[c] - std::min(width[c], widthOf(content)), fill);
-      text += columns[c].second == Align::left ? content + padding : padding + content;
-    }
-    text.erase(text.find_last_not_of(' ') + 1);
-    out << text << '\n';
-  };
-  line([&](std::size_t c) { return columns[c].first; }, ' ');
-  line([](std::size_t) { return std::string(); }, '-');
-  // The rest of cells that are too wide goes on below: in the next row if it belongs to this one (its first
-  // cell is empty) and has an empty cell there, else in a line of its own.
-  std::vector<std::vector<std::string>> rest(columns.size());
-  const auto takeRest = [&](std::size_t c) {
-    if (rest[c].empty()) return std::string();
-    std::string text = rest[c].front();
-    rest[c].erase(rest[c].begin());
-    return text;
-  };
-  const auto printRest = [&](const auto& wanted) {
-    const auto left = [&](std::size_t c) { return !rest[c].empty() && wanted(c); };
-    for (bool any = true; any;) {
-      any = false;
-      for (std::size_t c = 0; c < columns.size(); ++c) any = any || left(c);
-      if (any) line([&](std::size_t c) { return left(c) ? takeRest(c) : std::string(); }, ' ');
-    }
-  };
-  for (const auto& row : rows) {
-    printRest([&](std::size_t c) { return !row[0].empty() || !row[c].empty(); });
-    line(
-        [&](std::size_t c) {
-          if (row[c].empty() || columns[c].second != Align::left) return row[c].empty() ? takeRest(c) : row[c];
-          rest[c] = wrapped(row[c], width[c]);
-          return takeRest(c);
-        },
-        ' ');
-  }
-  printRest([](std::size_t) { return true; });
 }
 
 void dropEmptyColumns(ReportTable& table) {
@@ -215,54 +91,13 @@ void dropEmptyColumns(ReportTable& table) {
   }
 }
 
-void printTable(const ReportTable& table, std::ostream& out) {
-  out << table.title << '\n';
-  table.print(out, terminalWidth);
-  out << '\n';
-}
-
-void printWrapped(const std::string& text, std::ostream& out) {
-  std::size_t begin = 0;
-  while (text.size() - begin > terminalWidth) {
-    std::size_t end = text.rfind(' ', begin + terminalWidth);
-    if (end == std::string::npos || end <= begin) end = text.find(' ', begin);
-    if (end == std::string::npos) break;
-    out << text.substr(begin, end - begin) << '\n';
-    begin = end + 1;
-  }
-  out << text.substr(begin) << '\n';
-}
-
-void printReport(const ReportOpening& opening, std::ostream& out, const std::function<void()>& body) {
-  if (opening.synthetic) out << watermarkText << '\n';
-  printWrapped(opening.title, out);
-  for (const std::string& line : opening.head) printWrapped(line, out);
-  out << '\n';
-  if (!opening.flow.rows.empty()) printTable(opening.flow, out);
-  body();
-  if (opening.synthetic) out << watermarkText << '\n';
-}
-
-void printDocument(const ReportDocument& document, std::ostream& out) {
-  const auto textOf = [](const Paragraph& paragraph) {
-    std::string text;
-    for (const TextSpan& span : paragraph) text += span.text;
-    return text;
-  };
-  printReport({document.title, document.synthetic, {}, {}}, out, [&] {
-    for (const auto& part : document.parts) {
-      if (const auto* heading = std::get_if<Heading>(&part)) out << heading->text << '\n';
-      if (const auto* table = std::get_if<ReportTable>(&part)) printTable(*table, out);
-      if (const auto* paragraph = std::get_if<Paragraph>(&part)) printWrapped(textOf(*paragraph) + '\n', out);
-      if (const auto* list = std::get_if<BulletList>(&part)) {
-        for (const Paragraph& item : list->items) printWrapped("- " + textOf(item), out);
-      }
-    }
-  });
+std::size_t columnsOf(const std::string& text) {
+  return static_cast<std::size_t>(
+      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
 }
 
 std::string cutTo(const std::string& text, std::size_t width) {
-  if (widthOf(text) <= width) return text;
+  if (columnsOf(text) <= width) return text;
   std::size_t end = 0;
   for (std::size_t seen = 0; end < text.size(); ++end) {
     if ((static_cast<unsigned char>(text[end]) & 0xC0U) != 0x80U && seen++ == width - 3) break;

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A report as an ordered list of parts, shown identically on a terminal, by a page (pageHtml()) and on paper
-// (gui/report); and text of reports: tables, numbers, text escaped for HTML, warnings about intervals.
+// A report as an ordered list of parts, shown identically on a terminal (terminal_text.h), by a page (pageHtml()) and
+// on paper (gui/report); and text of reports: tables, numbers, text escaped for HTML, warnings about intervals.
 #pragma once
 
 #include <cstddef>
-#include <functional>
 #include <optional>
 #include <ostream>
 #include <span>
@@ -23,11 +22,11 @@ namespace calot::analytics {
 /// that are not UTF-8 become U+FFFD.
 std::string escaped(std::string_view text);
 
-/// Warning about an interval whose published coverage is low at these sizes: "g: with 40 a group an interval at 95 %
+/// Warning about an interval whose published coverage is low at these sizes: "g: with 40 in a group an interval at 95 %
 /// covers 92.4 % (population: exponential, 0.8)"; empty where it isn't.
-/// @param name as the report calls the interval. @param unit of the sizes: "a group", "attempts", "people".
+/// @param name as the report calls the interval. @param unit of the sizes: "in a group", "attempts", "people".
 std::string coverageWarning(CoveredInterval interval, const std::string& name, std::size_t nx, std::size_t ny,
-                            const std::string& unit = "a group");
+                            const std::string& unit = "in a group");
 
 enum class Align { left, right };
 
@@ -35,11 +34,17 @@ struct ReportTable {
   std::string title;
   std::vector<std::pair<std::string, Align>> columns;
   std::vector<std::vector<std::string>> rows;
+  /// Titles of the columns that a narrow terminal leaves out first, in that order.
+  std::vector<std::string> leastNeeded = {};
 
   /// Without the title: header, rule, rows; columns two blanks apart; columns without cells are left out. Where the
   /// table is wider than `most`, the widest left-aligned columns are made narrower as far as it takes, but not below
   /// ten: their cells go on below, in a line of their own or in an empty cell of the next row, if that begins with an
   /// empty cell. Words are cut ("fat-remaini...") only where that does not suffice, and those of the first column last.
+  ///
+  /// On a terminal (setTerminalColumns()), whose columns then count in place of `most`, whole columns are left out
+  /// before a word is cut: leastNeeded in its order, then the others from the right. The first column stays, and the
+  /// first two as far as leastNeeded does not name the second. A line below names them. Numbers are never wrapped.
   void print(std::ostream& out, std::size_t most = std::string::npos) const;
 };
 
@@ -49,10 +54,8 @@ ReportTable tableOf(const std::string& title, const std::vector<std::string>& co
 /// Leaves out columns of which every cell is empty.
 void dropEmptyColumns(ReportTable& table);
 
-/// Title, table and an empty line, for a terminal of 120 columns.
-void printTable(const ReportTable& table, std::ostream& out);
-/// A sentence over as many lines as it needs.
-void printWrapped(const std::string& text, std::ostream& out);
+/// Columns that a text takes: its code points, so that a degree sign counts once.
+std::size_t columnsOf(const std::string& text);
 
 /// The beginning of a text of more than `width` letters and three points: `width` in all. @pre width > 3.
 std::string cutTo(const std::string& text, std::size_t width);
@@ -113,19 +116,6 @@ struct ReportDocument {
     parts.emplace_back(std::move(list));
   }
 };
-
-/// The beginning of a report: `flow` may be empty.
-struct ReportOpening {
-  std::string title;
-  bool synthetic = false;
-  std::vector<std::string> head;
-  ReportTable flow;
-};
-/// A report for a terminal: its opening with the flow, then what `body` prints, between watermarks.
-void printReport(const ReportOpening& opening, std::ostream& out, const std::function<void()>& body);
-
-/// A whole document for a terminal; figures are left out.
-void printDocument(const ReportDocument& document, std::ostream& out);
 
 /// Watermark of everything that contains performers' figures.
 inline constexpr const char* watermarkText = "SYNTHETIC: made by performers, says nothing about people";

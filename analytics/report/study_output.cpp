@@ -14,6 +14,7 @@
 #include "analytics/report/ratings.h"
 #include "analytics/report/study_people.h"
 #include "analytics/report/study_rows.h"
+#include "analytics/report/terminal_text.h"
 #include "analytics/statistics/descriptive.h"
 #include "recorder/base/errors.h"
 #include "recorder/base/files.h"

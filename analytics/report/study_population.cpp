@@ -272,7 +272,7 @@ std::array<std::string, 2> chooseGroups(const std::map<std::string, std::uint64_
     for (const std::string& name : choices.groups) {
       if (present.count(name) == 0) {
         throw Error(ErrorKind::refused, Where{path},
-                    fmt::format("nothing for the study in group \"{}\" (there are: {}){}", name,
+                    fmt::format("no attempt for the study in group \"{}\" (there are: {}){}", name,
                                 names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", ")), left));
       }
     }
@@ -284,7 +284,7 @@ std::array<std::string, 2> chooseGroups(const std::map<std::string, std::uint64_
                 {Remedy::nameGroups});
   }
   throw Error(ErrorKind::refused, Where{path},
-              fmt::format("a study needs two groups, {}{}",
+              fmt::format("a study needs two groups, but {}{}",
                           names.empty() ? "none is left" : "only " + names[0] + " is there", left));
 }
 

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "analytics/report/figure_number.h"
 #include "analytics/report/plots.h"
 #include "analytics/report/study_people.h"
 #include "analytics/report/study_rows.h"
@@ -41,6 +42,7 @@ std::string sizesText(const ValueTree& groups) {
   return fmt::format("{} + {}", groups[0]["n"].dump(), groups[1]["n"].dump());
 }
 std::string wholeOrDash(const ValueTree& n) { return n.is_null() ? "-" : n.dump(); }
+std::string displayedUnit(const StudyRow& row) { return row.unit == "1" ? "" : row.unit; }
 std::string share(double a) { return fmt::format("{:.3f}", a); }
 
 ReportTable valuesTable(const Study& study, const std::string& title, const ShownRows& rows) {
@@ -48,14 +50,18 @@ ReportTable valuesTable(const Study& study, const std::string& title, const Show
                                       "quartile 3", "mean", "sd", "paper"});
   for (const StudyRow* shown : rows) {
     const StudyRow& row = *shown;
+    const CheckpointDefinition* const definition = row.source.empty() ? definitionOfFigure(row.checkpoint) : nullptr;
+    const auto number = [&](const std::optional<double>& value) {
+      return value ? figureNumber(definition, *value) : "-";
+    };
     for (std::size_t g = 0; g < 2; ++g) {
       const GroupSummary& s = row.group[g];
       std::string paper;
       if (row.publishedExpert)
         paper = g == 0 ? fmt::format("E {}", *row.publishedExpert) : fmt::format("N {}", *row.publishedNovice);
-      table.rows.push_back({g == 0 ? rowName(row) : "", g == 0 ? row.unit : "", study.groups[g], fmt::format("{}", s.n),
-                            s.missing == 0 ? "" : fmt::format("{}", s.missing), significantOrDash(s.median),
-                            significantOrDash(s.lowerQuartile), significantOrDash(s.upperQuartile),
+      table.rows.push_back({g == 0 ? rowName(row) : "", g == 0 ? displayedUnit(row) : "", study.groups[g],
+                            fmt::format("{}", s.n), s.missing == 0 ? "" : fmt::format("{}", s.missing),
+                            number(s.median), number(s.lowerQuartile), number(s.upperQuartile),
                             significantOrDash(s.mean), significantOrDash(s.standardDeviation), paper});
     }
   }
@@ -78,14 +84,16 @@ ReportTable comparisonTable(const Study& study, const std::string& title, const 
   for (const StudyRow* row : shown) rows.push_back(shownTree(study, *row));
   std::vector<TreeColumn> columns{{"=checkpoint", "", figureText},
                                   {"=better", "/direction", betterText},
-                                  {"shift", "/shift/hodges_lehmann", digits4},
-                                  {"95 %", "/shift_interval", range4},
+                                  {"shift", "/shift/hodges_lehmann", figure4},
+                                  {"95 %", "/shift_interval", figureRange4},
                                   {"A", "/area/a", share3},
                                   {"95 %", "/area/interval", shares3},
                                   {"p", "/mann_whitney", testText},
                                   {"Holm", "/mann_whitney/p_holm", adjustedText},
                                   {"BH", "/mann_whitney/p_benjamini_hochberg", adjustedText}};
-  return tableOf(title, rows, columns);
+  ReportTable table = tableOf(title, rows, columns);
+  table.leastNeeded = {"better", "95 %", "BH"};
+  return table;
 }
 
 ReportTable furtherTable(const Study& study, const ValueTree& rows) {
@@ -114,7 +122,8 @@ ReportTable simulationTable(const Study& study) {
       range = turned ? fmt::format("[{}, {}]", share(1.0 - s.area->second), share(1.0 - s.area->first))
                      : fmt::format("[{}, {}]", share(s.area->first), share(s.area->second));
     }
-    table.rows.push_back({rowName(row), row.unit, significant(s.halfWidth, 3), share(row.area->value.a), range,
+    table.rows.push_back({rowName(row), displayedUnit(row), significant(s.halfWidth, 3), share(row.area->value.a),
+                          range,
                           !s.area       ? fmt::format("{} of {} values have an interval", s.known, s.values)
                           : s.decided() ? "decided"
                                         : "not decided by this simulation"});
@@ -229,11 +238,11 @@ ReportTable resultTable(const Study& study, const std::string& title, const Tree
   }
   std::vector<TreeColumn> columns{{study.protocol ? "=hypothesis" : "=figure", "", withUnit}};
   columns.push_back({"n", "/groups", sizesText});
-  columns.push_back({cutTo(study.groups[0], 10), "/groups/0/median", digits3});
+  columns.push_back({cutTo(study.groups[0], 10), "/groups/0/median", figure3});
   if (isDirected(study)) columns.push_back({"H", "/expected", plain});
-  columns.push_back({cutTo(study.groups[1], 10), "/groups/1/median", digits3});
-  columns.insert(columns.end(), {{"shift", "/shift/hodges_lehmann", digits3},
-                                 {"95 %", "/shift_interval", range3},
+  columns.push_back({cutTo(study.groups[1], 10), "/groups/1/median", figure3});
+  columns.insert(columns.end(), {{"shift", "/shift/hodges_lehmann", figure3},
+                                 {"95 %", "/shift_interval", figureRange3},
                                  {"A", "/area/a", share2},
                                  {"95 %", "/area/interval", shares2},
                                  {"p", "/mann_whitney", testText},
@@ -241,6 +250,7 @@ ReportTable resultTable(const Study& study, const std::string& title, const Tree
                                  {"smallest", "/attainable_p", adjustedText}});
   if (isDirected(study)) columns.push_back({"=supported", "/support", plain});
   ReportTable table = tableOf(title, rows, columns);
+  table.leastNeeded = {"smallest", "n", "95 %", "95 %", "A", "shift"};
   dropEmptyColumns(table);
   return table;
 }
@@ -249,10 +259,10 @@ std::string resultLegend(const Study& study) {
   const std::string &a = study.groups[0], &b = study.groups[1];
   const std::string superiority =
       study.better.empty()
-          ? fmt::format("that one of {} has the larger value ({})", a,
+          ? fmt::format("that a member of {} has the larger value ({})", a,
                         study.protocol ? "directions are masked" : "nobody said who is expected to do better")
-          : fmt::format("that one of {} is better than one of {}, by {}", study.better, study.better == a ? b : a,
-                        study.protocol ? "the hypothesis" : "the figure's own direction");
+          : fmt::format("that a member of {} does better than a member of {}, by {}", study.better,
+                        study.better == a ? b : a, study.protocol ? "the hypothesis" : "the figure's own direction");
   std::string undirected;
   bool tested = false, beyond = false, claimed = false;
   for (const StudyRow& row : study.rows) {
@@ -264,13 +274,12 @@ std::string resultLegend(const Study& study) {
       undirected += (undirected.empty() ? "" : ", ") + rowName(row);
   }
   return fmt::format(
-      "{}, {}: medians{}. shift: {} - {}, Hodges-Lehmann. A: probability {}, ties half{}. Intervals hold for each "
-      "figure "
-      "by itself, not for all at once (not simultaneous). {}{}{}",
+      "{}, {}: medians{}. shift: {} - {}, Hodges-Lehmann. A: the probability {}, a tie counting half{}. Each "
+      "interval holds for its own figure, not for all at once (not simultaneous). {}{}{}",
       a, b, isDirected(study) ? "; H: which is expected to be larger" : "", a, b, superiority,
       undirected.empty()
           ? ""
-          : fmt::format("; that one of {} has the larger value for {}, which has no direction", a, undirected),
+          : fmt::format("; for {}, without a direction: that a member of {} has the larger value", undirected, a),
       tested ? fmt::format("p: {}, two-sided{}. ", study.unequalSpread ? "Brunner-Munzel" : "Mann-Whitney",
                            claimed ? "; of claims with a margin one-sided" : "")
              : "",

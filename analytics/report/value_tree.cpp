@@ -5,6 +5,7 @@
 
 #include <sstream>
 
+#include "analytics/report/figure_number.h"
 #include "recorder/base/csv.h"
 
 namespace calot::analytics {
@@ -64,7 +65,11 @@ ReportTable tableOf(const std::string& title, const ValueTree& rows, const std::
   ReportTable table = tableOf(title, titles);
   for (const ValueTree& row : rows) {
     std::vector<std::string>& cells = table.rows.emplace_back();
-    for (const TreeColumn& column : columns) cells.push_back(column.text(at(row, Path(column.path))));
+    for (const TreeColumn& column : columns) {
+      const ValueTree& value = at(row, Path(column.path));
+      const auto* const figure = std::get_if<FigureText>(&column.text);
+      cells.push_back(figure != nullptr ? (*figure)(value, row) : std::get<CellText>(column.text)(value));
+    }
   }
   return table;
 }
@@ -84,5 +89,26 @@ std::string range4(const ValueTree& value) { return range(value, digits4); }
 std::string range3(const ValueTree& value) { return range(value, digits3); }
 std::string shares2(const ValueTree& value) { return range(value, share2); }
 std::string shares3(const ValueTree& value) { return range(value, share3); }
+
+namespace {
+
+std::string figureCell(const ValueTree& value, const ValueTree& row, int digits) {
+  if (!value.is_number()) return "-";
+  const bool ofScript = row.contains("source_sha256");
+  const std::string name = row.value("checkpoint", row.value("figure", std::string()));
+  return figureNumber(ofScript ? nullptr : definitionOfFigure(name), value.get<double>(), digits);
+}
+
+std::string figureRange(const ValueTree& value, const ValueTree& row, int digits) {
+  if (!value.contains("lower")) return "-";
+  return fmt::format("[{}, {}]", figureCell(value["lower"], row, digits), figureCell(value["upper"], row, digits));
+}
+
+}  // namespace
+
+std::string figure4(const ValueTree& value, const ValueTree& row) { return figureCell(value, row, 4); }
+std::string figure3(const ValueTree& value, const ValueTree& row) { return figureCell(value, row, 3); }
+std::string figureRange4(const ValueTree& value, const ValueTree& row) { return figureRange(value, row, 4); }
+std::string figureRange3(const ValueTree& value, const ValueTree& row) { return figureRange(value, row, 3); }
 
 }  // namespace calot::analytics

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "analytics/report/report_document.h"
@@ -55,10 +56,12 @@ std::string csvText(const ValueTree& rows, const std::string& columns);
 
 /// A cell of a table. @param value null where the row has none
 using CellText = std::string (*)(const ValueTree& value);
+/// The same of a checkpoint's value. @param row names the checkpoint or the figure
+using FigureText = std::string (*)(const ValueTree& value, const ValueTree& row);
 struct TreeColumn {
   std::string title;  ///< as of tableOf()
   std::string path;   ///< of the value in a row; empty: the row
-  CellText text;
+  std::variant<CellText, FigureText> text;
 };
 ReportTable tableOf(const std::string& title, const ValueTree& rows, const std::vector<TreeColumn>& columns);
 
@@ -75,5 +78,11 @@ std::string range4(const ValueTree& value);   ///< "[1.2, 3.4]" of {"lower", "up
 std::string range3(const ValueTree& value);
 std::string shares2(const ValueTree& value);  ///< "[0.61, 0.80]" of the same
 std::string shares3(const ValueTree& value);
+
+// Texts of a checkpoint's values: figureNumber().
+std::string figure4(const ValueTree& value, const ValueTree& row);
+std::string figure3(const ValueTree& value, const ValueTree& row);
+std::string figureRange4(const ValueTree& value, const ValueTree& row);  ///< of {"lower", "upper"}
+std::string figureRange3(const ValueTree& value, const ValueTree& row);
 
 }  // namespace calot::analytics

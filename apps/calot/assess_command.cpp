@@ -11,12 +11,15 @@
 #include "apps/calot/command.h"
 #include "apps/calot/replay_report.h"
 #include "gui/words/attempt_summary.h"
+#include "recorder/base/counted.h"
 #include "recorder/recording/probe.h"
 #include "recorder/replay.h"
 
 namespace calot::apps {
 
 namespace {
+
+namespace fs = std::filesystem;
 
 struct AssessOptions {
   std::vector<std::string> files;
@@ -58,7 +61,7 @@ std::vector<analytics::ValueInterval> intervalsOf(const std::string& file, const
   const auto count = std::count_if(values.begin(), values.end(), there);
   std::vector<analytics::ValueInterval> known = database.intervals(attempt);
   if (count == static_cast<std::ptrdiff_t>(known.size())) return known;
-  Progress progress(fmt::format("uncertainty of {}, runs", std::filesystem::path(file).filename().string()), o.json);
+  Progress progress("Uncertainty of " + fs::path(file).filename().string(), o.json, "runs");
   std::vector<analytics::ValueInterval> made = analytics::estimateUncertainty(
       file, values, o.threads.value_or(0), [&](std::uint64_t done, std::uint64_t of) { progress.show(done, of); });
   database.storeIntervals(attempt, made);
@@ -121,14 +124,19 @@ void removeVerified(std::vector<std::string>& files, const analytics::CohortData
       return false;  // assessing it reports why
     }
   });
-  if (files.size() < count)
+  if (files.size() < count) {
+    Progress::erase();
     fmt::print(stderr, "calot: {} of {} recordings were verified by an earlier run\n", count - files.size(), count);
+  }
 }
 
 ExitCode assess(const AssessOptions& o) {
   checkStored(o.cohort, o.cutoff);
   std::vector<std::string> files = filesOf(o);
   const bool everyValue = files.size() == 1 || o.cohort.empty();
+  Progress progress("Assessing " + (files.size() == 1 ? fs::path(files.front()).filename().string()
+                                                      : recorder::counted(files.size(), "recording")),
+                    o.json);
   std::optional<recorder::ProbeProcesses> probes;
   if (files.size() > 1) probes.emplace(o.jobs);
   std::optional<analytics::CohortDatabase> database;
@@ -142,10 +150,12 @@ ExitCode assess(const AssessOptions& o) {
   if (o.share && database) removeVerified(files, *database);
   std::vector<ExitCode> codes;
   nlohmann::json list = nlohmann::json::array();
-  std::size_t done = 0;
-  Progress progress("assessing, recordings", o.json);
-  analytics::AssessSettings settings{
-      .threads = o.threads.value_or(1), .engine = {.apart = o.apart}, .metrics = &metrics};
+  analytics::AssessSettings settings{.threads = o.threads.value_or(1),
+                                     .engine = {.apart = o.apart},
+                                     .metrics = &metrics,
+                                     .progress = [&](std::uint64_t done, std::uint64_t of) {
+                                       progress.showShare(static_cast<double>(done) / static_cast<double>(of));
+                                     }};
   if (o.cutoff > 0.0) settings.cutoff = o.cutoff;
   recorder::WorkerPool pool(o.jobs);
   analytics::judgeAll(files, pool, settings, [&](std::size_t i, analytics::JudgedRecording judged) {
@@ -164,7 +174,6 @@ ExitCode assess(const AssessOptions& o) {
     } else {
       printAssessed(judged.report, stored, everyValue);
     }
-    progress.show(++done, files.size());
   });
   printResult(o.json, "assess", {{"recordings", list}}, [&](std::ostream& out) {
     if (database) gui::printAttempts(*database, out);

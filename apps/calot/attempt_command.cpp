@@ -46,6 +46,7 @@ void listAttempts(const AttemptFilter& o) {
   const std::size_t length = distinctLength(rows);
   analytics::ReportTable table = analytics::tableOf(
       "", {"=attempt", "=who", "=group", "=scene", "=day (UTC)", "seconds", "=outcome", "=verdict", "=tags"});
+  table.leastNeeded = {"day (UTC)", "scene"};
   std::string notes;
   std::size_t synthetic = 0;
   Json list = Json::array();

@@ -111,7 +111,7 @@ class GuidedRecording {
     const std::int64_t begin = recorder::monotonicNanoseconds();
     const auto length = static_cast<std::int64_t>(1e9 * step.seconds);
     const std::size_t before = stream_.samples.size();
-    Progress progress("measuring, seconds");
+    Progress progress("Measuring", false, "s");
     while (recorder::monotonicNanoseconds() < begin + length) {
       if (stopRequested()) throw Error(ErrorKind::failure, "calibrate: broken off");
       std::this_thread::sleep_for(std::chrono::milliseconds(10));

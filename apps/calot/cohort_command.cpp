@@ -23,6 +23,7 @@ struct CohortExport {
 void exportTables(const CohortExport& o) {
   Json list = Json::array();
   std::string text;
+  Progress progress("Exporting", o.json);
   for (const analytics::ExportedTable& t : analytics::exportCohort(o.cohort, o.folder, o.force)) {
     list.push_back({{"table", t.name}, {"rows", t.rows}});
     text += fmt::format("{:<24}{}\n", t.name, recorder::counted(t.rows, "row"));
@@ -31,6 +32,7 @@ void exportTables(const CohortExport& o) {
 }
 
 void handOut(const CohortExport& o) {
+  Progress progress("Writing the bundle", o.json);
   const analytics::Bundle b = analytics::writeBundle(o.cohort, o.folder, o.bundle, o.force);
   Json left = Json::array(), files = Json::array();
   std::string text =
@@ -59,6 +61,7 @@ void handOut(const CohortExport& o) {
 /// Merges one database. @returns what entered; conflicts are reported on stderr.
 Json mergeOne(const std::string& into, const std::string& from, bool json) {
   const analytics::CohortMerge m = analytics::mergeCohorts(into, from);
+  Progress::erase();
   if (!json && m.conflicts.empty()) {
     fmt::print("{}: {}: {}, {}, {} extended, {}, {} filled{}\n", into, m.changed() ? "merged" : "nothing new",
                recorder::counted(m.participants, "participant"), recorder::counted(m.attempts, "attempt"), m.extended,
@@ -84,6 +87,7 @@ struct MergeOptions {
 };
 
 ExitCode merge(const MergeOptions& o) {
+  Progress progress("Merging", o.json);
   if (o.newer) return reportRegrade(o.into, analytics::takeNewer(o.into, o.from), o.json);
   Json results = Json::array();
   std::vector<std::string> refused;
@@ -104,6 +108,7 @@ struct CohortOptions {
 };
 
 void checkDatabase(const CohortOptions& o) {
+  Progress progress("Checking the cohort", o.json);
   const analytics::CohortCheck c = analytics::checkCohort(o.cohort);
   const Json all{{"sound", c.faults.empty()}, {"database_schema", c.schema}, {"participants", c.participants},
                  {"attempts", c.attempts},    {"values", c.values},          {"faults", c.faults}};
@@ -120,7 +125,9 @@ void checkDatabase(const CohortOptions& o) {
 }
 
 void scrub(const CohortOptions& o) {
+  Progress progress("Scrubbing");
   analytics::scrub(o.cohort);
+  Progress::erase();
   std::cout << o.cohort << ": scrubbed\n";
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "apps/calot/command.h"
 
-#include <sys/ioctl.h>
 #include <unistd.h>
 #include <algorithm>
 #include <cstdio>
@@ -40,7 +39,7 @@ CLI::Option* addCohortOption(CLI::App& command, std::string& database, const std
 
 namespace {
 
-void print(const std::string& text) {
+void writeOut(const std::string& text) {
   Progress::erase();
   // In order with what was printed through the other of the two streams.
   std::cout << std::flush;
@@ -53,21 +52,35 @@ void printJson(std::string_view what, const Json& body, int indent) {
   constexpr int version = 1;  // a command whose members change gets its own here
   Json result{{"schema", fmt::format("calot-{}", what)}, {"version", version}};
   result.update(body);
-  print(result.dump(indent, ' ', false, Json::error_handler_t::replace) + "\n");
+  writeOut(result.dump(indent, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
 }  // namespace
+
+void printText(const std::string& text) {
+  const std::size_t columns = columnsOfTerminal(STDOUT_FILENO);
+  if (columns == 0) return writeOut(text);
+  std::string fitted;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t indent = std::min(line.find_first_not_of(' '), line.size()) + 2;
+    fitted += (analytics::columnsOf(line) <= columns ? line : wrappedText(line, columns, indent)) + '\n';
+  }
+  if (!text.ends_with('\n') && !fitted.empty()) fitted.pop_back();
+  writeOut(fitted);
+}
 
 void printResult(std::string_view what, const Json& body) { printJson(what, body, 2); }
 
 void printResultLine(std::string_view what, const Json& body) { printJson(what, body, -1); }
 
 void printResult(bool json, std::string_view what, const Json& body, const std::string& text) {
-  json ? printResult(what, body) : print(text);
+  json ? printResult(what, body) : printText(text);
 }
 
 void printResult(bool json, std::string_view what, const Json& body, const std::function<void(std::ostream&)>& write) {
   std::ostringstream text;
+  text.copyfmt(std::cout);  // with the terminal's columns
   if (!json) write(text);
   printResult(json, what, body, text.str());
 }
@@ -115,50 +128,13 @@ std::optional<std::string> givenOf(const CLI::App& command, const std::string& o
   return command.count(option) > 0 ? std::optional(value) : std::nullopt;
 }
 
-namespace {
-
-constexpr std::size_t withoutTerminal = 80;
-
-/// Columns of a word: code points.
-std::size_t columnsOf(const std::string& word) {
-  return static_cast<std::size_t>(
-      std::count_if(word.begin(), word.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
-}
-
-}  // namespace
-
 std::size_t terminalColumns() {
-  winsize size{};
-  if (isatty(STDOUT_FILENO) == 0 || ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0)
-    return withoutTerminal;
-  return std::clamp<std::size_t>(size.ws_col, 60, 160);
+  constexpr std::size_t withoutTerminal = 80;
+  const std::size_t columns = columnsOfTerminal(STDOUT_FILENO);
+  return columns == 0 ? withoutTerminal : std::clamp<std::size_t>(columns, 40, 160);
 }
 
-std::string wrappedText(const std::string& text, std::size_t columns, std::size_t indent, std::size_t used) {
-  const std::string below = '\n' + std::string(indent, ' ');
-  std::string out;
-  std::istringstream lines(text);
-  bool first = true;
-  for (std::string line; std::getline(lines, line); first = false) {
-    if (!first) out += below;
-    std::size_t at = first ? used : indent;
-    bool empty = true;
-    std::istringstream words(line);
-    for (std::string word; words >> word; empty = false) {
-      const std::size_t width = columnsOf(word);
-      if (!empty && at + 1 + width > columns) {
-        out += below;
-        at = indent;
-      } else if (!empty) {
-        out += ' ';
-        ++at;
-      }
-      out += word;
-      at += width;
-    }
-  }
-  return out;
-}
+void fitTerminal() { analytics::setTerminalColumns(std::cout, columnsOfTerminal(STDOUT_FILENO)); }
 
 namespace {
 

@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "analytics/cohort/cohort_database.h"
-#include "analytics/report/report_document.h"
+#include "analytics/report/terminal_text.h"
 #include "apps/calot/environment.h"
 #include "apps/common/program.h"
 #include "recorder/base/errors.h"
@@ -25,6 +25,7 @@
 
 namespace calot::apps {
 
+using analytics::wrappedText;
 using Json = nlohmann::ordered_json;
 
 /// The chosen command's work, called by main(): returns the exit code or throws calot::Error.
@@ -163,6 +164,10 @@ void printResult(std::string_view what, const Json& body);
 /// The same on one line, flushed: of results that come one after the other.
 void printResultLine(std::string_view what, const Json& body);
 
+/// Prints a text in order with what was printed through std::cout. Erases a line of progress first. On a terminal a
+/// line that is too long goes on below, indented.
+void printText(const std::string& text);
+
 /// Prints a result as JSON, or else as a text.
 void printResult(bool json, std::string_view what, const Json& body, const std::string& text);
 void printResult(bool json, std::string_view what, const Json& body, const std::function<void(std::ostream&)>& write);
@@ -175,12 +180,10 @@ std::shared_ptr<CLI::FormatterBase> helpForm();
 /// @param app after parse() threw `fault`. @param words the command line without the program's name
 std::string wrongWord(const CLI::App& app, const std::vector<std::string>& words, const CLI::ParseError& fault);
 
-/// Columns of the terminal on stdout, from 60 to 160; 80 without a terminal.
+/// Columns of the terminal on stdout, from 40 to 160; 80 without a terminal.
 std::size_t terminalColumns();
 
-/// The text in lines of at most `columns`, broken at blanks; its own line breaks stay. Lines below the first begin with
-/// `indent` blanks. A longer word has a line of its own.
-/// @param used columns that the first line begins with
-std::string wrappedText(const std::string& text, std::size_t columns, std::size_t indent = 0, std::size_t used = 0);
+/// From here on what is printed to std::cout, and by printResult(), fits the terminal on stdout, if there is one.
+void fitTerminal();
 
 }  // namespace calot::apps

@@ -22,11 +22,11 @@ void dossier(DossierOptions& o) {
   for (const std::string& file : {o.html, o.pdf}) {
     if (!file.empty()) recorder::refuseOutput(file, o.force);
   }
+  Progress progress("Computing the dossier", o.json);
   analytics::refuseUnsound(o.source.database);
   const std::filesystem::path asset = findAsset("validity", "dossier", "list of questions");
   const analytics::ValueTree questions = recorder::parseStrictJson(
       recorder::readFileBytes(asset, asset.filename().string(), std::size_t{1} << 20U), asset.filename().string());
-  Progress progress("computing the dossier", o.json);
   const analytics::CohortDatabase cohort(o.source.database, analytics::CohortDatabase::Access::read);
   const analytics::Dossier made =
       analytics::makeDossier(o.source.database, questions,

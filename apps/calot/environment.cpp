@@ -4,14 +4,18 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 #include <atomic>
 #include <charconv>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <mutex>
 #include <system_error>
+#include <utility>
 
+#include "analytics/report/report_document.h"
 #include "recorder/base/errors.h"
 #include "recorder/base/files.h"
 #include "recorder/base/names.h"
@@ -22,7 +26,8 @@ namespace calot::apps {
 namespace {
 
 /// A terminal has one last line.
-std::atomic<bool> lineDrawn{false};
+std::mutex drawing;
+bool lineDrawn = false;
 
 std::atomic<bool> requested{false};
 static_assert(std::atomic<bool>::is_always_lock_free);  // a signal's handler may do no more
@@ -54,33 +59,51 @@ std::filesystem::path findAsset(const std::string& name, const std::string& fold
                                         : fmt::format("there are {}", fmt::join(names, ", "))));
 }
 
-Progress::Progress(std::string what, bool quiet)
-    : what_(std::move(what)), terminal_(!quiet && isatty(STDERR_FILENO) != 0) {}
+std::size_t columnsOfTerminal(int stream) {
+  winsize size{};
+  return isatty(stream) != 0 && ioctl(stream, TIOCGWINSZ, &size) == 0 ? size.ws_col : 0;
+}
+
+Progress::Progress(std::string doing, bool quiet, std::string unit) : terminal_(!quiet && isatty(STDERR_FILENO) != 0) {
+  next(std::move(doing), std::move(unit));
+}
+
+void Progress::next(std::string doing, std::string unit) {
+  doing_ = std::move(doing);
+  unit_ = unit.empty() ? std::move(unit) : " " + unit;
+  last_ = {};
+  draw(doing_ + " ...");
+}
 
 Progress::~Progress() { erase(); }
 
 void Progress::erase() {
-  if (!lineDrawn.exchange(false)) return;
+  const std::lock_guard lock(drawing);
+  if (!std::exchange(lineDrawn, false)) return;
   std::fputs("\r\033[K", stderr);
   std::fflush(stderr);
 }
 
 void Progress::draw(const std::string& text) {
+  if (!terminal_) return;
+  const std::lock_guard lock(drawing);
   const auto now = std::chrono::steady_clock::now();
-  if (!terminal_ || now - last_ < std::chrono::milliseconds(100)) return;
+  if (now - last_ < std::chrono::milliseconds(100)) return;
   last_ = now;
   lineDrawn = true;
-  std::fputs(("\r\033[K" + text).c_str(), stderr);
+  // A line that is wrapped could not be taken away.
+  const std::size_t columns = columnsOfTerminal(STDERR_FILENO);
+  std::fputs(("\r\033[K" + (columns > 4 ? analytics::cutTo(text, columns - 1) : text)).c_str(), stderr);
   std::fflush(stderr);
 }
 
 void Progress::show(std::uint64_t done, std::uint64_t of) {
-  draw(of > 0 ? fmt::format("{}: {} of {} ({:.0f} %)", what_, done, of,
+  draw(of > 0 ? fmt::format("{}: {} of {}{} ({:.0f} %)", doing_, done, of, unit_,
                             100.0 * static_cast<double>(done) / static_cast<double>(of))
-              : fmt::format("{}: {}", what_, done));
+              : fmt::format("{}: {}{}", doing_, done, unit_));
 }
 
-void Progress::showShare(double share) { draw(fmt::format("{}: {:.0f} %", what_, 100.0 * share)); }
+void Progress::showShare(double share) { draw(fmt::format("{}: {:.0f} %", doing_, 100.0 * share)); }
 
 std::string wholeNumber(const std::string& text) {
   std::uint64_t value = 0;

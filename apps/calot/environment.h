@@ -23,16 +23,24 @@ std::filesystem::path findAsset(const std::string& name, const std::string& fold
 /// All of them, by name, or those of another ending.
 std::vector<std::filesystem::path> listAssets(const std::string& folder, const char* ending = ".json");
 
-/// A line that is drawn again and again on a terminal; nothing in a pipe or with --json.
+/// Columns of the terminal behind a file descriptor; 0: there is none, or it does not say.
+std::size_t columnsOfTerminal(int stream);
+
+/// A line on a terminal that says what a command is doing, drawn again and again; nothing in a pipe or with --json.
+/// Every command that may take a second makes one before its work, so that its first words are there at once.
 class Progress {
  public:
-  explicit Progress(std::string what, bool quiet = false);
+  /// Draws the first words: "Replaying ...".
+  /// @param doing "Replaying". @param unit of what show() counts: "steps"
+  explicit Progress(std::string doing, bool quiet = false, std::string unit = {});
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
-  /// @param of 0: no end is known
+  /// Goes on with other work, drawn at once.
+  void next(std::string doing, std::string unit = {});
+  /// "Replaying: 1200 of 4800 steps (25 %)". From any thread. @param of 0: no end is known
   void show(std::uint64_t done, std::uint64_t of);
-  /// For work without countable parts: the share done, from 0 to 1.
+  /// For work without countable parts: the share done, from 0 to 1. From any thread.
   void showShare(double share);
   /// Takes the line away, whichever Progress drew it: before anything else is printed, so that results never stand
   /// behind it. The next show() draws it again.
@@ -42,7 +50,7 @@ class Progress {
   /// On a terminal, and not again at once.
   void draw(const std::string& text);
 
-  std::string what_;
+  std::string doing_, unit_;
   bool terminal_;
   std::chrono::steady_clock::time_point last_;
 };

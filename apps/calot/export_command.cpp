@@ -21,7 +21,7 @@ struct ExportOptions {
 };
 
 void printFiles(const std::vector<std::filesystem::path>& files) {
-  for (const auto& file : files) fmt::print("{}\n", file.string());
+  for (const auto& file : files) printText(file.string() + '\n');
 }
 
 void exportMotionFile(const ExportOptions& o) {
@@ -40,21 +40,20 @@ void exportRecording(const ExportOptions& o) {
     throw Error(ErrorKind::invalid,
                 "export: --csv FOLDER writes all that is recorded, --motion FOLDER filtered motion");
   if (!o.columns.empty()) throw Error(ErrorKind::invalid, "export: --columns is for motion files, not for recordings");
+  Progress progress("Exporting", false, "steps");
   const recorder::ChainVerdict chain = recorder::probe(o.file);
   recorder::Recording recording(o.file);
   if (!o.cohort.empty())
     analytics::recordExport(o.cohort, "recording-csv", o.folder.empty() ? o.motion : o.folder,
                             {recording.header().attempt});
   if (!o.folder.empty()) {
-    Progress progress("exporting, steps");
     const std::uint64_t steps = recording.stepCount();
     const std::vector<std::filesystem::path> files = recorder::exportCsv(
         recording, o.folder, o.force, [&progress, steps](std::uint64_t done) { progress.show(done, steps); });
-    Progress::erase();
     printFiles(files);
   }
   if (!o.motion.empty()) printFiles(analytics::writeMotionTables(analytics::motionOf(recording), o.motion, o.force));
-  if (!recording.complete()) fmt::print("incomplete\n");
+  if (!recording.complete()) printText("incomplete\n");
   // The export is complete; the exit code reports that the recording was changed.
   if (!chain.intact()) throw Error(ErrorKind::refused, fmt::format("{}: {}", o.file, analytics::wordsFor(chain)));
 }

@@ -399,7 +399,7 @@ ExitCode checkGolden(const GoldenOptions& o) {
   if (!o.junit.file.empty()) recorder::refuseOutput(o.junit.file, o.junit.force);
   std::vector<recorder::ReplayReport> reports;
   nlohmann::json rows = nlohmann::json::array();
-  Progress progress("replaying, recordings", o.json);
+  Progress progress("Replaying", o.json, "recordings");
   for (const GoldenEntry& entry : list.recordings) {
     if (!o.only.empty() && entry.file != o.only) continue;
     const GoldenReplay checked = replayGolden(folder / entry.file, entry, o.threads);
@@ -425,7 +425,7 @@ ExitCode takeValues(const GoldenOptions& o) {
   const std::filesystem::path folder = folderOf(o);
   GoldenList list = readGoldenList(folder / listName);
   list.valuesReason = o.reason;
-  Progress progress("replaying, recordings", false);
+  Progress progress("Replaying", false, "recordings");
   for (std::size_t i = 0; i < list.recordings.size(); ++i) {
     GoldenEntry& entry = list.recordings[i];
     const GoldenReplay replay = replayGolden(folder / entry.file, entry, o.threads);

@@ -50,20 +50,20 @@ fs::path recordingOf(const analytics::AttemptRow& attempt, const GradeOptions& o
 /// Pictures of the gravest moments, as a sheet shows them.
 std::vector<analytics::Picture> picturesOf(const analytics::Grade& grade,
                                            const std::vector<analytics::FigureMoments>& figures, const fs::path& file,
-                                           bool quiet) {
+                                           Progress& progress) {
   const std::vector<analytics::SheetMoment> moments = analytics::worstMoments(grade.errors, figures, &grade);
-  Progress progress("drawing moments", quiet);
+  progress.next("Drawing moments", "pictures");
   return gui::sheetPictures(file, moments, [&](std::uint64_t done, std::uint64_t of) { progress.show(done, of); });
 }
 
 /// Finds the moments of the grade. @return pictures of the gravest, where `draw` asks for them
-std::vector<analytics::Picture> lookAtRecording(analytics::Grade& grade, const fs::path& file, const GradeOptions& o,
-                                                bool draw) {
+std::vector<analytics::Picture> lookAtRecording(analytics::Grade& grade, const fs::path& file, bool draw,
+                                                Progress& progress) {
   const auto figures = analytics::weakFigures(grade);
   if (file.empty()) {
     if (figures.empty() && !draw && !(grade.criticalErrors.value_or(0.0) > 0.0)) return {};
     grade.momentsMissing =
-        fmt::format("the recording {} is not beside the database (--recording)", grade.attempt.fileName);
+        fmt::format("the recording {} is not beside the database: name it with --recording", grade.attempt.fileName);
     return {};
   }
   if (const recorder::ChainVerdict chain = recorder::probe(file); !chain.intact())
@@ -77,16 +77,13 @@ std::vector<analytics::Picture> lookAtRecording(analytics::Grade& grade, const f
     grade.momentsMissing = "a golden recording holds no results of its steps";
     return {};
   }
-  std::vector<analytics::FigureMoments> moments;
-  {
-    Progress progress("looking for moments, steps", o.json);
-    analytics::AttemptMoments found = analytics::findMoments(
-        recording, figures, [&](std::uint64_t done, std::uint64_t of) { progress.show(done, of); });
-    moments = found.figures;
-    analytics::addMoments(grade, std::move(found));
-  }
+  progress.next("Looking for moments", "steps");
+  analytics::AttemptMoments found = analytics::findMoments(
+      recording, figures, [&](std::uint64_t done, std::uint64_t of) { progress.show(done, of); });
+  const std::vector<analytics::FigureMoments> moments = found.figures;
+  analytics::addMoments(grade, std::move(found));
   if (!draw) return {};
-  return picturesOf(grade, moments, file, o.json);
+  return picturesOf(grade, moments, file, progress);
 }
 
 /// The bytes of the attempt's recording.
@@ -107,6 +104,7 @@ void grade(const GradeOptions& o) {
   for (const std::string& file : {o.html, o.pdf}) {
     if (!file.empty()) recorder::refuseOutput(file, o.force);
   }
+  Progress progress("Grading", o.json);
   analytics::refuseUnsound(o.database);
   const analytics::CohortDatabase cohort(o.database, Access::read);
   const std::vector<analytics::AttemptRow> attempts = cohort.listAttempts();
@@ -115,7 +113,7 @@ void grade(const GradeOptions& o) {
   analytics::Grade result = analytics::gradeAttempt(attempt, attempts, cohort.allValues(), norm, o.mixKeys, o.database);
   const fs::path recording = recordingOf(attempt, o);
   analytics::AttemptSheet sheet{attempt, cohort.values(attempt.uuid), &result, {}, {}, {}};
-  sheet.pictures = lookAtRecording(result, recording, o, !o.html.empty() || !o.pdf.empty());
+  sheet.pictures = lookAtRecording(result, recording, !o.html.empty() || !o.pdf.empty(), progress);
   sheet.picturesMissing = result.momentsMissing;
   const std::string name = recording.filename().string();
   sheet.recording = name;

@@ -36,9 +36,11 @@ CLI::Option* addMetrics(CLI::App& command, MetricOptions& options) {
 }
 
 std::vector<analytics::MetricScript> readMetrics(const MetricOptions& options) {
-  return analytics::readMetricScripts(
-      options.files, options.limits,
-      [](const std::string& script, const std::string& line) { fmt::print(stderr, "{}: {}\n", script, line); });
+  return analytics::readMetricScripts(options.files, options.limits,
+                                      [](const std::string& script, const std::string& line) {
+                                        Progress::erase();
+                                        fmt::print(stderr, "{}: {}\n", script, line);
+                                      });
 }
 
 void checkMetrics(const std::vector<analytics::MetricScript>& metrics, const analytics::CohortDatabase& database) {
@@ -194,7 +196,7 @@ ExitCode importFiles(const ImportOptions& o) {
   std::optional<recorder::ColumnMap> map;
   if (!o.columns.empty()) map = recorder::readColumnMap(o.columns);
   Import import(o);
-  Progress progress("importing, files", o.json);
+  Progress progress("Importing", o.json, "files");
   for (const std::string& file : o.files) {
     const ImportedFile result = import.take(file, map ? &*map : nullptr, o.declaration);
     progress.show(import.codes.size(), o.files.size());
@@ -263,7 +265,7 @@ ExitCode importManifest(const ImportOptions& o) {
   std::set<std::string> enrolled;
   std::size_t practice = 0;
   {
-    Progress progress("importing, files", o.json);
+    Progress progress("Importing", o.json, "files");
     for (const analytics::MotionRow& row : manifest.rows) {
       progress.show(import.codes.size(), manifest.rows.size());
       const auto map = manifest.maps.find(row.columns);

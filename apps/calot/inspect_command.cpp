@@ -21,12 +21,13 @@ namespace {
 
 /// How a run at real time kept its deadlines, by the lateness of its ticks and steps' events; and how many of its steps
 /// missed a tolerance.
-void describeSteps(recorder::Recording& recording, Json& out) {
+void describeSteps(recorder::Recording& recording, Json& out, Progress& progress) {
   std::uint64_t missed = 0;
   float worst = 0.0F;
   double stretched = 0.0;
   recorder::StepMisses misses;
   for (std::uint64_t n = 0; n < recording.stepCount(); ++n) {
+    progress.show(n, recording.stepCount());
     const recorder::RecordedStep& step = recording.step(n);
     misses.add(step.result.misses);
     for (const recorder::TickOutcome& tick : step.ticks) {
@@ -62,7 +63,7 @@ Json describeDevice(recorder::Recording& recording) {
   return out;
 }
 
-Json describe(recorder::Recording& recording, const recorder::ChainVerdict& chain) {
+Json describe(recorder::Recording& recording, const recorder::ChainVerdict& chain, Progress& progress) {
   const recorder::AttemptHeader& header = recording.header();
   Json out;
   out["file"] = recording.path().string();
@@ -73,7 +74,7 @@ Json describe(recorder::Recording& recording, const recorder::ChainVerdict& chai
   out["ticks"] = recording.tickCount();
   out["events"] = recording.eventCount();
   out["keyframes"] = recording.keyframeSteps().size();
-  describeSteps(recording, out);
+  describeSteps(recording, out, progress);
   if (header.deviceSamples) out["device_samples"] = describeDevice(recording);
   out["flushes"] = recording.status().size() - 1;
   out["chain"] = chain.intact() ? "intact" : "broken";
@@ -137,6 +138,7 @@ std::string headingOf(const std::string& member) {
 
 std::string shownValue(const Json& value) {
   if (value.is_string()) return value.get<std::string>();
+  if (value.is_number_float()) return fmt::format("{:.10g}", value.get<double>());
   if (!value.is_array()) return value.dump(-1, ' ', false, Json::error_handler_t::replace);
   std::string list;
   for (const Json& each : value) list += (list.empty() ? "" : ", ") + shownValue(each);
@@ -192,9 +194,10 @@ struct InspectOptions {
 };
 
 void inspect(const InspectOptions& o) {
+  Progress progress("Reading the recording", o.json, "steps");
   const recorder::ChainVerdict chain = recorder::probe(o.file);
   recorder::Recording recording(o.file);
-  const Json d = describe(recording, chain);
+  const Json d = describe(recording, chain, progress);
   printResult(o.json, "inspect", d, inspectText(d));
   const std::string wanted = o.key.empty() ? "" : recorder::hexOf(keyOf(o.key, "--public-key"));
   if (!chain.intact()) throw Error(ErrorKind::refused, fmt::format("{}: {}", o.file, analytics::wordsFor(chain)));
@@ -209,7 +212,9 @@ struct RecoverOptions {
 };
 
 void recoverRecording(const RecoverOptions& o) {
+  Progress progress("Recovering");
   const recorder::Recovered saved = recorder::recover(o.in, o.out, o.force);
+  Progress::erase();
   fmt::print("{}: {}, {} saved, {}\n", o.out, recorder::counted(saved.steps, "step"),
              recorder::counted(saved.ticks, "tick"), saved.complete ? "complete" : "incomplete");
   if (!saved.lost.empty()) fmt::print("the rest is lost: {}\n", saved.lost);

@@ -18,6 +18,7 @@ int main(int argc, char** argv) {
   app.formatter(apps::helpForm());
   const std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
   apps::lookForCohort(words);
+  apps::fitTerminal();
   apps::Run run;
 #define CALOT_ADD_COMMAND(name) apps::add##name(app, run);
   CALOT_COMMAND_LIST(CALOT_ADD_COMMAND)

@@ -156,6 +156,7 @@ void writeOutputs(const MeshOptions& o, const TriangleMesh& surface, MeshReport&
 
 void meshSurface(const MeshOptions& o) {
   checkFiles(o);
+  Progress progress("Meshing", o.json);
   MeshReport report;
   report.input = o.input;
   report.unit = o.unit;

@@ -6,8 +6,10 @@
 #include "analytics/assessment/norm.h"
 #include "analytics/checkpoints/checkpoint.h"
 #include "analytics/cohort/cohort_database.h"
+#include "analytics/report/figure_number.h"
 #include "analytics/report/report_document.h"
 #include "analytics/report/study_output.h"
+#include "analytics/report/terminal_text.h"
 #include "analytics/report/value_tree.h"
 #include "apps/calot/command.h"
 #include "apps/calot/environment.h"
@@ -134,11 +136,12 @@ void printNorm(const analytics::Norm& norm, std::ostream& out) {
   out << '\n';
   analytics::ReportTable table =
       analytics::tableOf("Pass marks", {"=checkpoint", "=unit", "=better", "cut", "95 %", "=rule", "="});
+  table.leastNeeded = {"", "better", "95 %"};
   for (const analytics::NormCheckpoint& c : norm.checkpoints) {
     const analytics::CheckpointDefinition* d =
         c.metric ? &c.metric->definition : analytics::findCheckpoint(c.checkpoint);
     const double factor = d != nullptr ? d->displayFactor : 1.0;
-    const auto number = [&](double v) { return analytics::significant(v * factor); };
+    const auto number = [&](double v) { return analytics::figureNumber(d, v * factor); };
     table.rows.push_back({c.metric ? c.checkpoint + " (external)" : analytics::figureName(c.checkpoint, c.subject),
                           d == nullptr || d->displayUnit == "1" ? "" : d->displayUnit, analytics::nameOf(c.direction),
                           c.cut ? number(*c.cut) : "-",
@@ -161,7 +164,7 @@ void createNorm(NormOptions& o) {
   if (!o.borderline.form.empty()) o.request.borderline = o.borderline;
   if (!o.protocol.empty())
     o.request.who.protocol.emplace().protocol = analytics::readProtocol(findAsset(o.protocol, "protocols", "protocol"));
-  Progress progress("making the norm");
+  Progress progress("Making the norm");
   const analytics::Norm norm =
       analytics::createNorm(o.database, o.request, {}, [&](double share, const char*) { progress.showShare(share); });
   Progress::erase();

@@ -254,18 +254,20 @@ void printPower(const PowerOptions& o, const PlannedStudy& planned, const std::v
   }
   if (untestable > 0) out << fmt::format("{} tests had no answer and count as not rejected.\n", untestable);
   out << (enough > 0
-              ? fmt::format("From n = {} ({}) on all effects together reach {:g} with the whole interval.\n", enough,
-                            planned.groups[0], o.target)
-              : fmt::format("None of these sizes reaches {:g} for all effects together with the whole interval.\n",
+              ? fmt::format(
+                    "From n = {} ({}) on, the power for all effects together reaches {:g} with its whole interval.\n",
+                    enough, planned.groups[0], o.target)
+              : fmt::format("At none of these sizes does the power for all effects together reach {:g} with its whole "
+                            "interval.\n",
                             o.target));
 }
 
 void power(PowerOptions& o) {
   const std::vector<std::size_t> sizes = sizesOf(o.sizes);
+  Progress progress("Simulating studies", o.json, "sizes");
   PlannedStudy planned = planOf(o);
   std::vector<Sized> results;
   std::size_t enough = 0;  // none yet
-  Progress progress("simulating, sizes", o.json);
   for (const std::size_t n : sizes) {
     planned.plan.nx = n;
     planned.plan.ny = std::clamp(static_cast<std::size_t>(std::lround(o.allocation * static_cast<double>(n))),

@@ -365,7 +365,7 @@ void packForRaters(const PackOptions& o) {
   analytics::FolderOutput output(o.output);
   stopOnSignals();
   {
-    Progress progress("packing, films");
+    Progress progress("Packing", false, "films");
     std::map<std::string, fs::path> first;  // each is encoded once
     std::size_t done = 0;
     for (const analytics::PackedRater& rater : pack.raters) {

@@ -116,8 +116,9 @@ void addRunOptions(CLI::App& command, RunOptions& o, const std::string& output) 
 }
 
 void warnUnlocked(const recorder::RecordingWriter& writer, const std::string& output) {
-  if (!writer.locked())
-    fmt::print(stderr, "calot: warning: {}: recorded without a lock, which its file system does not grant\n", output);
+  if (writer.locked()) return;
+  Progress::erase();
+  fmt::print(stderr, "calot: warning: {}: recorded without a lock, which its file system does not grant\n", output);
 }
 
 struct RecordOptions : RunOptions {
@@ -130,7 +131,9 @@ void record(const RecordOptions& o) {
   stopOnSignals();
   recorder::refuseOutput(o.output, o.force);
   std::optional<recorder::StationKey> key = stationKeyOf(o.stationKey);
+  Progress progress("Preparing the scene", o.json);
   recorder::LoadedScene scene = recorder::loadScene(recorder::findScene(o.scene, assetFolders()));
+  if (!scene.warnings.empty()) Progress::erase();
   for (const std::string& warning : scene.warnings) fmt::print(stderr, "calot: warning: {}\n", warning);
   const std::shared_ptr<recorder::PreparedScene> prepared =
       recorder::prepareScene(scene.assets, Where{"scene " + o.scene});
@@ -151,7 +154,7 @@ void record(const RecordOptions& o) {
   recorder::RecordingWriter writer(o.output, header, {o.force, std::move(key)});
   warnUnlocked(writer, o.output);
   session.join(writer);
-  Progress progress("recording, seconds", o.json);
+  progress.next("Recording", "s");
   recorder::RunSettings run{.seconds = o.seconds, .paced = o.paced, .live = o.live, .stop = &stopRequested()};
   driveDevice(*source, run);
   recordDevice(*source, writer);
@@ -193,6 +196,7 @@ void branch(const BranchOptions& o) {
   if (!std::isfinite(o.seconds)) throw Error(ErrorKind::invalid, "--seconds: a number is expected");
   stopOnSignals();
   const double at = parseTime(o.at);
+  Progress progress("Reading the parent", o.json);
   std::optional<recorder::StationKey> key = stationKeyOf(o.stationKey);
   recorder::NewFile file(o.output, o.force, ".branch");
   const recorder::ChainVerdict chain = recorder::probe(o.parent);
@@ -214,7 +218,7 @@ void branch(const BranchOptions& o) {
   session.join(writer);
   session.join(pose);
   {
-    Progress progress("taking the parent's steps", o.json);
+    progress.next("Simulating the parent's steps", "steps");
     const auto divergence = recorder::takeParent(parent, session, forkStep, [&](std::uint64_t step, std::uint64_t of) {
       if (writer.failed()) {
         session.end(recorder::Outcome::technicalFailure);
@@ -234,7 +238,7 @@ void branch(const BranchOptions& o) {
   if (o.seconds > 0.0) run.seconds = static_cast<double>(session.steps()) * model.stepSeconds() + o.seconds;
   driveDevice(*source, run);
   recordDevice(*source, writer, session.steps() * model.scene().ticksPerStep);
-  Progress progress("recording, steps", o.json);
+  progress.next("Recording", "steps");
   run.progress = [&](std::uint64_t step) {
     if (writer.failed()) stopRequested() = true;  // nothing more can be kept; finish() says why
     progress.show(step, 0);

@@ -6,6 +6,7 @@
 #include "analytics/assessment/declared_document.h"
 #include "analytics/checkpoints/checkpoint.h"
 #include "analytics/regrade.h"
+#include "analytics/report/figure_number.h"
 #include "apps/calot/command.h"
 #include "apps/calot/replay_report.h"
 #include "recorder/base/counted.h"
@@ -27,7 +28,7 @@ std::vector<std::filesystem::path> placesOf(const RegradeOptions& o) {
 }
 
 ExitCode regrade(const RegradeOptions& o) {
-  Progress progress("regrading, recordings", o.json);
+  Progress progress("Regrading", o.json, "recordings");
   const analytics::Regrade regrade = analytics::regrade(
       o.cohort, placesOf(o), o.jobs, [&](std::uint64_t done, std::uint64_t of) { progress.show(done, of); });
   Progress::erase();
@@ -60,8 +61,9 @@ std::string shownValue(const std::optional<analytics::CheckpointValue>& v) {
   if (!v) return "-";
   if (!v->value) return v->availability == analytics::Availability::notApplicable ? "n/a" : nameOf(v->availability);
   const analytics::CheckpointDefinition* definition = analytics::findCheckpoint(v->name);
-  return analytics::significant(*v->value * (definition != nullptr ? definition->displayFactor : 1.0), 6) + " " +
-         (definition != nullptr ? definition->displayUnit : v->unit);
+  const std::string unit = definition != nullptr ? definition->displayUnit : v->unit;
+  return analytics::figureNumber(definition, *v->value * (definition != nullptr ? definition->displayFactor : 1.0), 6) +
+         (unit == "1" ? "" : " " + unit);
 }
 
 /// Differences besides the figure.

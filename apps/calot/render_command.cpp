@@ -55,6 +55,7 @@ void render(const RenderOptions& o) {
   if (o.beside) settings.beside = *o.beside;
   settings.anyway = o.anyway;
 
+  Progress progress("Rendering", false, "frames");
   std::vector<std::string> attempts;
   std::vector<std::string> files{o.recording};
   if (o.beside) files.push_back(*o.beside);
@@ -72,14 +73,14 @@ void render(const RenderOptions& o) {
   if (!o.cohort.empty()) analytics::recordExport(o.cohort, film ? "film" : "picture", o.output, attempts);
   if (!film) {
     const gui::ShownMoment shown = gui::writeMoment(o.recording, output, settings);
+    Progress::erase();
     fmt::print("{}: step {}, {:.2f} s\n", o.output, shown.step, shown.seconds);
     return;
   }
   stopOnSignals();
-  Progress bar("frames");
   const std::int64_t frames = gui::writeFilm(o.recording, output, settings, [&](std::uint64_t done, std::uint64_t of) {
     if (stopRequested()) throw Error(ErrorKind::failure, o.output + ": stopped before its end; nothing is left of it");
-    bar.show(done, of);
+    progress.show(done, of);
   });
   Progress::erase();
   fmt::print("{}: {} frames, {:.2f} s\n", o.output, frames, static_cast<double>(frames) / settings.fps);

@@ -32,7 +32,7 @@ ExitCode replay(const ReplayOptions& o) {
   const MakeBroadPhase makeBroadPhase = broadPhaseOf(o.broadPhase);
   std::vector<recorder::ReplayReport> reports(o.files.size());
   const bool single = o.files.size() == 1;
-  Progress progress(single ? "replaying, step" : "replaying, recordings", o.json);
+  Progress progress("Replaying", o.json, single ? "steps" : "recordings");
   std::size_t done = 0;
   std::mutex drawing;
   std::exception_ptr failure;

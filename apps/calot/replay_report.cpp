@@ -9,24 +9,24 @@
 #include "analytics/checkpoints/motion.h"
 #include "analytics/checkpoints/replay_words.h"
 #include "analytics/cohort/registers.h"
-#include "apps/calot/environment.h"
+#include "apps/calot/command.h"
 #include "recorder/base/files.h"
 
 namespace calot::apps {
 
 void printReport(const recorder::ReplayReport& r) {
-  Progress::erase();
   if (r.verdict == recorder::ReplayVerdict::exact) {
-    fmt::print("{}: bit-exact{}, {:.2f} s ({} steps), {:.1f} x real time\n", r.path.string(),
-               r.complete ? "" : ", incomplete", r.seconds, r.steps,
-               r.wallSeconds > 0.0 ? r.seconds / r.wallSeconds : 0.0);
-    if (r.misses.any > 0) fmt::print("{}: {}\n", r.path.string(), analytics::wordsFor(r.misses));
+    printText(fmt::format("{}: bit-exact{}, {:.2f} s ({} steps), {:.1f} x real time\n", r.path.string(),
+                          r.complete ? "" : ", incomplete", r.seconds, r.steps,
+                          r.wallSeconds > 0.0 ? r.seconds / r.wallSeconds : 0.0));
+    if (r.misses.any > 0) printText(fmt::format("{}: {}\n", r.path.string(), analytics::wordsFor(r.misses)));
     return;
   }
   if (r.verdict == recorder::ReplayVerdict::consistent) {
-    fmt::print("{}: {}\n", r.path.string(), analytics::wordsFor(r));
+    printText(fmt::format("{}: {}\n", r.path.string(), analytics::wordsFor(r)));
     return;
   }
+  Progress::erase();
   fmt::print(stderr, "calot: {}: {}\n", r.path.string(), advised(analytics::wordsFor(r), r.remedies));
 }
 

@@ -29,6 +29,7 @@ std::string versionOf(const SceneDescription& scene) {
 
 void printScenes(const std::vector<recorder::LoadedScene>& scenes) {
   analytics::ReportTable table = analytics::tableOf("", {"=scene", "version", "=organs (tetrahedra)", "=summary"});
+  table.leastNeeded = {"organs (tetrahedra)"};
   for (const recorder::LoadedScene& scene : scenes) {
     std::string organs;
     for (const OrganDescription& organ : scene.description.organs) {
@@ -142,6 +143,7 @@ void printCosts(const recorder::SceneCheck& check, std::ostream& out) {
 
 void checkScene(const SceneCheckOptions& o) {
   const std::filesystem::path file = recorder::findScene(o.scene, assetFolders());
+  Progress progress("Checking the scene", o.json);
   const recorder::SceneCheck check = recorder::checkScene(file);
   printResult(o.json, "scene-check", checkJson(file.string(), check), [&](std::ostream& out) {
     for (const Error& fault : check.faults) out << fmt::format("fault: {}\n", fault.what());
@@ -151,7 +153,7 @@ void checkScene(const SceneCheckOptions& o) {
   if (!check.faults.empty())
     throw Error(ErrorKind::damaged,
                 fmt::format("{}: {}", file.string(), recorder::counted(check.faults.size(), "fault")));
-  if (!o.json) fmt::print("{}: sound, {}\n", file.string(), recorder::counted(check.notes.size(), "note"));
+  if (!o.json) printText(fmt::format("{}: sound, {}\n", file.string(), recorder::counted(check.notes.size(), "note")));
 }
 
 struct SceneTemplate {
@@ -303,6 +305,7 @@ void divideScene(const SceneDivision& wanted) {
   const recorder::LoadedScene scene = recorder::loadScene(recorder::findScene(wanted.scene, assetFolders()));
   const fs::path folder = output.parent_path();
   const fs::path root = folder.filename() == "scenes" ? folder.parent_path() : folder;
+  Progress progress("Dividing the scene");
   std::vector<std::pair<fs::path, std::string>> files;
   for (std::size_t i = 1; i < scene.assets.size(); ++i)
     files.emplace_back(root / scene.assets[i].name, textOf(scene.assets[i]));
@@ -316,7 +319,7 @@ void divideScene(const SceneDivision& wanted) {
   }
   for (const auto& [path, text] : files) {
     if (!isThere(path, text)) recorder::writeText(path, text, wanted.force);
-    fmt::print("{}\n", path.string());
+    printText(path.string() + '\n');
   }
 }
 

@@ -24,6 +24,7 @@ struct StateOptions {
 
 void state(const StateOptions& o) {
   recorder::refuseOutput(o.output, o.force);
+  Progress progress("Simulating to the step");
   recorder::probe(o.recording);
   recorder::Recording recording(o.recording);
   if (o.step >= recording.stepCount()) {
@@ -36,6 +37,7 @@ void state(const StateOptions& o) {
         fmt::format("recorded with simulation version {}, this build has {}: its State is that of another attempt",
                     version, simulationVersion);
     if (!o.anyway) throw Error(ErrorKind::undecided, Where{o.recording}, what, {Remedy::replayAnyway});
+    Progress::erase();
     std::cerr << "calot: warning: " << o.recording << ": " << what << '\n';
   }
   // This build can read the State of its own version only.

@@ -123,9 +123,9 @@ analytics::Study studyOf(StudySource& options, const analytics::StudyProgress& p
   if (study.better.empty() && !(study.protocol && study.protocol->masked))
     study.remarks.emplace_back("--better GROUP says which group is expected to do better.");
   if (study.source == "cohort" && !study.protocol && options.choices.family.empty())
-    study.remarks.emplace_back("--family NAME,... declares hypotheses, --protocol registered ones: these are tested.");
+    study.remarks.emplace_back("Hypotheses are tested: declare them with --family NAME,... or --protocol.");
   for (std::string& remark : study.remarks) {
-    if (study.phasesLeftOut && remark.ends_with("single phases are left out.")) remark += " --phases takes them in.";
+    if (study.phasesLeftOut && remark.ends_with("single phases are left out.")) remark += " --phases includes them.";
   }
   return study;
 }
@@ -278,6 +278,7 @@ void noteExports(const StudyCommandOptions& options, const std::vector<std::stri
       if (!file.empty()) analytics::recordExport(options.source.database, kind, file, attempts);
     }
   } catch (const Error& e) {
+    Progress::erase();
     std::cerr << "calot: warning: the export could not be registered for later withdrawal: " << messageOf(e) << '\n';
   }
 }
@@ -312,16 +313,16 @@ void printStudy(const analytics::Study& study, analytics::StudyDetail detail) {
   const auto others = std::count_if(study.rows.begin(), study.rows.end(), [](const analytics::StudyRow& row) {
     return !row.leading && !analytics::hasNoValue(row);
   });
-  fmt::print("{} more figures, and the methods: --all; with or without it as a report: --pdf, --html\n", others);
+  printText(
+      fmt::format("{} more figures and the methods: --all. A report, with or without them: --pdf, --html.\n", others));
 }
 
-void runTwoGroups(StudyCommandOptions& options) {
-  Progress progress("computing the study", options.json);
+void runTwoGroups(StudyCommandOptions& options, Progress& progress) {
   const analytics::Study study = studyOf(options.source, [&](double share, const char*) { progress.showShare(share); });
-  Progress::erase();
   if (!options.csv.empty()) analytics::writeStudyCsv(study, options.csv, options.force);
   writeReport(analytics::studyDocument(study, detailOf(options)), options.html, options.pdf, options.force);
   if (isExported(options)) noteExports(options, attemptsIn(study, options.source.database));
+  Progress::erase();
   options.json ? printResult("study", analytics::studyTree(study)) : printStudy(study, detailOf(options));
 }
 
@@ -338,11 +339,12 @@ void runDesign(StudyCommandOptions& options) {
 }
 
 void study(StudyCommandOptions& o) {
+  Progress progress("Computing the study", o.json);
   for (const std::string& file : {o.html, o.pdf}) {
     if (!file.empty()) recorder::refuseOutput(file, o.force);
   }
   if (!o.source.database.empty()) analytics::refuseUnsound(o.source.database);
-  return designOf(o.design, o.source) == Design::twoGroups ? runTwoGroups(o) : runDesign(o);
+  return designOf(o.design, o.source) == Design::twoGroups ? runTwoGroups(o, progress) : runDesign(o);
 }
 
 }  // namespace

@@ -64,7 +64,7 @@ void printItem(const IntakeItem& item, const VerifyOptions& o) {
     if (!keyFault.empty()) row["key"] = keyFault;
     printResultLine("verify", row);
   } else {
-    fmt::print("{}: {}{}{}\n", item.file, textOf(item), keyFault.empty() ? "" : "; warning: ", keyFault);
+    printText(fmt::format("{}: {}{}{}\n", item.file, textOf(item), keyFault.empty() ? "" : "; warning: ", keyFault));
   }
   // Whoever reads a pipe sees each line as it comes.
   if (std::fflush(stdout) != 0) throw Error(ErrorKind::failure, "standard output cannot be written");
@@ -100,12 +100,14 @@ ExitCode verify(const VerifyOptions& o) {
   analytics::Intake intake(settings);
   std::vector<ExitCode> codes;
   while (true) {
+    Progress progress("Verifying", o.json);
     const analytics::IntakeRest rest = intake.look(
         [&](const IntakeItem& item) {
           printItem(item, o);
           if (o.once) codes.push_back(codeOfItem(item));
         },
         stopRequested());
+    Progress::erase();
     if (stopRequested()) return worstOf(codes);
     if (o.once && rest.settling == 0) return endOnce(rest, codes);
     // Files that settle are looked at again soon, growing and failed ones at the next scan.

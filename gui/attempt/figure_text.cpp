@@ -8,6 +8,7 @@
 
 #include "analytics/checkpoints/checkpoint.h"
 #include "analytics/report/attempt_sheet.h"
+#include "analytics/report/figure_number.h"
 #include "analytics/statistics/descriptive.h"
 #include "gui/attempt/widget_parts.h"
 #include "gui/words/problem_words.h"
@@ -125,7 +126,10 @@ DisplayedValue displayedValue(const analytics::CheckpointValue& value) {
 QString valueText(const analytics::CheckpointValue& value) {
   if (!value.value) return "none: " + QString::fromStdString(value.reason);
   const DisplayedValue shown = displayedValue(value);
-  return shown.unit.isEmpty() ? numberText(shown.number) : numberText(shown.number) + ' ' + shown.unit;
+  const QString number = analytics::isWrittenWhole(analytics::definitionOf(value), shown.number)
+                             ? QLocale().toString(std::llround(shown.number))
+                             : numberText(shown.number);
+  return shown.unit.isEmpty() ? number : number + ' ' + shown.unit;
 }
 
 QString directionText(const analytics::CheckpointValue& value) {

@@ -13,6 +13,7 @@
 
 #include "analytics/checkpoints/checkpoint.h"
 #include "analytics/checkpoints/phases.h"
+#include "analytics/report/figure_number.h"
 #include "recorder/base/errors.h"
 #include "recorder/formats/scene_file.h"
 #include "recorder/recording/layout.h"
@@ -132,13 +133,6 @@ constexpr std::array<std::string_view, 8> shownCheckpoints{
     "organ-burned", "clip-errors",   "critical-errors",      "organ-perforations"};
 constexpr double refreshSeconds = 1.0;  // updating more often costs time and is not readable
 
-/// Counts are shown in full, other figures with three significant digits and without powers of ten.
-std::string readable(double value) {
-  const double size = std::abs(value);
-  if (size >= 100.0 || value == std::round(value)) return fmt::format("{:.0f}", value);
-  return fmt::format("{:.{}f}", value, size >= 10.0 ? 1 : size >= 1.0 ? 2 : 3);
-}
-
 /// Every step's result is needed.
 void refuseLean(const recorder::Recording& recording) {
   if (recorder::isMinimal(recording.header()))
@@ -187,10 +181,10 @@ void MomentTrack::refreshCheckpoints(double time) {
     if (definition == nullptr) continue;
     for (const analytics::CheckpointValue& value : values) {
       if (value.name != name || !value.value) continue;
-      const double shown = *value.value * definition->displayFactor;
+      const std::string number = analytics::figureNumber(definition, *value.value * definition->displayFactor, 3);
       const std::string unit = definition->displayUnit == "1" ? "" : " " + definition->displayUnit;
       moment_.checkpoints.push_back(
-          fmt::format("{}{}{}  {}{}", name, value.subject.empty() ? "" : " ", value.subject, readable(shown), unit));
+          fmt::format("{}{}{}  {}{}", name, value.subject.empty() ? "" : " ", value.subject, number, unit));
     }
   }
 }

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <string>
 #include <string_view>
@@ -10,8 +11,11 @@
 
 #include "analytics/assessment/verdict.h"
 #include "analytics/checkpoints/checkpoint.h"
+#include "analytics/report/figure_number.h"
 #include "analytics/report/key_figures.h"
 #include "analytics/report/report_document.h"
+#include "analytics/report/terminal_text.h"
+#include "recorder/base/counted.h"
 
 namespace calot::gui {
 namespace {
@@ -94,7 +98,9 @@ NextGoal nextGoal(const analytics::Grade& grade) {
             {}};
   const std::string of = next->mark.subject.empty() ? next->title : next->title + ", " + next->mark.subject;
   const std::string unit = next->unit == "1" ? "" : " " + next->unit;
-  const auto shown = [&](double si) { return fmt::format("{:.4g}{}", si * next->displayFactor, unit); };
+  const analytics::CheckpointDefinition* const definition =
+      next->mark.metric ? &next->mark.metric->definition : analytics::findCheckpoint(next->mark.checkpoint);
+  const auto shown = [&](double si) { return analytics::figureNumber(definition, si * next->displayFactor) + unit; };
   return {fmt::format("{}: {} {} (now {}).", of,
                       next->mark.direction == analytics::Direction::higher ? "at least" : "at most",
                       shown(*next->mark.cut), shown(*next->value)),
@@ -150,7 +156,7 @@ std::string figureText(const std::vector<analytics::CheckpointValue>& values, co
                      v.availability == analytics::Availability::absentHand
                  ? "n/a"
                  : "-";
-    return analytics::significant(*v.value * column.definition->displayFactor);
+    return analytics::figureNumber(column.definition, *v.value * column.definition->displayFactor);
   }
   return "-";
 }
@@ -164,18 +170,19 @@ struct IntervalTexts {
 };
 
 IntervalTexts intervalTexts(const std::vector<analytics::ValueInterval>& intervals,
-                            const analytics::CheckpointValue& of, double factor) {
+                            const analytics::CheckpointValue& of, const analytics::CheckpointDefinition* definition) {
+  const double factor = definition != nullptr ? definition->displayFactor : 1.0;
   const analytics::ValueInterval* found = analytics::findInterval(intervals, of);
   if (found == nullptr) return {};
   if (!found->lower) return {"none", "", "no interval: " + found->reason};
   if (*found->lower == *found->upper) return {"exact", "", ""};
-  const auto shown = [&](double si) { return analytics::significant(si * factor); };
+  const auto shown = [&](double si) { return analytics::figureNumber(definition, si * factor); };
   const auto change = [&](double si) {
-    return fmt::format("{}{}", si > 0.0 ? "+" : "", analytics::significant(si * factor, 2));
+    return fmt::format("{}{}", si > 0.0 ? "+" : "", analytics::figureNumber(definition, si * factor, 2));
   };
   return {fmt::format("[{}, {}]", shown(*found->lower), shown(*found->upper)),
           fmt::format("{}, {}, {}", change(found->stepEffect), change(found->meshEffect),
-                      analytics::significant(found->constantsSpread * factor, 2)),
+                      analytics::figureNumber(definition, found->constantsSpread * factor, 2)),
           ""};
 }
 
@@ -185,6 +192,7 @@ void printValues(const std::vector<analytics::CheckpointValue>& values,
                  const std::vector<analytics::ValueInterval>& intervals, std::ostream& out) {
   analytics::ReportTable table =
       analytics::tableOf("", {"=checkpoint", "value", "interval", "=unit", "step, mesh, constants", "=origin", "="});
+  table.leastNeeded = {"step, mesh, constants", "origin"};
   for (const analytics::CheckpointValue& v : values) {
     const analytics::CheckpointDefinition* definition = analytics::definitionOf(v);
     const std::string name = v.subject.empty() ? v.name : fmt::format("{} {}", v.name, v.subject);
@@ -193,9 +201,10 @@ void printValues(const std::vector<analytics::CheckpointValue>& values,
       continue;
     }
     const double factor = definition != nullptr ? definition->displayFactor : 1.0;
-    const auto [interval, parts, remark] = intervalTexts(intervals, v, factor);
-    table.rows.push_back({name, analytics::significant(*v.value * factor), interval,
-                          definition != nullptr ? definition->displayUnit : v.unit, parts, nameOf(v.origin),
+    const auto [interval, parts, remark] = intervalTexts(intervals, v, definition);
+    const std::string& unit = definition != nullptr ? definition->displayUnit : v.unit;
+    table.rows.push_back({name, analytics::figureNumber(definition, *v.value * factor), interval,
+                          unit == "1" ? "" : unit, parts, nameOf(v.origin),
                           v.note + (v.note.empty() || remark.empty() ? "" : "; ") + remark});
   }
   if (!table.rows.empty()) table.print(out, 120);  // reasons go on below
@@ -207,7 +216,11 @@ void printAttempts(const analytics::CohortDatabase& database, std::ostream& out)
   analytics::ReportTable table =
       analytics::tableOf("", {"=attempt", "=who", "=scene", "=mode", "=outcome", "=verification", "=recording"});
   const std::vector<SummaryColumn> figures = summaryColumns(values);
+  table.leastNeeded = {"mode", "scene"};
   for (const SummaryColumn& figure : figures) table.columns.emplace_back(figure.title, analytics::Align::right);
+  std::transform(figures.rbegin(), figures.rend(), std::back_inserter(table.leastNeeded),
+                 [](const SummaryColumn& figure) { return figure.title; });
+  table.leastNeeded.emplace_back("recording");
   table.columns.emplace_back("", analytics::Align::left);
   std::size_t synthetic = 0;
   for (const analytics::AttemptRow& a : database.listAttempts()) {
@@ -230,7 +243,7 @@ void printAttempts(const analytics::CohortDatabase& database, std::ostream& out)
     return;
   }
   table.print(out);
-  out << fmt::format("{} attempts, {} of them synthetic\n", table.rows.size(), synthetic);
+  out << fmt::format("{}, {} of them synthetic\n", recorder::counted(table.rows.size(), "attempt"), synthetic);
 }
 
 }  // namespace calot::gui

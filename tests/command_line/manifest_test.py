@@ -228,7 +228,7 @@ class Motion(Manifest):
         os.close(theirs)
         drawn = os.read(ours, 100000).decode()
         os.close(ours)
-        self.assertIn("importing, files: 0 of 6", drawn)
+        self.assertRegex(drawn, r"^\r\x1b\[KImporting \.\.\.\r.*\x1b\[K$")
         self.assertNotIn("\n", drawn)
         self.assertEqual(len(done.stdout.splitlines()), 1)
 

@@ -112,7 +112,7 @@ class People(Manifest):
         self.fill()
         page = self.path("p.html")
         text = " ".join(self.text("--family", "path-length,hand-ratio", "--html", page).split())
-        self.assertIn("that one of expert has the larger value for hand-ratio", text)
+        self.assertIn("for hand-ratio, without a direction: that a member of expert has the larger value", text)
         plots = re.findall(r"<svg.*?</svg>", page.read_text(), re.S)
         self.assertEqual(len(plots), 2)
         for plot in plots:

@@ -280,7 +280,7 @@ TEST(Percentile, saysNoMoreThanItsMembersTell) {
   EXPECT_DOUBLE_EQ(*percentile(nine, 1.5, Direction::lower), 85.0);
   expectNames(percentile(nine, 9.5, Direction::higher).reason(), {"better", "9", "10", "90"});
   expectNames(percentile(nine, 9.5, Direction::lower).reason(), {"worse", "9", "10", "90"});
-  EXPECT_EQ(percentile({1, 2, 3, 4}, 2.0, Direction::lower).reason(), "4 members, 5 wanted");
+  EXPECT_EQ(percentile({1, 2, 3, 4}, 2.0, Direction::lower).reason(), "4 members, 5 needed");
 }
 
 TEST(Moments, areWhereAFigureGrew) {

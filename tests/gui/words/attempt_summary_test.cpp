@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <gtest/gtest.h>
+#include <map>
+#include <sstream>
 
 #include "analytics/assessment/norm.h"
 #include "analytics/assessment/verdict.h"
@@ -79,6 +81,22 @@ TEST(AttemptSummary, saysNothingOfWhatTheSceneDoesNotHave) {
   EXPECT_FALSE(sceneLacks(values[4]));
 }
 
+TEST(AttemptSummary, printsCountsWhole) {
+  std::ostringstream out;
+  gui::printValues({of("clip-errors", "", 2.0), of("path-length", "left", 0.2)}, {}, out);
+  std::istringstream lines(out.str());
+  std::map<std::string, std::string> shown;
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream words(line);
+    std::string name, value;
+    words >> name >> value;
+    if (value == "left") words >> value;
+    shown[name] = value;
+  }
+  EXPECT_EQ(shown["clip-errors"], "2");
+  EXPECT_EQ(shown["path-length"], "200.0");
+}
+
 /// Every rule, from the error to the sentence that summary, list, sheet, JSON, page and trainer have.
 TEST(AttemptSummary, everyRuleIsSaidInItsWordsWithItsTime) {
   const SubjectNames names{{"cystic-duct"}, {"bed"}};
@@ -144,9 +162,12 @@ TEST(NextGoal, isTheFirstFigureThatCountsAndFellShort) {
       figure("elapsed-time", 80.0, 60.0, false, 20.0, true), figure("path-length", 0.5, 0.4, false, 10.0, true),
       figure("organ-burned", 0.0, 0.01, true, 50.0, true), figure("speed-mean", 0.0, 0.01, false, 1.0, false)};
   EXPECT_EQ(gui::nextGoal(grade).checkpoint, "path-length") << "the one that lies furthest behind the competent";
-  EXPECT_EQ(gui::nextGoal(grade).text, "Path length of the instrument's tip: at most 400 mm (now 500 mm).");
+  EXPECT_EQ(gui::nextGoal(grade).text, "Path length of the instrument's tip: at most 400.0 mm (now 500.0 mm).");
   grade.figures[0].mark.reason = "no interval: fixed by A. Instructor";
   EXPECT_EQ(gui::nextGoal(grade).checkpoint, "elapsed-time") << "a fixed mark has to be passed";
+  grade.figures[0] = figure("clip-errors", 2.0, 0.5, false, 0.0, true);
+  grade.figures[0].mark.reason = "no interval: fixed by A. Instructor";
+  expectHolds(gui::nextGoal(grade).text, {"at most 0.5000 (now 2)"});
   grade.criticalErrors = 1.0;
   EXPECT_EQ(gui::nextGoal(grade).checkpoint, "critical-errors") << "first of all";
   grade.criticalErrors = 0.0;
