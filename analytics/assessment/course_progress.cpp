@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "analytics/assessment/grade.h"
+#include "analytics/report/figure_number.h"
 #include "analytics/report/report_document.h"
 #include "recorder/base/dates.h"
 #include "recorder/base/errors.h"
@@ -72,9 +73,11 @@ std::string whyNotCounted(const AttemptRow& attempt, const Norm* norm, bool incl
 std::string failedFigure(const GradedFigure& f) {
   const std::string name = figureName(f.mark.checkpoint, f.mark.subject);
   if (!f.value || !f.mark.cut) return fmt::format("{}: {}", name, f.missing);
-  return fmt::format("{} {}{}, {} {}", name, significant(*f.value * f.displayFactor), f.unit == "1" ? "" : " " + f.unit,
-                     f.mark.direction == Direction::lower ? "at most" : "at least",
-                     significant(*f.mark.cut * f.displayFactor));
+  const auto number = [&](double si) {
+    return figureNumber(findCheckpoint(f.mark.checkpoint), si * f.displayFactor);
+  };
+  return fmt::format("{} {}{}, {} {}", name, number(*f.value), f.unit == "1" ? "" : " " + f.unit,
+                     f.mark.direction == Direction::lower ? "at most" : "at least", number(*f.mark.cut));
 }
 
 /// @pre the attempt did not pass
