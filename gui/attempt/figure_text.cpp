@@ -107,7 +107,8 @@ QString operatorText(const analytics::AttemptRow& attempt) {
 
 QString startText(const std::string& startUtc) { return QString::fromStdString(analytics::localTime(startUtc)); }
 
-QString numberText(double value) {
+QString numberText(double value, const analytics::CheckpointDefinition* of) {
+  if (analytics::isWrittenWhole(of, value)) return QLocale().toString(std::llround(value));
   const double magnitude = std::abs(value);
   if (magnitude < analytics::arithmeticDust) return QLocale().toString(0);
   if (magnitude < 1e-6 || magnitude >= 1e15) return QLocale().toString(value, 'e', 3);
@@ -126,9 +127,7 @@ DisplayedValue displayedValue(const analytics::CheckpointValue& value) {
 QString valueText(const analytics::CheckpointValue& value) {
   if (!value.value) return "none: " + QString::fromStdString(value.reason);
   const DisplayedValue shown = displayedValue(value);
-  const QString number = analytics::isWrittenWhole(analytics::definitionOf(value), shown.number)
-                             ? QLocale().toString(std::llround(shown.number))
-                             : numberText(shown.number);
+  const QString number = numberText(shown.number, analytics::definitionOf(value));
   return shown.unit.isEmpty() ? number : number + ' ' + shown.unit;
 }
 

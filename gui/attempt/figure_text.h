@@ -35,7 +35,9 @@ struct Badge {
     const std::string& startUtc);  ///< "2026-02-03 14:05", by the clock here; as stored if it is no date
 
 /// Four significant digits, never an exponent between 0.000001 and 10^15; 0 below analytics::arithmeticDust.
-[[nodiscard]] QString numberText(double value);
+/// @param of the checkpoint whose value it is, as it displays it: a count is whole (analytics::isWrittenWhole()); null:
+/// of none
+[[nodiscard]] QString numberText(double value, const analytics::CheckpointDefinition* of = nullptr);
 
 /// A value at the edge: in the unit that its definition displays.
 struct DisplayedValue {

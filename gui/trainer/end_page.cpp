@@ -38,16 +38,18 @@ const analytics::CheckpointValue* sameFigure(const std::vector<analytics::Checkp
   return at == values.end() ? nullptr : &*at;
 }
 
-QString withUnit(double number, const QString& unit) {
-  return unit.isEmpty() ? numberText(number) : numberText(number) + ' ' + unit;
+/// @param of the value whose checkpoint the number belongs to
+QString withUnit(double number, const analytics::CheckpointValue& of) {
+  const QString text = numberText(number, analytics::definitionOf(of)), unit = displayedValue(of).unit;
+  return unit.isEmpty() ? text : text + ' ' + unit;
 }
 
-QString normWords(const FigureStanding& standing, const QString& unit) {
+QString normWords(const FigureStanding& standing, const analytics::CheckpointValue& of) {
   QString text;
-  if (standing.cut) text = "pass mark " + withUnit(*standing.cut, unit);
+  if (standing.cut) text = "pass mark " + withUnit(*standing.cut, of);
   if (standing.band) {
     text += text.isEmpty() ? "half of the competent people " : ", half of the competent people ";
-    text += numberText(standing.band->p25) + " to " + withUnit(standing.band->p75, unit);
+    text += numberText(standing.band->p25, analytics::definitionOf(of)) + " to " + withUnit(standing.band->p75, of);
   }
   if (standing.passed) text += *standing.passed ? ": reached" : ": falls short";
   if (standing.passed && standing.undecided) text += " (not decided by this simulation)";
@@ -63,7 +65,7 @@ QString beforeWords(const analytics::CheckpointValue& now, const analytics::Chec
   const double change = b.number - a.number;
   constexpr double nothing = 1e-6;  // of what is shown: rounding, as of the path of a tip that stands still
   if (numberText(a.number) == numberText(b.number) || std::abs(change) < nothing) return then + ", the same";
-  const QString by = withUnit(std::abs(change), b.unit);
+  const QString by = withUnit(std::abs(change), now);
   const analytics::CheckpointDefinition* const definition = analytics::definitionOf(now);
   const auto direction = definition != nullptr ? definition->direction : analytics::Direction::none;
   if (!judges || direction == analytics::Direction::none)
@@ -175,7 +177,7 @@ AttemptReport reportOf(AttemptFacts now, const std::optional<AttemptFacts>& prev
     line.title = QString::fromStdString(figure.title);
     line.now = value.value ? valueText(value) : QString::fromStdString(value.reason);
     const FigureStanding* const stands = standing ? entryOf(standing->figures, value) : nullptr;
-    if (stands != nullptr) line.norm = normWords(*stands, displayedValue(value).unit);
+    if (stands != nullptr) line.norm = normWords(*stands, value);
     const analytics::CheckpointValue* const then = previous ? sameFigure(previous->values, value) : nullptr;
     if (then != nullptr) line.before = beforeWords(value, *then, judges);
   }
