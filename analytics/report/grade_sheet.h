@@ -13,7 +13,7 @@ namespace calot::analytics {
 
 void printGrade(const Grade& grade, std::ostream& out);
 ValueTree gradeTree(const Grade& grade);
-/// What stands behind a sheet's first page: use and rule of the norm, figures, moments, history, notes.
+/// The appendix behind a sheet's first page: use and rule of the norm, figures, moments, history, notes.
 /// @param recording how the sheet names the recording, for links to its moments ("a.h5#t=12,13", a media fragment);
 /// empty: none
 /// @param howToDraw a sentence on how the program draws a moment of it; may be empty

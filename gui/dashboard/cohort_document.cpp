@@ -34,7 +34,7 @@ namespace {
 
 using Row = analytics::AttemptRow;
 
-/// What is known of an attempt beside its row.
+/// Known of an attempt beside its row.
 struct Known {
   std::array<const analytics::CheckpointValue*, severityCount> errors{};  ///< null: none is stored
   const analytics::CheckpointValue* criticalView = nullptr;
@@ -86,7 +86,7 @@ constexpr std::array<ColumnText, AttemptLines::columnTotal> columns{{
     {"Attempt", [](const Row& a, const Known&) { return QString::fromStdString(a.uuid).left(8); }},
 }};
 
-/// Of a participant's attempts that compare, critical errors of the last three: "2, 1, 0 critical".
+/// Critical errors of the last three of a participant's attempts that compare: "2, 1, 0 critical".
 std::vector<QString> trendsOf(const std::vector<Row>& attempts, const AttemptLines::Values& critical) {
   std::map<std::pair<std::string, std::string>, std::vector<std::size_t>> series;
   for (std::size_t i = 0; i < attempts.size(); ++i) {

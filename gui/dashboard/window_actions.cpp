@@ -216,11 +216,11 @@ void DashboardWindow::fillRecent() {
 void DashboardWindow::showManual() {
   std::error_code ignored;
   for (const std::filesystem::path& assets : assetFolders_) {
-    for (const char* place :
-         {"../../doc/calot-doc/html/index.html", "../../doc/calot-doc/docs/index.md", "../docs/index.md"}) {
-      const std::filesystem::path file = assets / place;
-      if (!std::filesystem::is_regular_file(file, ignored)) continue;
-      QDesktopServices::openUrl(QUrl::fromLocalFile(QString::fromStdString(file.lexically_normal().string())));
+    const std::filesystem::path documents = assets / ".." / ".." / "doc" / "calot-doc";
+    for (const std::filesystem::path& place :
+         {documents / "html" / "index.html", documents / "docs" / "index.md", assets / ".." / "docs" / "index.md"}) {
+      if (!std::filesystem::is_regular_file(place, ignored)) continue;
+      QDesktopServices::openUrl(QUrl::fromLocalFile(QString::fromStdString(place.lexically_normal().string())));
       return;
     }
   }
