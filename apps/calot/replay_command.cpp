@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 #include <algorithm>
+#include <atomic>
 #include <mutex>
+#include <numeric>
 #include <thread>
 
 #include "apps/calot/command.h"
 #include "apps/calot/replay_report.h"
 #include "apps/calot/source_options.h"
+#include "recorder/base/counted.h"
 #include "recorder/base/files.h"
 #include "recorder/live/worker_pool.h"
 #include "recorder/recording/probe.h"
@@ -32,9 +35,10 @@ ExitCode replay(const ReplayOptions& o) {
   const MakeBroadPhase makeBroadPhase = broadPhaseOf(o.broadPhase);
   std::vector<recorder::ReplayReport> reports(o.files.size());
   const bool single = o.files.size() == 1;
-  Progress progress("Replaying", o.json, single ? "steps" : "recordings");
-  std::size_t done = 0;
-  std::mutex drawing;
+  Progress progress(single ? "Replaying" : "Replaying " + recorder::counted(o.files.size(), "recording"), o.json,
+                    "steps");
+  std::vector<std::atomic<double>> shares(o.files.size());
+  std::mutex failing;
   std::exception_ptr failure;
   const std::size_t jobs =
       std::min<std::size_t>(o.jobs == 0 ? std::thread::hardware_concurrency() : o.jobs, o.files.size());
@@ -46,18 +50,19 @@ ExitCode replay(const ReplayOptions& o) {
     settings.threads = o.threads;
     settings.engine = {o.apart, o.anyway, o.engine, makeBroadPhase};
     if (!o.segments.empty()) settings.part.emplace(o.segments.front(), o.segments.back());
-    if (single) settings.progress = [&](std::uint64_t step, std::uint64_t of) { progress.show(step, of); };
+    settings.progress = [&, i](std::uint64_t step, std::uint64_t of) {
+      if (single) return progress.show(step, of);
+      shares[i] = of > 0 ? static_cast<double>(step) / static_cast<double>(of) : 0.0;
+      progress.showShare(std::accumulate(shares.begin(), shares.end(), 0.0) / static_cast<double>(shares.size()));
+    };
     try {
       reports[i] = recorder::replayRecording(o.files[i], settings);
     } catch (...) {
-      const std::lock_guard lock(drawing);
+      const std::lock_guard lock(failing);
       failure = std::current_exception();
       reports[i].path = o.files[i];
       reports[i].error = "failed inside";
     }
-    const std::lock_guard lock(drawing);
-    ++done;
-    if (!single) progress.show(done, o.files.size());
   });
   writeJunit(o.junit, "calot replay", reports);
   if (failure) std::rethrow_exception(failure);

@@ -197,6 +197,7 @@ class Terminal(program.ProgramTest):
     def test_progress_begins_before_the_work_and_is_taken_away(self):
         longer = {
             "assess several": ("assess", *sorted(self.folder.glob("*.h5")), "--cohort", self.path("own.db")),
+            "replay several": ("replay", *sorted(self.folder.glob("*.h5")), "--jobs", 2),
             "norm create": ("norm", "create", self.database, "again", "--by", "test", "--rule", "at-least:1", "--groups", "skilled,unskilled",
                             "--better", "skilled", "--fixed", "path-length left<=200", *OF_PERFORMERS),
             "regrade": ("regrade", self.database),
