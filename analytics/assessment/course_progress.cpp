@@ -73,9 +73,7 @@ std::string whyNotCounted(const AttemptRow& attempt, const Norm* norm, bool incl
 std::string failedFigure(const GradedFigure& f) {
   const std::string name = figureName(f.mark.checkpoint, f.mark.subject);
   if (!f.value || !f.mark.cut) return fmt::format("{}: {}", name, f.missing);
-  const auto number = [&](double si) {
-    return figureNumber(findCheckpoint(f.mark.checkpoint), si * f.displayFactor);
-  };
+  const auto number = [&](double si) { return figureNumber(findCheckpoint(f.mark.checkpoint), si * f.displayFactor); };
   return fmt::format("{} {}{}, {} {}", name, number(*f.value), f.unit == "1" ? "" : " " + f.unit,
                      f.mark.direction == Direction::lower ? "at most" : "at least", number(*f.mark.cut));
 }

@@ -190,6 +190,7 @@ void choose(CourseProgress& progress, const CourseOptions& o) {
 }
 
 void showCourse(const CourseOptions& o) {
+  Progress progressLine("Reading the course's attempts", o.json);
   const std::filesystem::path file = findAsset(o.course, "curricula", "course");
   const analytics::Course course = analytics::readCourse(file);
   analytics::refuseUnsound(o.database);

@@ -184,11 +184,12 @@ QString CheckpointTableModel::toolTip(int row, int column) const {
   const analytics::CheckpointValue& shown = value(row);
   if (const FigureStanding* place = standing(row); column == normColumn && place != nullptr) {
     QString tip = QString::fromStdString(place->explanation).trimmed();
-    if (place->cut) tip += QString("\nCut: %1").arg(numberText(*place->cut));
+    const auto number = [of = analytics::definitionOf(shown)](double value) { return numberText(value, of); };
+    if (place->cut) tip += QString("\nPass mark: %1").arg(number(*place->cut));
     if (place->band)
       tip += QString("\nCompetent members: a tenth below %1, half between %2 and %3, median %4, a tenth above %5")
-                 .arg(numberText(place->band->p10), numberText(place->band->p25), numberText(place->band->p75),
-                      numberText(place->band->p50), numberText(place->band->p90));
+                 .arg(number(place->band->p10), number(place->band->p25), number(place->band->p75),
+                      number(place->band->p50), number(place->band->p90));
     return tip;
   }
   if (const analytics::ValueInterval* found = interval(row); column == intervalColumn && found != nullptr)

@@ -99,6 +99,7 @@ Comparison compare(const std::vector<AttemptRow>& attempts, const std::vector<At
       if (unit == nullptr || *unit != value->unit) {
         const DisplayedValue shown = scaleOf(*value);
         result.unit = shown.unit.toStdString();
+        result.definition = analytics::definitionOf(*value);
         factor = shown.number;
         unit = &value->unit;
       }
@@ -145,10 +146,10 @@ std::optional<analytics::Drawing> drawComparison(const Comparison& comparison, c
   plot.point = [&](std::size_t g, std::size_t i) -> analytics::BoxPlot::Point {
     const ComparisonPoint& p = comparison.group[g].point[i];
     const QString unit = QString::fromStdString(comparison.unit);
-    return {
-        p.attempt,
-        comparison.group[g].name + ": " + (numberText(p.value) + ' ' + unit).trimmed().toStdString() + '\n' + p.attempt,
-        p.synthetic};
+    return {p.attempt,
+            comparison.group[g].name + ": " +
+                (numberText(p.value, comparison.definition) + ' ' + unit).trimmed().toStdString() + '\n' + p.attempt,
+            p.synthetic};
   };
   return analytics::drawBoxPlot(plot);
 }
@@ -197,6 +198,7 @@ TraineeHistory historyOf(const std::vector<AttemptRow>& attempts, const std::vec
     if (at == found.end() || at->second->version < newest) continue;
     newest = at->second->version;
     scale = scaleOf(*at->second);
+    history.definition = analytics::definitionOf(*at->second);
   }
   history.unit = scale.unit.toStdString();
   std::vector<double> x, y;
@@ -247,10 +249,10 @@ std::optional<analytics::Drawing> drawTraineeHistory(const TraineeHistory& histo
     const HistoryAttempt& entry = history.attempts[i];
     plot.synthetic = plot.synthetic || entry.attempt->synthetic;
     if (!entry.value) continue;
-    const QString text =
-        QString("Attempt %1, %2: %3 %4")
-            .arg(i + 1)
-            .arg(startText(entry.attempt->startUtc), numberText(*entry.value), QString::fromStdString(history.unit));
+    const QString text = QString("Attempt %1, %2: %3 %4")
+                             .arg(i + 1)
+                             .arg(startText(entry.attempt->startUtc), numberText(*entry.value, history.definition),
+                                  QString::fromStdString(history.unit));
     plot.values.push_back(
         {static_cast<double>(i + 1), *entry.value, !entry.why.empty(), entry.attempt->uuid, text.toStdString()});
   }

@@ -44,10 +44,11 @@ struct ComparisonGroup {
 };
 
 struct Comparison {
-  std::vector<ComparisonGroup> group;                ///< by name
-  std::string unit;                                  ///< displayed one
-  bool synthetic = false;                            ///< at least one point was made by a performer
-  int shown = 0;                                     ///< attempts with a point
+  std::vector<ComparisonGroup> group;                           ///< by name
+  std::string unit;                                             ///< displayed one
+  const analytics::CheckpointDefinition* definition = nullptr;  ///< of the figure; null: not known
+  bool synthetic = false;                                       ///< at least one point was made by a performer
+  int shown = 0;                                                ///< attempts with a point
   std::vector<std::pair<std::string, int>> leftOut;  ///< reasons in the order in which they are asked, and attempts
 };
 
@@ -82,6 +83,7 @@ struct HistoryAttempt {
 struct TraineeHistory {
   std::vector<HistoryAttempt> attempts;  ///< of one comparability key, by start
   std::string unit;
+  const analytics::CheckpointDefinition* definition = nullptr;  ///< of the figure; null: not known
   /// Over the number of the attempt, from 1, of those with a value: a - b / x.
   analytics::Expected<analytics::LearningCurve> curve = analytics::NoResult{"not computed"};
   std::optional<double> cut;  ///< of the norm of this key, if there is one; display unit

@@ -205,7 +205,8 @@ void TraineePage::fillTasks(const Trainee& trainee, std::size_t figure, const st
     QString first = "none", last = "none";
     for (const HistoryAttempt& entry : history.attempts) {
       if (!entry.value) continue;
-      const QString text = (numberText(*entry.value) + ' ' + QString::fromStdString(history.unit)).trimmed();
+      const QString text =
+          (numberText(*entry.value, history.definition) + ' ' + QString::fromStdString(history.unit)).trimmed();
       if (first == "none") first = text;
       last = text;
     }
@@ -235,7 +236,9 @@ void TraineePage::fillTable(const TraineeHistory& history) {
   for (int row = 0; row < table_->rowCount(); ++row) {
     const HistoryAttempt& entry = history.attempts[static_cast<std::size_t>(row)];
     const Badge badge = badgeOf(*entry.attempt);
-    const QString value = entry.value ? numberText(*entry.value) + ' ' + QString::fromStdString(history.unit) : "none";
+    const QString value =
+        entry.value ? numberText(*entry.value, history.definition) + ' ' + QString::fromStdString(history.unit)
+                    : "none";
     const QStringList texts{
         QString::number(row + 1),
         startText(entry.attempt->startUtc),
