@@ -28,6 +28,7 @@
 #include "analytics/checkpoints/checkpoint.h"
 #include "analytics/cohort/blinding.h"
 #include "analytics/cohort/cohort_database.h"
+#include "analytics/report/key_figures.h"
 #include "apps/calot-dashboard/assess_program.h"
 #include "gui/attempt/long_work.h"
 #include "gui/attempt/widget_parts.h"

@@ -7,6 +7,7 @@
 #include <QLocale>
 
 #include "analytics/checkpoints/checkpoint.h"
+#include "gui/attempt/figure_text.h"
 #include "gui/trainer/scenes_page.h"
 #include "tests/recorder/support/small_scene.h"
 
