@@ -107,9 +107,9 @@ constexpr std::array verdicts{Verdict::verified, Verdict::diverged, Verdict::dam
 
 AttemptsPage::AttemptsPage()
     : search_(parts::named("search", new QLineEdit)),
-      which_(parts::named("which", new QComboBox)),
-      verdict_(parts::named("verdict", new QComboBox)),
-      operators_(parts::named("operators", new QComboBox)),
+      which_(parts::choice("which", 9)),
+      verdict_(parts::choice("verdict", 9)),
+      operators_(parts::choice("operators", 9)),
       tag_(parts::choice("tag", 8)),
       count_(parts::named("count", new QLabel)),
       table_(makeTable(filter_, "attempts", "Attempts")),
@@ -150,7 +150,7 @@ QLayout* AttemptsPage::buildFilters() {
   search_->setAccessibleName("Search attempts");
   search_->setPlaceholderText("Search (Ctrl+F): participant, profile, group, scene, date …");
   search_->setClearButtonEnabled(true);
-  which_->addItems({"Every attempt", "Latest of each person"});
+  which_->addItems({"Every attempt", "Latest of each"});
   which_->setAccessibleName("Which attempts");
   verdict_->addItem("All verdicts");
   for (const Verdict verdict : verdicts) verdict_->addItem(badgeText(verdict));

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <csignal>
 #include <fstream>
 #include <memory>
 #include <new>
@@ -80,10 +81,14 @@ std::optional<std::string> resultOf(const std::vector<std::byte>& bytes) {
   throw Error(answer.kind, Where{answer.file, answer.place}, answer.fault, std::move(answer.remedies));
 }
 
-/// Limits this process to that many bytes more than it has now, and to no image of its memory.
-void limitMemory(std::size_t bytes) {
+/// Limits this process to that much of the processor's time, to that many bytes more than it has now, and to no image
+/// of its memory.
+void limitProcess(std::chrono::seconds time, std::size_t bytes) {
   const rlimit noCore{0, 0};
   ::setrlimit(RLIMIT_CORE, &noCore);
+  const auto seconds = static_cast<rlim_t>(time.count());
+  const rlimit processor{seconds, seconds + 5};
+  ::setrlimit(RLIMIT_CPU, &processor);
   std::uint64_t pages = 0;
   std::ifstream("/proc/self/statm") >> pages;
   if (pages == 0) return;
@@ -93,11 +98,12 @@ void limitMemory(std::size_t bytes) {
 }
 
 struct Request {
-  std::int64_t seconds = 0;
+  std::int64_t seconds = 0, wall = 0;
   std::uint64_t memory = 0;
   std::string file;
   static void fields(auto& self, auto& visit) {
     visit("seconds", self.seconds);
+    visit("wall", self.wall);
     visit("memory", self.memory);
     visit("file", self.file);
   }
@@ -112,7 +118,8 @@ void serve(const Channel& parent, const GuardProcesses::Task& task) {
   Request request;
   while (const auto bytes = parent.receiveMessage()) {
     if (!unpack({reinterpret_cast<const char*>(bytes->data()), bytes->size()}, request)) return;
-    const GuardLimits limits{std::chrono::seconds(request.seconds), static_cast<std::size_t>(request.memory)};
+    const GuardLimits limits{std::chrono::seconds(request.seconds), static_cast<std::size_t>(request.memory),
+                             std::chrono::seconds(request.wall)};
     const std::string answer = answerOf(
         request.file,
         [&] {
@@ -146,6 +153,7 @@ Shared& shared() {
 GuardLimits readingLimits(const std::filesystem::path& file) {
   GuardLimits limits;
   limits.time = std::chrono::seconds(60 + std::min<std::uint64_t>(sizeOfFile(file) / mebibyte, 3600));
+  limits.wall = 20 * limits.time;
   return limits;
 }
 
@@ -158,23 +166,26 @@ std::string runGuarded(const std::string& what, const std::function<std::string(
   // No other thread is inside HDF5 while the process is copied: the child may use it.
   ChildProcess child(
       [&](const Channel& parent) {
-        limitMemory(limits.memory);
+        limitProcess(limits.time, limits.memory);
         const std::string answer = answerOf(what, task, tooLarge);
         static_cast<void>(parent.send(std::as_bytes(std::span(answer))));
       },
       &hdf5::processLock());
   std::vector<std::byte> answer;
-  const auto received = child.channel().receiveRest(answer, std::chrono::steady_clock::now() + limits.time);
+  const auto received = child.channel().receiveRest(answer, std::chrono::steady_clock::now() + limits.wall);
   if (received == Channel::Received::late) {
     child.end(std::chrono::milliseconds(0));
-    throw Error(
-        ErrorKind::damaged, Where{what},
-        fmt::format("reading it took longer than {} s; the file is damaged or not a recording", limits.time.count()));
+    throw Error(ErrorKind::failure, Where{what},
+                fmt::format("was not read within {} s: is its disk busy, or the machine?", limits.wall.count()));
   }
   const ProcessEnd end = child.end(std::chrono::seconds(5));  // unmapping what it read takes a while
   if (!end.signalled) {
     if (std::optional<std::string> result = resultOf(answer)) return std::move(*result);
   }
+  if (end.signalled && end.number == SIGXCPU)
+    throw Error(ErrorKind::damaged, Where{what},
+                fmt::format("reading it took more than {} s of the processor; the file is damaged or not a recording",
+                            limits.time.count()));
   throw Error(ErrorKind::damaged, Where{what},
               fmt::format("the reading library failed on it (signal {}); the file is damaged or not a recording",
                           end.signalled ? end.number : 0));
@@ -206,7 +217,7 @@ std::string GuardProcesses::run(const std::string& file, const GuardLimits& limi
     }
   }
   if (process) {
-    const std::string request = packed(Request{limits.time.count(), limits.memory, file});
+    const std::string request = packed(Request{limits.time.count(), limits.wall.count(), limits.memory, file});
     std::optional<std::vector<std::byte>> answer;
     if (process->channel().sendMessage(std::as_bytes(std::span(request)))) answer = process->channel().receiveMessage();
     {

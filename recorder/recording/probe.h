@@ -38,16 +38,18 @@ class ProbeProcesses {
 };
 
 struct GuardLimits {
-  std::chrono::seconds time{600};
+  std::chrono::seconds time{600};              ///< of the processor: a busy machine makes no file a damaged one
   std::size_t memory = std::size_t{1} << 30U;  ///< beyond what its parent holds (bytes)
+  std::chrono::seconds wall = 20 * time;       ///< after which nobody waits any longer
 };
 
 /// For reading a recording of this size from front to back: a minute, and a second for each of its megabytes.
 GuardLimits readingLimits(const std::filesystem::path& file);
 
 /// Runs a task in a child process and returns what it returned. An Error that the task throws is thrown here again;
-/// another exception becomes an Error of kind failure. If the child crashes, takes longer than the limit (it is killed
-/// then) or needs more memory, an Error of kind damaged says which, naming `what` (a file).
+/// another exception becomes an Error of kind failure. If the child crashes, takes more of the processor's time than
+/// the limit or needs more memory, an Error of kind damaged says which, naming `what` (a file); if it does not answer
+/// for want of a disk or a processor, one of kind failure does.
 std::string runGuarded(const std::string& what, const std::function<std::string()>& task,
                        const GuardLimits& limits = {});
 

@@ -332,7 +332,15 @@ TEST(Guarded, ACrashOrAHangBecomesAnError) {
     return "";
   });
   becomes(ErrorKind::damaged, "1 s", []() -> std::string {
-    for (;;) ::pause();
+    for (volatile unsigned long turns = 0;;) turns = turns + 1;
+  });
+  expectFault(ErrorKind::failure, "file", {"2 s"}, [] {  // no fault of the file's
+    runGuarded(
+        "file",
+        []() -> std::string {
+          for (;;) ::pause();
+        },
+        GuardLimits{std::chrono::seconds(1), std::size_t{1} << 30U, std::chrono::seconds(2)});
   });
   becomes(ErrorKind::undecided, "x", []() -> std::string { throw Error(ErrorKind::undecided, "x"); });
   becomes(ErrorKind::damaged, "MiB", []() -> std::string { throw std::bad_alloc(); });
@@ -347,7 +355,7 @@ TEST(Guarded, TheMessageSaysWhichLimitItWas) {
   };
   expectFault(ErrorKind::damaged, "file", {"1 s"}, [&] {
     guarded([]() -> std::string {
-      for (;;) ::pause();
+      for (volatile unsigned long turns = 0;;) turns = turns + 1;
     });
   });
 #ifndef CALOT_SANITIZED  // a sanitizer's allocator has its memory beforehand

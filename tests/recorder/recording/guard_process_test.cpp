@@ -20,12 +20,14 @@
 namespace calot::recorder {
 namespace {
 
-constexpr GuardLimits short_{std::chrono::seconds(1), std::size_t{256} << 20U};
+constexpr GuardLimits short_{std::chrono::seconds(1), std::size_t{256} << 20U, std::chrono::seconds(3)};
 
 std::string doAsNamed(const std::string& file) {
   if (file == "crash") ::raise(SIGKILL);
   if (file == "hang")
     for (;;) ::pause();
+  if (file == "spin")
+    for (volatile unsigned long turns = 0;;) turns = turns + 1;
   if (file == "swell") return std::string(std::size_t{512} << 20U, 'a');
   if (file == "damaged") throw Error(ErrorKind::damaged, Where{"r.h5", "/ticks"}, "cut off", {Remedy::recover});
   if (file == "large") return std::string(1000000, 'a');
@@ -45,7 +47,8 @@ TEST(GuardProcesses, AnswerAsRunGuardedDoes) {
   GuardProcesses processes(doAsNamed, 1);
   EXPECT_EQ(outcome(processes, "one.h5"), "read one.h5");
   expectNames(outcome(processes, "crash"), {"crash: ", "signal 9"});
-  expectNames(outcome(processes, "hang"), {"hang: ", "1 s"});
+  expectNames(outcome(processes, "spin"), {"spin: ", "1 s"});
+  expectNames(outcome(processes, "hang"), {"hang: ", "3 s"});
 #ifndef CALOT_SANITIZED  // a sanitizer's allocator has its memory beforehand
   expectNames(outcome(processes, "swell"), {"swell: ", "256 MiB"});
 #endif
