@@ -23,7 +23,7 @@ RecordingView::RecordingView(Parts with)
     : reads_(with.timeline),
       picture_(new ScenePictureWidget(2)),
       free_(new FreeView),
-      toggle_(parts::named("free-view-toggle", new QPushButton("Free vie&w"))),
+      toggle_(parts::named("free-view-toggle", new QPushButton("Free view"))),
       timeline_(new TimelineBar),
       replay_(std::make_unique<Replay>([picture = picture_, free = free_](std::shared_ptr<const SceneView> view) {
         free->follow(view);
