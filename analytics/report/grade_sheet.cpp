@@ -138,6 +138,7 @@ std::vector<std::string> gaps(const Grade& g) {
     if (f.value && f.passed && !f.rank) add(f, "no percentile, " + f.rank.reason());
   }
   std::vector<std::string> lines;
+  lines.reserve(namesOf.size());
   for (const auto& [reason, names] : namesOf) lines.push_back(fmt::format("{}: {}.", names, reason));
   return lines;
 }

@@ -72,15 +72,21 @@ Drawing drawKeyFigures(const std::vector<KeyFigure>& figures, double width, std:
   const double column = (width - margin * static_cast<double>(columns + 1)) / static_cast<double>(columns);
   for (std::size_t i = 0; i < figures.size(); ++i) {
     const KeyFigure& figure = figures[i];
-    const double left = margin + static_cast<double>(i / rows) * (column + 2.0 * margin),
+    const std::size_t across = i / rows;
+    const double left = margin + static_cast<double>(across) * (column + 2.0 * margin),
                  right = left + column - margin;
     const double top = margin + rowHeight * static_cast<double>(i % rows);
     std::string words = figure.number();
     if (const std::string against = figure.against(); !against.empty()) words += " (" + against + ")";
     words = cutTo(words, static_cast<std::size_t>(0.75 * column / wordLetter));
     const double space = column - wordLetter * static_cast<double>(words.size()) - 2.0 * margin;
+    // A long title is cut before hand or organ.
+    const std::string tail = figure.value.subject.empty() ? "" : ", " + figure.value.subject;
+    const auto letters = static_cast<std::size_t>(std::max(8.0, space / titleLetter));
     drawing.text(Ink::label, left, top + textLine,
-                 cutTo(figure.title, std::max<std::size_t>(8, static_cast<std::size_t>(space / titleLetter))));
+                 cutTo(figure.title.substr(0, figure.title.size() - tail.size()),
+                       std::max<std::size_t>(8, letters - std::min(letters, tail.size()))) +
+                     tail);
     drawing.text(Ink::tick, right, top + textLine, words);
     const double middle = top + barTop + barHeight / 2.0;
     const double value = std::max(0.0, figure.value.value.value_or(0.0)),

@@ -40,7 +40,13 @@ std::string verdictOf(const analytics::AttemptRow& attempt, const analytics::Gra
   constexpr const char* ofVerdict[]{"", " The re-simulation differs: no figure can be relied on.",
                                     " The recording is damaged: no figure can be relied on.", notVerified, notVerified};
   const std::string text = ending(attempt) + ofVerdict[static_cast<std::size_t>(attempt.verification.verdict)];
-  if (grade != nullptr) return grade->verdict + " " + text;
+  if (grade != nullptr) {
+    std::string decision = grade->verdict;
+    // It ends with the sentence on critical errors, which is among the errors here.
+    if (!grade->safety.empty() && decision.ends_with(' ' + grade->safety.front()))
+      decision.resize(decision.size() - grade->safety.front().size() - 1);
+    return decision + " " + text;
+  }
   return text + " It is not held against a norm.";
 }
 

@@ -169,6 +169,10 @@ TEST(NextGoal, isTheFirstFigureThatCountsAndFellShort) {
   grade.figures[0].mark.reason = "no interval: fixed by A. Instructor";
   expectHolds(gui::nextGoal(grade).text, {"at most 0.5000 (now 2)"});
   grade.criticalErrors = 1.0;
+  grade.safety = {"Not safe: cystic duct left open."};
+  grade.verdict = "Not passed. " + grade.safety.front();
+  EXPECT_EQ(gui::summaryOf(completed(), {}, &grade).verdict.find(grade.safety.front()), std::string::npos)
+      << "the errors say it";
   EXPECT_EQ(gui::nextGoal(grade).checkpoint, "critical-errors") << "first of all";
   grade.criticalErrors = 0.0;
   grade.figures.erase(grade.figures.begin(), grade.figures.begin() + 2);
