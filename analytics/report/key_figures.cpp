@@ -73,8 +73,7 @@ Drawing drawKeyFigures(const std::vector<KeyFigure>& figures, double width, std:
   for (std::size_t i = 0; i < figures.size(); ++i) {
     const KeyFigure& figure = figures[i];
     const std::size_t across = i / rows;
-    const double left = margin + static_cast<double>(across) * (column + 2.0 * margin),
-                 right = left + column - margin;
+    const double left = margin + static_cast<double>(across) * (column + 2.0 * margin), right = left + column - margin;
     const double top = margin + rowHeight * static_cast<double>(i % rows);
     std::string words = figure.number();
     if (const std::string against = figure.against(); !against.empty()) words += " (" + against + ")";
