@@ -8,6 +8,7 @@
 #include "gui/attempt/figure_text.h"
 #include "gui/dashboard/plot_view.h"
 #include "gui/words/attempt_summary.h"
+#include "recorder/base/errors.h"
 
 namespace calot::gui {
 
