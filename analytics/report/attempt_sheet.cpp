@@ -41,7 +41,7 @@ std::string who(const AttemptRow& attempt) {
 
 /// The verdict's sentences; minor errors by their number alone.
 void addVerdict(ReportDocument& document, const AttemptSheet& sheet) {
-  if (sheet.grade != nullptr) document.add(sheet.grade->verdict);
+  if (sheet.grade != nullptr) document.add(cutTo(sheet.grade->verdict, longest));
   for (const auto& [severity, name] : errorCheckpoints()) {
     const CheckpointValue* const value = find(sheet.values, name);
     if (severity == Severity::critical && sheet.grade != nullptr && sheet.grade->criticalErrors.value_or(0.0) > 0.0)
@@ -81,16 +81,6 @@ std::string localTime(const std::string& utc) {
   localtime_r(&seconds, &time);
   return fmt::format("{:04}-{:02}-{:02} {:02}:{:02}", time.tm_year + 1900, time.tm_mon + 1, time.tm_mday, time.tm_hour,
                      time.tm_min);
-}
-
-std::vector<std::pair<std::string, std::string>> figuresWithMoments(const std::vector<CheckpointValue>& values,
-                                                                    const Grade* grade) {
-  if (grade != nullptr) return weakFigures(*grade);
-  std::vector<std::pair<std::string, std::string>> figures;
-  for (const CheckpointValue& value : values) {
-    if (value.value && countsByDefault(value.name)) figures.emplace_back(value.name, value.subject);
-  }
-  return figures;
 }
 
 std::vector<SheetMoment> worstMoments(const std::vector<ErrorLine>& errors, const std::vector<FigureMoments>& figures,

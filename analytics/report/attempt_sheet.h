@@ -26,17 +26,13 @@ inline constexpr std::size_t maxSheetMoments = 3;
 std::vector<SheetMoment> worstMoments(const std::vector<ErrorLine>& errors, const std::vector<FigureMoments>& figures,
                                       const Grade* grade);
 
-/// The figures of an attempt whose moments a sheet needs: by the grade, or those that count.
-std::vector<std::pair<std::string, std::string>> figuresWithMoments(const std::vector<CheckpointValue>& values,
-                                                                    const Grade* grade);
-
 struct AttemptSheet {
   AttemptRow attempt;
   std::vector<CheckpointValue> values;
   const Grade* grade = nullptr;   ///< null: the attempt is not held against a norm
   std::vector<ErrorLine> errors;  ///< the gravest first
   std::vector<Picture> pictures;  ///< of worstMoments()
-  std::string picturesMissing;    ///< why there are none, or empty
+  std::string picturesMissing;    ///< the reason for their absence, or empty
   std::string recording = {};     ///< how the sheet names the recording, for links to moments; empty: none
   std::string howToDraw = {};     ///< a sentence on how the program draws a moment of it; may be empty
 };

@@ -26,7 +26,7 @@ struct KeyFigure {
   bool atLeast = false;        ///< the mark is the least, else the most
   std::optional<bool> passed;  ///< by a norm
 
-  [[nodiscard]] std::string number() const;   ///< "206.9 s", or why there is none
+  [[nodiscard]] std::string number() const;   ///< "206.9 s"; without a value the reason
   [[nodiscard]] std::string against() const;  ///< "falls short of at most 170 s"; empty without a mark
 };
 

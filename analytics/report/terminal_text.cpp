@@ -17,7 +17,7 @@ constexpr std::size_t narrowest = 10, fileColumns = 120;
 /// On a terminal, texts of more columns than the first are not given fewer than the second.
 constexpr std::size_t prose = 40, readable = 24;
 
-/// The slot in which a stream keeps its terminal's columns; 0: there is none.
+/// The slot in which a stream keeps its terminal's columns; 0 without a terminal.
 int columnsIndex() {
   static const int index = std::ios_base::xalloc();
   return index;
