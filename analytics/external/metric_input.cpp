@@ -3,7 +3,6 @@
 #include "analytics/external/metric_input.h"
 
 #include <fmt/format.h>
-#include <stdlib.h>  // mkdtemp
 #include <cassert>
 #include <cerrno>
 #include <fstream>
@@ -120,20 +119,6 @@ void InputColumns::dropRows() {
 
 void InputColumns::close() {
   for (NpyColumn& c : columns_) c.close();
-}
-
-TemporaryFolder::TemporaryFolder() {
-  std::error_code fault;
-  const std::filesystem::path place = std::filesystem::temp_directory_path(fault);
-  std::string name = ((fault ? std::filesystem::path(".") : place) / "calot-metric-XXXXXX").string();
-  if (mkdtemp(name.data()) == nullptr)
-    throw Error(ErrorKind::failure, Where{name}, "cannot be made: " + std::generic_category().message(errno));
-  path_ = name;
-}
-
-TemporaryFolder::~TemporaryFolder() {
-  std::error_code ignored;
-  if (!path_.empty()) std::filesystem::remove_all(path_, ignored);
 }
 
 namespace {
@@ -270,9 +255,9 @@ void MetricInput::onEnd(recorder::Outcome outcome) {
   writeDescription(folder_.path(), attempt, h.structures(), {&results_, &samples_, &events_});
 }
 
-TemporaryFolder writeMetricInput(const recorder::TrackedMotion& motion, recorder::Outcome outcome,
+recorder::TemporaryFolder writeMetricInput(const recorder::TrackedMotion& motion, recorder::Outcome outcome,
                                  const std::string& handedness, const std::string& task) {
-  TemporaryFolder folder;
+  recorder::TemporaryFolder folder;
   InputColumns samples(folder.path(), "samples");
   for (std::size_t i = 0; i < motion.time.size(); ++i) {
     samples.beginRow();

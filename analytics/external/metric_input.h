@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "analytics/checkpoints/definition.h"
+#include "recorder/base/files.h"
 #include "recorder/base/identity.h"
 #include "recorder/engine/observer.h"
 #include "recorder/sources/tracked_motion.h"
@@ -101,21 +102,6 @@ class InputColumns {
   bool made_ = false;
 };
 
-/// A new folder that its owner alone may enter, removed with all that is in it.
-class TemporaryFolder {
- public:
-  /// Below TMPDIR. @throws Error (failure).
-  TemporaryFolder();
-  TemporaryFolder(TemporaryFolder&& other) noexcept : path_(std::exchange(other.path_, {})) {}
-  TemporaryFolder& operator=(TemporaryFolder&&) = delete;
-  ~TemporaryFolder();
-
-  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
-
 /// The observer that writes them: results once a step, samples and forces once a tick, events as they are judged. It
 /// says nothing of who acted: a metric can't go by participant or group.
 class MetricInput final : public recorder::Observer {
@@ -131,7 +117,7 @@ class MetricInput final : public recorder::Observer {
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_.path(); }
 
  private:
-  TemporaryFolder folder_;
+  recorder::TemporaryFolder folder_;
   recorder::AttemptHeader header_;
   Judge judge_;
   InputColumns results_, samples_, events_;
@@ -140,7 +126,7 @@ class MetricInput final : public recorder::Observer {
 
 /// The same of motion without a scene: its rows are the samples.
 /// @param outcome as declared. @param handedness "right", "left", "unknown"
-TemporaryFolder writeMetricInput(const recorder::TrackedMotion& motion, recorder::Outcome outcome,
+recorder::TemporaryFolder writeMetricInput(const recorder::TrackedMotion& motion, recorder::Outcome outcome,
                                  const std::string& handedness, const std::string& task);
 
 }  // namespace calot::analytics

@@ -250,7 +250,7 @@ void passOn(const ScriptPrint& print, const std::string& file, const std::string
 /// Parses the script's output. @throws Error (damaged) where it failed.
 ScriptJson run(const std::string& file, const std::vector<std::byte>& text, const ScriptLimits& limits,
                const ScriptPrint& print, const std::filesystem::path* input) {
-  const TemporaryFolder folder;
+  const recorder::TemporaryFolder folder;
   const std::filesystem::path script = folder.path() / "metric.py", runner = folder.path() / "run_metric.py";
   writeBytes(script, text.data(), text.size());
   writeBytes(runner, metricRunner().data(), metricRunner().size());

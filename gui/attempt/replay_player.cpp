@@ -288,6 +288,10 @@ AttemptTrack readTrack(recorder::Recording& recording,
   AttemptTrack track;
   track.seconds = recording.seconds();
   const recorder::AttemptHeader& header = recording.header();
+  track.attempt = header.attempt;
+  track.parent = header.parent;
+  if (!track.parent.empty())
+    track.forkTime = static_cast<double>(header.forkStep + 1) * header.tickSeconds * header.ticksPerStep;
   if (header.purpose == "golden") {
     track.none =
         "A golden recording holds no results of its steps: there is no timeline. The replay shows it all the same.";

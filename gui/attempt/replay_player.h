@@ -135,6 +135,8 @@ struct HandTrace {
 };
 
 struct AttemptTrack {
+  std::string attempt, parent;  ///< uuids; parent empty unless it is a branch
+  double forkTime = 0.0;        ///< end of the last step that a branch shares with its parent (s)
   double seconds = 0.0;
   double bin = 0.0;  ///< length of a trace's bin (s); the last one may be shorter
   std::array<HandTrace, handCount> hand;

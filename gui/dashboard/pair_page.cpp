@@ -2,12 +2,9 @@
 #include "gui/dashboard/pair_page.h"
 
 #include <algorithm>
-#include <cmath>
-#include <QSlider>
-#include <QStyle>
-#include <QToolButton>
 
 #include "gui/attempt/figure_text.h"
+#include "gui/attempt/stretch_figures.h"
 #include "gui/words/event_words.h"
 
 namespace calot::gui {
@@ -21,8 +18,8 @@ QString attemptText(const AttemptLines& lines, int row) {
            lines.cell(row, AttemptLines::startColumn), lines.cell(row, AttemptLines::verificationColumn));
 }
 
-constexpr int tickMilliseconds = 33;
-constexpr double farAway = 0.25;  // s (times speed) that a side may be off before it is sent to its place
+/// Of the choice of moments to align by; others are phases.
+constexpr int byParting = -2;
 
 }  // namespace
 
@@ -82,21 +79,6 @@ void PairSide::openChosen() {
   }
 }
 
-PairAlignment::PairAlignment(std::array<double, 2> seconds, std::array<double, 2> offsets)
-    : seconds_(seconds),
-      offsets_(offsets),
-      begin_(std::min(-offsets[0], -offsets[1])),
-      end_(std::max(seconds[0] - offsets[0], seconds[1] - offsets[1])) {}
-
-double PairAlignment::own(std::size_t which, double common) const {
-  return std::clamp(common + offsets_[which], 0.0, seconds_[which]);
-}
-
-bool PairAlignment::runs(std::size_t which, double common) const {
-  const double time = common + offsets_[which];
-  return time >= 0.0 && time < seconds_[which];
-}
-
 std::optional<double> firstOf(const AttemptTrack& track, Phase phase) {
   const auto at =
       std::find_if(track.phases.begin(), track.phases.end(), [&](const TrackPhase& p) { return p.phase == phase; });
@@ -114,51 +96,46 @@ std::vector<Phase> commonPhases(const AttemptTrack& a, const AttemptTrack& b) {
 
 PairPage::PairPage()
     : sides_{new PairSide("left"), new PairSide("right")},
+      pair_(std::make_unique<PairReplay>(sides_[0]->replay(), sides_[1]->replay())),
       traces_(new TraceChart("pair-traces", "Both attempts: left solid, right dashed")),
       trace_(parts::choice("pair-trace", 10)),
       from_(parts::choice("align", 13)),
-      speed_(speedChoice("pair-speed", "Speed of both")),
-      play_(transportButton("pair-play", "Play or pause both (Space)", QStyle::SP_MediaPlay)),
-      scrub_(scrubBar("pair-scrub", "Moment of both")),
-      time_(parts::named("pair-time", new QLabel)) {
+      figures_(parts::named("pair-figures", new QLabel)) {
   traces_->setMinimumHeight(theme::inType(96));
   trace_->addItems(
       {"force, left hand (N)", "force, right hand (N)", "speed, left tip (mm/s)", "speed, right tip (mm/s)"});
-  play_->setAccessibleName("Play or pause both");
+  figures_->setTextFormat(Qt::RichText);
+  figures_->setWordWrap(true);
+  figures_->setAccessibleName("Both in figures, from the moment that they are aligned by to the end of the shorter one");
   QBoxLayout* const transport =
-      parts::row({{"&Trace", trace_}, {"In &step from", from_}, play_, {scrub_, 1}, time_, speed_});
-  setLayout(parts::column({{parts::row({{sides_[0], 1}, {sides_[1], 1}}), 1}, traces_, transport}));
+      parts::row({{"&Trace", trace_}, {"In &step from", from_}, {new PairTransport(*pair_), 1}});
+  setLayout(parts::column({{parts::row({{sides_[0], 1}, {sides_[1], 1}}), 1}, traces_, figures_, transport}));
   connect(traces_, &TraceChart::timeChosen, this, [this](double time) {
-    if (alignment_) goTo(alignment_->begin() + time);
+    if (const auto& both = pair_->alignment()) pair_->goTo(both->begin() + time);
   });
   begin_ = sides_[0]->choiceBox();
-  connect(&tick_, &QTimer::timeout, this, [this] { onTick(); });
-  onKey(*this, Qt::Key_Space, [this] { play(!playing_); });
+  onKey(*this, Qt::Key_Space, [this] { pair_->play(!pair_->playing()); });
   for (std::size_t which = 0; which < 2; ++which) {
     connect(sides_[which], &PairSide::changing, this, [this] {
-      play(false);
-      alignment_.reset();
+      pair_->clear();
       traces_->clear();
-      showTime();
+      figures_->clear();
+      from_->setEnabled(false);
     });
     connect(sides_[which], &RecordingView::opened, this, [this] { fillAlignments(); });
     connect(sides_[which], &RecordingView::trackRead, this, [this] { fillAlignments(); });
     connect(&sides_[which]->timeline(), &TimelineBar::timeChosen, this, [this, which](double time) {
-      if (alignment_) goTo(alignment_->common(which, time));
+      if (const auto& both = pair_->alignment()) pair_->goTo(both->common(which, time));
     });
   }
   connect(trace_, &QComboBox::currentIndexChanged, this, [this] { showTraces(); });
   connect(from_, &QComboBox::currentIndexChanged, this, [this] { align(); });
-  connect(play_, &QToolButton::clicked, this, [this] { play(!playing_); });
-  connect(speed_, &QComboBox::currentIndexChanged, this, [this] {
-    for (PairSide* const side : sides_) side->replay().setSpeed(speed_->currentData().toDouble());
-    if (playing_) play(true);
-  });
-  connect(scrub_, &QSlider::valueChanged, this, [this](int value) {
-    if (alignment_)
-      goTo(alignment_->begin() + (alignment_->end() - alignment_->begin()) * static_cast<double>(value) / scrubSteps);
+  connect(pair_.get(), &PairReplay::changed, this, [this] {
+    if (const auto& both = pair_->alignment()) traces_->setPosition(pair_->common() - both->begin());
   });
 }
+
+PairPage::~PairPage() = default;
 
 void PairPage::read() {
   for (PairSide* const side : sides_) side->setDocument(document_);
@@ -166,7 +143,7 @@ void PairPage::read() {
 
 void PairPage::hideEvent(QHideEvent* event) {
   QWidget::hideEvent(event);
-  play(false);
+  pair_->play(false);
 }
 
 void PairPage::setAttempt(std::size_t side, const std::string& uuid) {
@@ -180,7 +157,7 @@ void PairPage::chooseTwo() {
 }
 
 void PairPage::showMiddle() {
-  if (alignment_) goTo(0.5 * (alignment_->begin() + alignment_->end()));
+  if (const auto& both = pair_->alignment()) pair_->goTo(0.5 * (both->begin() + both->end()));
 }
 
 bool PairPage::settled() const { return sides_[0]->settled() && sides_[1]->settled(); }
@@ -189,34 +166,47 @@ void PairPage::fillAlignments() {
   if (!bothOpen()) return;
   {
     const QSignalBlocker quiet(from_);
-    const int before = from_->currentIndex() < 0 ? -1 : from_->currentData().toInt();
+    const QVariant before = from_->currentData();
     from_->clear();
     from_->addItem("their starts", static_cast<int>(Phase::none));
     if (sides_[0]->track() && sides_[1]->track()) {
+      if (partingTime(*sides_[0]->track(), *sides_[1]->track())) from_->insertItem(0, "where they part", byParting);
       for (const Phase phase : commonPhases(*sides_[0]->track(), *sides_[1]->track()))
         from_->addItem(QString::fromStdString(wordFor(phase)), static_cast<int>(phase));
     }
-    from_->setCurrentIndex(std::max(0, from_->findData(before)));
+    from_->setCurrentIndex(std::max(0, from_->findData(from_->itemData(0) == byParting ? byParting : before)));
+    from_->setEnabled(true);
   }
   align();
 }
 
 void PairPage::align() {
   if (!bothOpen() || from_->currentIndex() < 0) return;
-  const auto phase = static_cast<Phase>(from_->currentData().toInt());
+  const int by = from_->currentData().toInt();
   std::array<double, 2> offsets{};
-  for (std::size_t which = 0; which < 2; ++which) {
-    if (phase != Phase::none && sides_[which]->track())
-      offsets[which] = firstOf(*sides_[which]->track(), phase).value_or(0.0);
+  if (sides_[0]->track() && sides_[1]->track()) {
+    if (by == byParting) offsets.fill(partingTime(*sides_[0]->track(), *sides_[1]->track()).value_or(0.0));
+    for (std::size_t which = 0; which < 2 && by != byParting; ++which)
+      offsets[which] = firstOf(*sides_[which]->track(), static_cast<Phase>(by)).value_or(0.0);
   }
-  alignment_.emplace(std::array{replay(0).position().seconds, replay(1).position().seconds}, offsets);
+  pair_->align(offsets);
   showTraces();
-  goTo(0.0);
+  showFigures();
+}
+
+void PairPage::showFigures() {
+  const auto& both = pair_->alignment();
+  if (!both || !sides_[0]->track() || !sides_[1]->track()) return figures_->clear();
+  const double seconds = both->shared();
+  const std::array tracks{&*sides_[0]->track(), &*sides_[1]->track()};
+  figures_->setText(QString("<b>Both, over %1 s from there</b>").arg(numberText(seconds)) +
+                    stretchTable(stretchFigures(tracks, both->offsets(), seconds), {"left", "right"}));
 }
 
 void PairPage::showTraces() {
-  if (!alignment_ || !sides_[0]->track() || !sides_[1]->track()) return;
-  const double length = alignment_->end() - alignment_->begin();
+  const auto& both = pair_->alignment();
+  if (!both || !sides_[0]->track() || !sides_[1]->track()) return;
+  const double length = both->end() - both->begin();
   const int which = trace_->currentIndex();
   const auto hand = static_cast<std::size_t>(which % 2);
   const bool speed = which >= 2;
@@ -227,95 +217,17 @@ void PairPage::showTraces() {
     const AttemptTrack& track = *sides_[side]->track();
     const std::vector<double>& values = speed ? track.hand[hand].speed : track.hand[hand].force;
     for (std::uint64_t i = 0; i < maxBins; ++i) {
-      const double common = alignment_->begin() + (static_cast<double>(i) + 0.5) * bin;
+      const double common = both->begin() + (static_cast<double>(i) + 0.5) * bin;
       double value = 0.0;  // before its begin and behind its end
-      if (alignment_->runs(side, common) && track.bin > 0.0) {
-        const auto at = static_cast<std::size_t>(alignment_->own(side, common) / track.bin);
+      if (both->runs(side, common) && track.bin > 0.0) {
+        const auto at = static_cast<std::size_t>(both->own(side, common) / track.bin);
         if (at < values.size()) value = values[at] * (speed ? millimetresOfMetre : 1.0);
       }
       lines[side].push_back(value);
     }
   }
   traces_->setTraces(length, bin, std::move(lines));
-  traces_->setPosition(common_ - alignment_->begin());
-}
-
-void PairPage::goTo(double common) {
-  if (!alignment_) return;
-  common_ = std::clamp(common, alignment_->begin(), alignment_->end());
-  for (std::size_t which = 0; which < 2; ++which) sides_[which]->replay().seek(alignment_->own(which, common_));
-  if (playing_)
-    play(true);
-  else
-    showTime();
-}
-
-void PairPage::play(bool playing) {
-  playing_ = playing && alignment_;
-  if (playing_ && common_ >= alignment_->end()) {
-    playing_ = false;
-    goTo(alignment_->begin());
-    playing_ = true;
-  }
-  clockBegin_ = std::chrono::steady_clock::now();
-  clockCommon_ = common_;
-  for (std::size_t which = 0; which < 2; ++which) {
-    if (playing_ && alignment_->runs(which, common_))
-      sides_[which]->replay().playFrom(alignment_->own(which, common_));
-    else
-      sides_[which]->replay().pause();
-  }
-  if (playing_)
-    tick_.start(tickMilliseconds);
-  else
-    tick_.stop();
-  showTime();
-}
-
-void PairPage::onTick() {
-  if (!playing_ || !alignment_) return;
-  const double speed = speed_->currentData().toDouble();
-  const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - clockBegin_;
-  common_ = std::min(alignment_->end(), clockCommon_ + speed * passed.count());
-  for (std::size_t which = 0; which < 2; ++which) {
-    Replay& replay = sides_[which]->replay();
-    if (!replay.isOpen()) continue;
-    const bool runs = alignment_->runs(which, common_);
-    const PlayerPosition& at = replay.position();
-    if (runs && !at.playing && at.step + 1 < at.steps) {
-      replay.playFrom(alignment_->own(which, common_));  // it waited for its begin
-    } else if (runs && at.settled && at.time - alignment_->own(which, common_) > farAway * std::max(1.0, speed)) {
-      replay.seek(alignment_->own(which, common_));
-    } else if (!runs && at.playing) {
-      // Pictures are a little late: it stands at its very end, or at its begin.
-      replay.pause();
-      replay.seek(alignment_->own(which, common_));
-    }
-  }
-  if (common_ >= alignment_->end()) {
-    play(false);
-    goTo(alignment_->end());
-  } else {
-    showTime();
-  }
-}
-
-void PairPage::showTime() {
-  play_->setIcon(theme::buttonIcon(playing_ ? QStyle::SP_MediaPause : QStyle::SP_MediaPlay));
-  for (QWidget* widget : std::initializer_list<QWidget*>{play_, scrub_, from_, speed_})
-    widget->setEnabled(alignment_.has_value());
-  if (!alignment_) {
-    time_->setText(QString::fromUtf8("–:––"));
-    return;
-  }
-  const double length = alignment_->end() - alignment_->begin();
-  if (!scrub_->isSliderDown()) {
-    const QSignalBlocker quiet(scrub_);
-    scrub_->setValue(length > 0.0 ? static_cast<int>((common_ - alignment_->begin()) / length * scrubSteps) : 0);
-  }
-  traces_->setPosition(common_ - alignment_->begin());
-  const QString sign = common_ < 0.0 ? QString::fromUtf8("−") : QString();
-  time_->setText(sign + QString::fromStdString(timeText(std::abs(common_)) + " / " + timeText(alignment_->end())));
+  traces_->setPosition(pair_->common() - both->begin());
 }
 
 }  // namespace calot::gui

@@ -2,15 +2,11 @@
 #pragma once
 
 #include <array>
-#include <chrono>
 #include <optional>
-#include <QTimer>
 
+#include "gui/attempt/pair_replay.h"
 #include "gui/dashboard/page_parts.h"
 #include "gui/dashboard/recording_view.h"
-
-class QSlider;
-class QToolButton;
 
 namespace calot::gui {
 
@@ -44,36 +40,18 @@ class PairSide : public RecordingView {
   std::string opened_;  ///< whose recording was opened
 };
 
-/// A common time, 0 at the moment that both are aligned by: a recording's own time is common + offset.
-class PairAlignment {
- public:
-  /// @param seconds lengths of both; @param offsets own times of the moment that they are aligned by
-  PairAlignment(std::array<double, 2> seconds, std::array<double, 2> offsets);
-
-  /// Common times in which at least one of them runs.
-  [[nodiscard]] double begin() const { return begin_; }
-  [[nodiscard]] double end() const { return end_; }
-  /// A recording's own time, clamped: where one has ended its last picture stands.
-  [[nodiscard]] double own(std::size_t which, double common) const;
-  [[nodiscard]] double common(std::size_t which, double own) const { return own - offsets_[which]; }
-  /// True if a recording runs at a common time, rather than waiting for its begin or standing at its end.
-  [[nodiscard]] bool runs(std::size_t which, double common) const;
-
- private:
-  std::array<double, 2> seconds_, offsets_;
-  double begin_, end_;
-};
-
 /// Begin of the first stretch of a phase; none where it was never reached.
 std::optional<double> firstOf(const AttemptTrack& track, Phase phase);
 /// Phases that both have, in the procedure's order.
 std::vector<Phase> commonPhases(const AttemptTrack& a, const AttemptTrack& b);
 
-/// Two recordings side by side in step: an expert's beside a trainee's, from their starts or from a phase on.
+/// Two recordings side by side in step: an expert's beside a trainee's, from their starts or from a phase on; or a branch
+/// beside its parent, from where it left it, with what it did otherwise in figures.
 class PairPage : public CohortPage {
   Q_OBJECT
  public:
   PairPage();
+  ~PairPage() override;
   /// Puts an attempt on one side: 0 left, 1 right.
   void setAttempt(std::size_t side, const std::string& uuid);
   /// If a side is still free: puts the newest attempts on both.
@@ -90,26 +68,15 @@ class PairPage : public CohortPage {
   void read() override;
   void fillAlignments();
   void align();
-  void goTo(double common);
-  void play(bool playing);
-  void onTick();
   void showTraces();
-  void showTime();
+  void showFigures();
   [[nodiscard]] bool bothOpen() const { return sides_[0]->isOpen() && sides_[1]->isOpen(); }
 
   std::array<PairSide*, 2> sides_;
-  std::optional<PairAlignment> alignment_;
-  double common_ = 0.0;
-  bool playing_ = false;
-  std::chrono::steady_clock::time_point clockBegin_;
-  double clockCommon_ = 0.0;
-
+  std::unique_ptr<PairReplay> pair_;
   TraceChart* traces_;
-  QComboBox *trace_, *from_, *speed_;
-  QToolButton* play_;
-  QSlider* scrub_;
-  QLabel* time_;
-  QTimer tick_;
+  QComboBox *trace_, *from_;
+  QLabel* figures_;
 };
 
 }  // namespace calot::gui

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 
 namespace calot::gui {
 namespace {
@@ -19,6 +20,19 @@ constexpr int maxUnderway = 3;
 constexpr std::chrono::milliseconds period(30);  // every third step: some are lost, thirty a second are to stay
 /// A window that is hidden shows nothing; it is tried again so often.
 constexpr std::chrono::milliseconds retryAfter(500);
+
+std::uint64_t occasionsOf(const std::vector<AttemptError>& errors) {
+  std::uint64_t sum = 0;
+  for (const AttemptError& error : errors) sum += error.count;
+  return sum;
+}
+
+/// The gravest of a step's errors, in words.
+analytics::ErrorLine gravestOf(std::span<const JudgedError> found, const SubjectNames& names, double stepSeconds) {
+  ErrorList list;
+  list.add(found);
+  return analytics::linesOf(list.all(), names, stepSeconds).front();
+}
 
 }  // namespace
 
@@ -68,7 +82,10 @@ void AttemptMonitor::onStep(const recorder::StepRecord& record) {
                         hand.cautery,
                         record.samples.back().hand[h].valid,
                         camera.orientation.conjugate() * Vec3(hand.tipSimulated - camera.position),
-                        hand.orientation};
+                        hand.orientation,
+                        hand.contactForce.norm(),
+                        depthOf(h, hand),
+                        std::max(figures_.hand[h].greatestForce, hand.contactForce.norm())};
     figures_.touched = figures_.touched || hand.contacts() != 0 || hand.cautery == Cautery::onTissue;
   }
   for (std::size_t v = 0; v < record.result.vessel.size(); ++v)
@@ -85,10 +102,28 @@ void AttemptMonitor::onStep(const recorder::StepRecord& record) {
   missed_[slot_] = missed;
   slot_ = (slot_ + 1) % missed_.size();
   figures_.stretched += stretched;
-  if (judgement.changed)
-    figures_.errors = std::make_shared<const std::vector<analytics::ErrorLine>>(
-        analytics::linesOf(judgement.errorList, names_, model_.stepSeconds()));
+  if (judgement.changed) noteErrors(judgement);
   figures_.seen = std::chrono::steady_clock::now();
+}
+
+void AttemptMonitor::noteErrors(const Judgement& judgement) {
+  figures_.errors = std::make_shared<const std::vector<analytics::ErrorLine>>(
+      analytics::linesOf(judgement.errorList, names_, model_.stepSeconds()));
+  const std::uint64_t before = std::exchange(occasions_, occasionsOf(judgement.errorList));
+  if (occasions_ <= before || judgement.found.empty()) return;
+  ++figures_.noticed;
+  figures_.latest =
+      std::make_shared<const analytics::ErrorLine>(gravestOf(judgement.found, names_, model_.stepSeconds()));
+}
+
+double AttemptMonitor::depthOf(std::size_t h, const HandResult& hand) {
+  const double force = hand.contactForce.norm();
+  if (hand.touching == 0 || !(force > 0.0)) {
+    touchedAt_[h].reset();
+    return 0.0;
+  }
+  if (!touchedAt_[h]) touchedAt_[h] = hand.tipSimulated;
+  return std::max(0.0, Vec3(*touchedAt_[h] - hand.tipSimulated).dot(hand.contactForce) / force);
 }
 
 void AttemptMonitor::beginRun() {

@@ -42,6 +42,9 @@ struct AttemptFigures {
     bool measured = true;                 ///< its device gives samples
     Vec3 tip = Vec3::Zero();              ///< p_CI, where contact lets it be: right, down, away from the endoscope (m)
     Quat orientation = Quat::Identity();  ///< q_WI
+    double force = 0.0;                   ///< that tissue exerts on it (N)
+    double depth = 0.0;                   ///< how far its tip went against that force since it touched (m)
+    double greatestForce = 0.0;           ///< of the attempt so far (N)
   };
   struct Vessel {
     std::uint32_t clips = 0;     ///< on it
@@ -59,6 +62,8 @@ struct AttemptFigures {
   std::uint64_t missedLately = 0;     ///< of the ticks of the last hundred steps
   double stretched = 0.0;             ///< by how much the tick clock was (s)
   std::shared_ptr<const std::vector<analytics::ErrorLine>> errors;  ///< the gravest first; never null
+  std::uint64_t noticed = 0;  ///< how often something went wrong: occasions
+  std::shared_ptr<const analytics::ErrorLine> latest;               ///< the gravest of the newest occasion; or null
   std::chrono::steady_clock::time_point seen;                       ///< when the last step was over
 
   AttemptFigures() : errors(std::make_shared<const std::vector<analytics::ErrorLine>>()) {}
@@ -83,11 +88,16 @@ class AttemptMonitor final : public recorder::Observer {
   [[nodiscard]] const TickSamples& lastPose() const { return lastPose_; }
 
  private:
+  void noteErrors(const Judgement& judgement);
+  double depthOf(std::size_t h, const HandResult& hand);
+
   const Model& model_;
   Judge judge_;  ///< simulation's thread
   SubjectNames names_;
   std::size_t bed_;  ///< index of the procedure's connective tissue; none: how many there are
   TickSamples lastPose_;
+  std::uint64_t occasions_ = 0;                             ///< of errors, as listed
+  std::array<std::optional<Vec3>, handCount> touchedAt_{};  ///< p_WI of a tip when it began to touch tissue
   std::array<std::uint32_t, 100> missed_{};  ///< in each of the last steps
   std::size_t slot_ = 0;
 

@@ -9,14 +9,12 @@
 #include <cstddef>
 #include <QCursor>
 #include <QKeyEvent>
-#include <QLabel>
 #include <QMouseEvent>
 #include <Qt>
 #include <QWheelEvent>
 #include <string_view>
 #include <utility>
 
-#include "gui/attempt/widget_parts.h"
 #include "sim/instruments/instruments.h"
 
 namespace calot::gui {
@@ -141,19 +139,12 @@ OperationView::OperationView(std::shared_ptr<recorder::MouseInput> mouse, std::s
     : ScenePictureWidget(drawersAtOnce, wantedRate),
       mouse_(std::move(mouse)),
       scope_(std::move(scope)),
-      over_(parts::plainLabel("over", false)) {
+      over_(new PictureOverlay(this)) {
   setObjectName("operation");
   setAccessibleName("Picture of the operation");
   setAccessibleDescription("Mouse and keyboard drive an instrument here; Escape frees the mouse, Tab leaves.");
   setFocusPolicy(Qt::StrongFocus);
   setMouseTracking(true);
-  over_->setParent(this);
-  over_->setAlignment(Qt::AlignCenter);
-  over_->setAttribute(Qt::WA_TransparentForMouseEvents);
-  parts::enlarge(over_, 6.0);
-  parts::embolden(over_);
-  over_->setStyleSheet("QLabel { background: rgba(0, 0, 0, 120); color: #ffffff; }");
-  over_->hide();
 }
 
 OperationView::~OperationView() {
@@ -166,13 +157,6 @@ void OperationView::setActive(bool active) {
   pointer_.begin();
   releaseAll();
   holdPointer(active && hasFocus());
-}
-
-void OperationView::showOver(const QString& text) {
-  if (over_->text() == text) return;
-  over_->setText(text);
-  over_->setGeometry(rect());
-  over_->setVisible(!text.isEmpty());
 }
 
 void OperationView::holdPointer(bool hold) {

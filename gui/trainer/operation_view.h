@@ -8,11 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "gui/trainer/picture_overlay.h"
 #include "gui/view/scene_picture_widget.h"
 #include "recorder/sources/devices/window_input.h"
 #include "sim/scene/samples.h"
-
-class QLabel;
 
 namespace calot::gui {
 
@@ -83,8 +82,7 @@ class OperationView : public ScenePictureWidget {
   void setActive(bool active);
   /// Does the picture hold the pointer?
   [[nodiscard]] bool holdsPointer() const { return holds_; }
-  /// Large, over the picture: "3". Empty: nothing.
-  void showOver(const QString& text);
+  [[nodiscard]] PictureOverlay& over() { return *over_; }
 
   [[nodiscard]] QSize sizeHint() const override { return {1280, 720}; }
   [[nodiscard]] QSize minimumSizeHint() const override { return {480, 270}; }
@@ -120,7 +118,7 @@ class OperationView : public ScenePictureWidget {
   std::shared_ptr<recorder::ScopeInput> scope_;
   bool active_ = false, holds_ = false;
   PointerTrack pointer_;
-  QLabel* over_;
+  PictureOverlay* over_;
 };
 
 }  // namespace calot::gui

@@ -78,7 +78,8 @@ RunPanel::RunPanel(recorder::Mode mode, bool mouse, bool scope)
       stage_(plainLabel("stage", false)),
       modeLabel_(plainLabel("mode", false)),
       time_(plainLabel("time", false)),
-      deadlines_(plainLabel("deadlines")),
+      late_(plainLabel("late")),
+      technical_(plainLabel("technical")),
       phase_(plainLabel("phase")),
       score_(plainLabel("score")),
       hint_(plainLabel("hint")),
@@ -103,6 +104,10 @@ RunPanel::RunPanel(recorder::Mode mode, bool mouse, bool scope)
   parts::embolden(phase_);
   parts::enlarge(time_, 2.0);
   hint_->setStyleSheet(hintStyle);
+  technical_->hide();
+  QPalette trouble = QApplication::palette();
+  trouble.setColor(QPalette::WindowText, theme::trouble());
+  late_->setPalette(trouble);
   progress_->setRange(0, 100);
   list_->setAccessibleName("Mistakes");
   list_->setWordWrap(true);
@@ -116,7 +121,7 @@ RunPanel::RunPanel(recorder::Mode mode, bool mouse, bool scope)
   buttons->addWidget(finish_, 0, 1);
   buttons->addWidget(restart_, 1, 0);
   buttons->addWidget(scenes_, 1, 1);
-  QBoxLayout* const rows = parts::column({parts::row({{stage_, 1}, modeLabel_}), progress_, time_, deadlines_});
+  QBoxLayout* const rows = parts::column({parts::row({{stage_, 1}, modeLabel_}), progress_, time_, late_, technical_});
   parts::fill(rows, {parts::space(6), phase_, score_, hint_, pointer_, result_});
   parts::fill(rows, {parts::space(6), hand_[0], hand_[1], assistant_, parts::space(10), {lower_, 1}, buttons});
   setLayout(rows);
@@ -134,10 +139,8 @@ void RunPanel::show(const TrainingStatus& status, const PanelText& text, double 
   announce(stage_, text.stage);
   say(modeLabel_, text.mode);
   say(time_, text.time);
-  say(deadlines_, text.late ? QString::fromUtf8("⚠ ") + text.deadlines : text.deadlines);
-  QPalette late = QApplication::palette();
-  if (text.late) late.setColor(QPalette::WindowText, theme::trouble());
-  deadlines_->setPalette(late);
+  say(late_, text.late);
+  technical_->setText(text.technical);
   say(phase_, text.phase);
   say(score_, text.score);
   announce(hint_, text.hint);
@@ -160,6 +163,8 @@ void RunPanel::show(const TrainingStatus& status, const PanelText& text, double 
   lower_->setCurrentWidget(looksBack ? mistakes_ : keys_);
   if (looksBack) showErrors(status, stepSeconds);
 }
+
+void RunPanel::setTechnical(bool shown) { technical_->setVisible(shown); }
 
 /// Numbers alone that go on are not worth being read aloud.
 void RunPanel::announce(QLabel* label, const QString& text) {

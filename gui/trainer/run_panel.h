@@ -36,6 +36,8 @@ class RunPanel : public QWidget {
   RunPanel(recorder::Mode mode, bool mouse, bool scope);
 
   void show(const TrainingStatus& status, const PanelText& text, double stepSeconds);
+  /// Sets whether figures are shown that only who looks after the computer needs.
+  void setTechnical(bool shown);
 
  signals:
   void pauseRequested();
@@ -51,7 +53,7 @@ class RunPanel : public QWidget {
   void announce(QLabel* label, const QString& text);  ///< shows it, and announces it when its words change
 
   recorder::Mode mode_;
-  QLabel *stage_, *modeLabel_, *time_, *deadlines_, *phase_, *score_, *hint_, *pointer_, *result_;
+  QLabel *stage_, *modeLabel_, *time_, *late_, *technical_, *phase_, *score_, *hint_, *pointer_, *result_;
   std::array<QLabel*, handCount> hand_;
   QLabel* assistant_;
   QProgressBar* progress_;

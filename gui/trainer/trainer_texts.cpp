@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstddef>
 #include <QLocale>
@@ -22,7 +23,10 @@ QString stageText(const TrainingStatus& status) {
       return QString("Going back: %1 %").arg(QLocale().toString(std::floor(100.0 * status.progress), 'f', 0));
     case Stage::countdown:
       return QString("Going on in %1 …").arg(QLocale().toString(status.countdown));
+    case Stage::ready:
+      return "Ready: time starts with your first motion";
     case Stage::running:
+      if (!status.kept) return "Demonstration";
       return status.waiting ? QString("Waiting for the device …") : QString::fromUtf8("● Recording");
     case Stage::paused:
       return QString::fromUtf8("❚❚ Paused");
@@ -32,7 +36,15 @@ QString stageText(const TrainingStatus& status) {
   return {};
 }
 
-QString deadlineText(const AttemptFigures& figures) {
+/// Late forces of the last thousand ticks that a hand may feel.
+constexpr std::uint64_t noticeable = 10;
+
+QString lateText(const TrainingStatus& status) {
+  if (status.stage != Stage::running || status.figures.missedLately < noticeable) return {};
+  return QString::fromUtf8("⚠ This computer is too slow at the moment: forces feel rough.");
+}
+
+QString technicalText(const AttemptFigures& figures) {
   if (figures.ticks == 0) return {};
   if (figures.missedDeadlines == 0) return "Forces on time";
   const double share = 100.0 * static_cast<double>(figures.missedDeadlines) / static_cast<double>(figures.ticks);
@@ -46,8 +58,9 @@ QString deadlineText(const AttemptFigures& figures) {
 
 using Exchange = recorder::ControlledSource::Exchange;
 
+/// @param force the task is to press no harder than needed: how hard it presses
 QString handText(const AttemptFigures::Hand& hand, const std::optional<Exchange>& exchange, std::size_t which,
-                 bool driven) {
+                 bool driven, bool force) {
   QString text = driven ? QString::fromUtf8("▶ ") : QString();
   text += which == 0 ? "Left: " : "Right: ";
   if (exchange) {
@@ -60,6 +73,11 @@ QString handText(const AttemptFigures::Hand& hand, const std::optional<Exchange>
   if (instrument.action == InstrumentAction::clip)
     text += hand.clips == 1 ? QString(", 1 clip left") : QString(", %1 clips left").arg(hand.clips);
   if (hand.holds) text += ", holds tissue";
+  if (force && hand.force > 0.0)
+    text += QString("\n  presses %1 mm deep with %2 N")
+                .arg(QLocale().toString(1e3 * hand.depth, 'f', 0), QLocale().toString(hand.force, 'f', 1));
+  if (force && hand.greatestForce > 0.0)
+    text += QString("\n  at most %1 N so far").arg(QLocale().toString(hand.greatestForce, 'f', 1));
   if (hand.cautery == Cautery::onTissue) text += ", burns";
   if (hand.cautery == Cautery::withoutContact) text += ", burns in the air";
   if (!hand.measured) text += " (not measured)";
@@ -89,6 +107,7 @@ QString resultText(const TrainingStatus& status) {
   const bool why = status.report.outcome == recorder::Outcome::abandoned && !status.undone.empty();
   text += why ? ": " + QString::fromStdString(status.undone) + '.' : QString('.');
   if (!status.parent.empty()) text += QString("\nA branch, from %1 on.").arg(clockText(status.branchedAt));
+  if (!status.kept) return text + "\nA demonstration: its recording is not kept.";
   text += "\nRecorded in " + QString::fromStdString(status.file.string());
   return status.locked ? text : text + ", without a lock, which its file system does not grant";
 }
@@ -135,32 +154,61 @@ const AttemptFigures::Vessel* vesselNamed(const SceneDescription& scene, const A
   return nullptr;
 }
 
+/// A step of the procedure, for who does it and for who watches.
+struct Hint {
+  std::string tool;   ///< what to take first: "Take the hook. ", or nothing
+  std::string task;   ///< "clip the cystic duct"
+  std::string how;    ///< for who does it: "pull it tight and press the cut pedal"; or nothing
+  std::string state;  ///< "1 of 3 clips are on, 2 stay with the patient"; or nothing
+
+  [[nodiscard]] std::string text(bool watched) const {
+    std::string text = watched ? "Watch the performer " + task : tool + task;
+    if (!watched) text[tool.size()] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[tool.size()])));
+    const std::string& method = watched ? std::string() : how;
+    for (const std::string* part : {&method, &state})
+      if (!part->empty()) text += (part == &state && !method.empty() ? ". " : ": ") + *part;
+    return text + '.';
+  }
+};
+
 /// The first vessel that is still to be clipped or cut, or nothing.
-std::string vesselHint(const SceneDescription& scene, const AttemptFigures& figures) {
+std::optional<Hint> vesselHint(const SceneDescription& scene, const AttemptFigures& figures) {
   for (const DivideDescription& wanted : scene.procedure.divide) {
     const AttemptFigures::Vessel* const vessel = vesselNamed(scene, figures, wanted.vessel);
     if (vessel == nullptr || vessel->partings > 0) continue;
     const std::uint32_t clips = wanted.patient + wanted.specimen;
+    const std::string name = spoken(wanted.vessel);
     if (vessel->clips < clips) {
-      return fmt::format("{}Clip the {}: {} of {} clips are on, {} stay with the patient.",
-                         take(figures, InstrumentAction::clip), spoken(wanted.vessel), vessel->clips, clips,
-                         wanted.patient);
+      return Hint{take(figures, InstrumentAction::clip), "clip the " + name, "",
+                  fmt::format("{} of {} clips are on, {} stay with the patient", vessel->clips, clips, wanted.patient)};
     }
-    return fmt::format("{}Cut the {} between its clips, {} on the side that stays.",
-                       take(figures, InstrumentAction::cut), spoken(wanted.vessel), wanted.patient);
+    return Hint{take(figures, InstrumentAction::cut), fmt::format("cut the {} between its clips", name), "",
+                fmt::format("{} stay with the patient", wanted.patient)};
   }
-  return {};
+  return std::nullopt;
 }
 
-/// Missing criteria of the critical view; empty if it is satisfactory.
-std::string viewHint(const SceneDescription& scene, const AttemptFigures& figures) {
+/// A missing criterion of the critical view; none if it is satisfactory.
+std::optional<Hint> viewHint(const SceneDescription& scene, const AttemptFigures& figures) {
   const ProcedureStatus& p = figures.procedure;
-  if (p.criticalViewFrozen || p.criticalView() >= JudgementRules().satisfactory) return {};
+  if (p.criticalViewFrozen || p.criticalView() >= JudgementRules().satisfactory) return std::nullopt;
   const std::string hook = take(figures, InstrumentAction::burn);
-  if (p.triangleCleared < 2) return hook + "Carve the fat off Calot's triangle: pull it tight and press the cut pedal.";
-  if (p.twoStructures < 2) return hook + "Free the vessels that enter the gallbladder of the fat around them.";
-  return fmt::format("{}Free the lower third of the {}: {:.0f} % of that third is still attached.", hook,
-                     spoken(scene.procedure.bed), std::ceil(100.0 * p.lowerThirdAttached));
+  if (p.triangleCleared < 2)
+    return Hint{hook, "carve the fat off Calot's triangle", "pull it tight and press the cut pedal", ""};
+  if (p.twoStructures < 2)
+    return Hint{hook, "free the vessels that enter the gallbladder of the fat around them", "", ""};
+  return Hint{hook, fmt::format("free the lower third of the {}", spoken(scene.procedure.bed)), "",
+              fmt::format("{:.0f} % of that third is still attached", std::ceil(100.0 * p.lowerThirdAttached))};
+}
+
+/// The dissection, when nothing is left to divide.
+Hint dissectionHint(const SceneDescription& scene, const AttemptFigures& figures) {
+  const std::string specimen = spoken(scene.procedure.specimen);
+  if (!scene.procedure.fat.empty() && !(figures.attached > 0.0))
+    return {"", fmt::format("pull the {} away and divide the fat that still holds it", specimen), "", ""};
+  return {take(figures, InstrumentAction::burn), fmt::format("take the {} off its bed", specimen),
+          "pull it away and burn what is stretched",
+          fmt::format("{:.0f} % is still attached", std::ceil(100.0 * figures.attached))};
 }
 
 constexpr double farEnough = 0.015;           // m across the picture
@@ -194,16 +242,20 @@ PanelText panelText(const TrainingStatus& status, const SceneDescription& scene,
   const AttemptFigures& figures = status.figures;
   const bool practice = mode == recorder::Mode::practice;
   out.time = clockText(figures.time);
-  out.deadlines = deadlineText(figures);
-  out.late = status.stage == Stage::running && figures.missedLately > 0;
+  out.late = lateText(status);
+  out.technical = technicalText(figures);
   if (figures.procedure.phase != Phase::none)
     out.phase = "Phase: " + QString::fromStdString(wordFor(figures.procedure.phase));
   if (figures.retraction)
     out.assistant = QString("Assistant: retracts %1 mm").arg(1e3 * *figures.retraction, 0, 'f', 0);
   if (practice) out.score = scoreText(scene, figures);
-  if (practice && status.stage == Stage::running) out.hint = QString::fromStdString(hintFor(scene, summary, figures));
+  if (practice && (status.stage == Stage::running || status.stage == Stage::ready)) {
+    const bool watched = status.operatorKind == recorder::OperatorKind::performer;
+    out.hint = QString::fromStdString(hintFor(scene, summary, figures, watched));
+  }
   for (std::size_t h = 0; h < handCount; ++h)
-    out.hand[h] = handText(figures.hand[h], status.exchange[h], h, driven && static_cast<std::size_t>(*driven) == h);
+    out.hand[h] = handText(figures.hand[h], status.exchange[h], h, driven && static_cast<std::size_t>(*driven) == h,
+                           practice && scene.procedure.specimen.empty());
   out.pointer = pointerText(status, mode, pointer);
   out.result = resultText(status);
   return out;
@@ -216,10 +268,12 @@ std::string whatIsUndone(const SceneDescription& scene, const AttemptFigures& fi
   return phase.empty() ? "the procedure is not done" : "the procedure was still at its phase " + phase;
 }
 
-std::string hintFor(const SceneDescription& scene, const std::string& summary, const AttemptFigures& figures) {
-  if (scene.procedure.specimen.empty()) return summary;
-  if (figures.procedure.phase == Phase::done) return "All is done. End the attempt when you are content.";
-  for (std::size_t h = 0; h < handCount; ++h) {
+std::string hintFor(const SceneDescription& scene, const std::string& summary, const AttemptFigures& figures,
+                    bool watched) {
+  if (scene.procedure.specimen.empty()) return watched ? "Watch: a program operates, no person. " + summary : summary;
+  if (figures.procedure.phase == Phase::done)
+    return watched ? "The performer has done." : "All is done. End the attempt when you are content.";
+  for (std::size_t h = 0; h < handCount && !watched; ++h) {
     if (figures.hand[h].cautery == Cautery::withoutContact)
       return fmt::format("The {} {} burns in the air: press the pedal on tissue only.", handNames[h],
                          instrumentOf(figures.hand[h].instrument).word);
@@ -229,16 +283,10 @@ std::string hintFor(const SceneDescription& scene, const std::string& summary, c
         const AttemptFigures::Vessel* const vessel = vesselNamed(scene, figures, d.vessel);
         return vessel != nullptr && vessel->partings == 0;
       });
-  if (toDivide) {
-    const std::string view = viewHint(scene, figures);
-    return view.empty() ? vesselHint(scene, figures) : view;
-  }
-  if (!scene.procedure.fat.empty() && !(figures.attached > 0.0))
-    return fmt::format("Fat still holds the {}: pull it away and divide what is drawn out.",
-                       spoken(scene.procedure.specimen));
-  return fmt::format("{}Take the {} off its bed: pull it away and burn what is stretched. {:.0f} % is still attached.",
-                     take(figures, InstrumentAction::burn), spoken(scene.procedure.specimen),
-                     std::ceil(100.0 * figures.attached));
+  std::optional<Hint> hint;
+  if (toDivide) hint = viewHint(scene, figures);
+  if (toDivide && !hint) hint = vesselHint(scene, figures);
+  return hint.value_or(dissectionHint(scene, figures)).text(watched);
 }
 
 std::vector<ControlsTutorial::Lesson> ControlsTutorial::lessonsFor(bool mouse) {

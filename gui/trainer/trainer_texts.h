@@ -19,12 +19,12 @@ struct PanelText {
   QString stage;  ///< "● recording", "❚❚ paused", ...
   QString mode;   ///< "practice", "assessment", with "synthetic" where no person acts
   QString time;   ///< "1:02.5"
-  QString deadlines;
-  bool late = false;  ///< deadlines were missed within the last second
+  QString late;   ///< one sentence where forces come late at present
+  QString technical;  ///< figures of that, for who looks after the computer
   QString phase;
   QString assistant;  ///< how far it retracts; empty where the scene has none that can be asked
   QString score;      ///< critical view and errors; practice only
-  QString hint;       ///< practice only
+  QString hint;       ///< practice only: what to do next, or what a performer does
   QString pointer;    ///< who has the mouse, and how that changes
   std::array<QString, handCount> hand;
   QString result;  ///< of an attempt that has ended: outcome and file
@@ -51,8 +51,9 @@ enum class Pointer {
 /// Next instruction in an attempt of this scene, in one or two sentences: from what the procedure asks for and what has
 /// been done of it. For practice; an assessment has no hints.
 /// @param summary of the scene: what is said where it has no procedure
+/// @param watched a performer acts: its watcher is told what it does, and nothing to do
 [[nodiscard]] std::string hintFor(const SceneDescription& scene, const std::string& summary,
-                                  const AttemptFigures& figures);
+                                  const AttemptFigures& figures, bool watched = false);
 
 /// Remaining parts of the scene's procedure: "the procedure is at: clipping". Where it has no procedure, it is
 /// the trainee who says, but whoever touched nothing has done nothing. Empty: all is done.

@@ -105,7 +105,10 @@ void TrainerWindow::begin(recorder::LoadedScene scene, Purpose purpose) {
   tutorial_.reset();
   if (purpose != Purpose::own) settings.attempt.mode = recorder::Mode::practice;
   if (purpose == Purpose::controls) tutorial_.emplace(setup_.mouse != nullptr);
-  if (purpose == Purpose::demonstration) settings.attempt.participant.clear();  // no attempt of theirs
+  if (purpose == Purpose::demonstration) {
+    settings.attempt.participant.clear();  // no attempt of theirs
+    settings.folder.clear();
+  }
   view_->showText("Getting ready …");
   rate_ = {};
   ended_.clear();
@@ -228,7 +231,8 @@ std::optional<Hand> TrainerWindow::driven() const {
 }
 
 Pointer TrainerWindow::pointer(const TrainingStatus& status) const {
-  if (!driven() || (status.stage != Stage::running && !windowLeft_)) return Pointer::elsewhere;
+  const bool drives = status.stage == Stage::running || status.stage == Stage::ready;
+  if (!driven() || (!drives && !windowLeft_)) return Pointer::elsewhere;
   if (view_->holdsPointer()) return Pointer::held;
   return windowLeft_ ? Pointer::windowLeft : Pointer::free;
 }
@@ -269,19 +273,37 @@ void TrainerWindow::refresh() {
   skipAction_->setEnabled(open && tutorial_);
   if (!open) return;
   const TrainingStatus status = session_->status();
-  view_->setActive(status.stage == Stage::running && purpose_ != Purpose::demonstration);
+  const bool drives = status.stage == Stage::running || status.stage == Stage::ready;
+  view_->setActive(drives && purpose_ != Purpose::demonstration);
   rate_.setRunning(status.stage == Stage::running);
   const SceneDescription& scene = session_->scene();
-  view_->showOver(status.stage == Stage::countdown ? QString::number(status.countdown) : QString());
+  showOver(status);
   PanelText text = panelText(status, scene, session_->summary(), session_->mode(), driven(), pointer(status));
   if (tutorial_) {
     tutorial_->observe(status, driven());
-    if (status.stage == Stage::running || status.stage == Stage::paused) text.hint = tutorial_->text();
+    if (drives || status.stage == Stage::paused) text.hint = tutorial_->text();
   }
   panel_->show(status, text, tickLength * scene.ticksPerStep);
   if (status.stage == Stage::ended && status.attempt != ended_) showEnd(status, text.result);
   if (!status.problem.empty() || !end_->isVisible())
     showProblem(status.problem.empty() ? voiceFault_ : QString::fromStdString(status.problem));
+}
+
+/// Errors are a score: an assessment shows none.
+void TrainerWindow::showOver(const TrainingStatus& status) {
+  PictureOverlay& over = view_->over();
+  over.showCount(status.stage == Stage::countdown ? QString::number(status.countdown) : QString());
+  const bool moves = status.stage == Stage::running || status.stage == Stage::ready;
+  over.showInstruments(moves ? &status.figures : nullptr, session_->scene().verticalFieldOfView);
+  const AttemptFigures& figures = status.figures;
+  const bool another = status.attempt != noticedIn_;
+  if (another) over.clearError();
+  const bool news = !another && figures.noticed > noticed_ && status.stage == Stage::running;
+  noticedIn_ = status.attempt;
+  noticed_ = figures.noticed;
+  if (!news || session_->mode() != recorder::Mode::practice) return;
+  over.showError(*figures.latest);
+  if (aloudAction_->isChecked() && voice_ != nullptr) voice_->say("error", over.error());
 }
 
 void TrainerWindow::showEnd(const TrainingStatus& status, const QString& result) {
@@ -311,6 +333,9 @@ void TrainerWindow::buildMenus() {
   aloudAction_ = look->addAction("Read &aloud", Qt::CTRL | Qt::Key_L, this, &TrainerWindow::setAloud);
   aloudAction_->setToolTip("What the panel asks for and says is spoken, too");
   aloudAction_->setCheckable(true);
+  QAction* const technical = look->addAction("&Technical figures", Qt::CTRL | Qt::Key_T, panel_, &RunPanel::setTechnical);
+  technical->setToolTip("How punctual forces are, for who looks after this computer");
+  technical->setCheckable(true);
   look->addAction("&Operation", Qt::Key_F6, this, [this] { view_->setFocus(); });
 }
 

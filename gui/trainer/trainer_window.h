@@ -81,6 +81,7 @@ class TrainerWindow : public QMainWindow {
   void showOperation();
   void nextTask();
   void readHistory();
+  void showOver(const TrainingStatus& status);
   void showEnd(const TrainingStatus& status, const QString& result);
   [[nodiscard]] Pointer pointer(const TrainingStatus& status) const;
   [[nodiscard]] std::optional<Hand> driven() const;
@@ -105,6 +106,8 @@ class TrainerWindow : public QMainWindow {
   bool windowLeft_ = false;  ///< the keyboard went elsewhere in the middle of a run, and has not come back to it
   Purpose purpose_ = Purpose::own;
   std::optional<ControlsTutorial> tutorial_;
+  std::string noticedIn_;      ///< the attempt whose errors are shown when they happen
+  std::uint64_t noticed_ = 0;  ///< of them, so far
   std::string ended_;  ///< the attempt that the end page shows
   std::vector<std::string> recorded_;
   std::unique_ptr<TrainingSession> session_;

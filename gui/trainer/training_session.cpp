@@ -36,6 +36,7 @@ void setPlaces(recorder::MouseInput& mouse, const SceneDescription& scene, const
 }
 
 constexpr std::chrono::milliseconds longSilence(500);
+constexpr std::chrono::hours untilAsked(24 * 365);
 
 }  // namespace
 
@@ -67,7 +68,13 @@ void MouseAttemptInput::setOut(recorder::SampleSource& source, const SceneDescri
 using recorder::Outcome;
 
 TrainingSession::TrainingSession(TrainingSettings settings, std::shared_ptr<AttemptInput> input, ViewTap::Sink sink)
-    : settings_(std::move(settings)), input_(std::move(input)), tap_(std::move(sink)), thread_([this] { work(); }) {}
+    : settings_(std::move(settings)), input_(std::move(input)), tap_(std::move(sink)) {
+  if (settings_.folder.empty()) {
+    settings_.folder = temporary_.emplace().path();
+    status_.kept = false;
+  }
+  thread_ = std::thread([this] { work(); });
+}
 
 TrainingSession::~TrainingSession() { stop(); }
 
@@ -290,6 +297,13 @@ void TrainingSession::run(recorder::Session& session, recorder::SampleSource& so
       controlled.rest();
       return true;
     });
+  } else if (auto* const device = source.device(); device != nullptr && settings_.fromFirstMotion) {
+    const auto awaitMotion = [&](Clock::duration) {
+      const std::lock_guard lock(mutex_);
+      status_.stage = Stage::ready;
+      return !device->moved();
+    };
+    during(untilAsked, awaitMotion);
   }
   recorder::RunSettings run;
   run.live = true;
@@ -357,6 +371,7 @@ void TrainingSession::keepResult(const recorder::RunReport& report, const record
   } else if (report.outcome == Outcome::technicalFailure) {
     status_.problem = source.statusText();
   }
+  if (!status_.kept) return;
   recorded_.push_back(fmt::format("{}: attempt {}, {:.2f} s, {}", status_.file.string(), status_.attempt,
                                   status_.figures.time, recorder::wordFor(report.outcome)));
   if (report.ticks == 0) return;

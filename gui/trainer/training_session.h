@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "gui/trainer/attempt_monitor.h"
+#include "recorder/base/files.h"
 #include "recorder/formats/scene_file.h"
 #include "recorder/loop.h"
 #include "recorder/prepared_scene.h"
@@ -65,13 +66,15 @@ struct TrainingSettings {
   recorder::LoadedScene scene;
   recorder::AttemptSettings attempt;  ///< participant, station, mode, seed, ...
   std::optional<recorder::StationKey> key;
-  std::filesystem::path folder;             ///< where recordings go; it exists
+  std::filesystem::path folder;             ///< where recordings go; it exists. Empty: they go with the session
   unsigned threads = 1;                     ///< of the simulation
   MakeBroadPhase makeBroadPhase = nullptr;  ///< of the simulation; null: the grid
   /// How long an attempt waits for its first picture, at most: OpenGL's programs are compiled for it.
   std::chrono::milliseconds firstPicture{0};
   std::chrono::milliseconds countdown{3000};  ///< after going back, until the hands take effect
   std::chrono::milliseconds exchange{3000};   ///< an exchange of instruments takes so long of the attempt
+  /// A new attempt by a device begins, and its time with it, when its operator first moves a hand.
+  bool fromFirstMotion = false;
 };
 
 /// State of the session.
@@ -79,6 +82,7 @@ enum class Stage : std::uint8_t {
   preparing,     ///< a scene is built, a device waited for
   takingParent,  ///< going back: the parent's steps are simulated again
   countdown,     ///< gone back: the picture is there, the hands take effect in a moment
+  ready,         ///< the picture is there, time starts with the first motion
   running,
   paused,
   ended,  ///< nothing runs; what there was is recorded
@@ -91,6 +95,7 @@ struct TrainingStatus {
   bool waiting = false;         ///< it runs and no step has come for half a second: the device is gone
   std::string problem;          ///< why it could not go on, in one line; or empty
   std::filesystem::path file;   ///< of the attempt; empty before there is one
+  bool kept = true;             ///< the file stays when the session ends
   bool locked = true;           ///< its file system granted a lock
   std::string attempt, parent;  ///< uuids; parent empty unless it is a branch
   double branchedAt = 0.0;      ///< where a branch left its parent (s)
@@ -137,7 +142,7 @@ class TrainingSession {
   [[nodiscard]] recorder::Mode mode() const { return settings_.attempt.mode; }
   [[nodiscard]] const SceneDescription& scene() const { return settings_.scene.description; }
   [[nodiscard]] const std::string& summary() const { return settings_.scene.summary; }
-  /// Recordings so far, two lines each for a terminal: what was recorded, and how punctual its forces were.
+  /// Recordings that are kept so far, two lines each for a terminal: what was recorded, and how punctual its forces were.
   [[nodiscard]] std::vector<std::string> recorded() const;
 
  private:
@@ -162,6 +167,7 @@ class TrainingSession {
   void giveWay() const;
 
   TrainingSettings settings_;
+  std::optional<recorder::TemporaryFolder> temporary_;  ///< of recordings that are not kept
   std::shared_ptr<AttemptInput> input_;
   ViewTap tap_;
   MotionClock motions_;

@@ -10,6 +10,7 @@
 #include <unistd.h>
 #include <array>
 #include <cerrno>
+#include <stdlib.h>  // mkdtemp
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
@@ -197,6 +198,20 @@ void NewFile::publish() {
     throw Error(ErrorKind::failure, Where{target_.string()},
                 fmt::format("cannot be renamed from {}: {}", temporary_.filename().string(), std::strerror(errno)));
   temporary_.clear();
+}
+
+TemporaryFolder::TemporaryFolder() {
+  std::error_code fault;
+  const fs::path place = fs::temp_directory_path(fault);
+  std::string name = ((fault ? fs::path(".") : place) / "calot-XXXXXX").string();
+  if (mkdtemp(name.data()) == nullptr)
+    throw Error(ErrorKind::failure, Where{name}, "cannot be made: " + std::generic_category().message(errno));
+  path_ = name;
+}
+
+TemporaryFolder::~TemporaryFolder() {
+  std::error_code ignored;
+  if (!path_.empty()) fs::remove_all(path_, ignored);
 }
 
 void writeText(const fs::path& path, std::string_view text, bool force) {

@@ -92,6 +92,21 @@ class NewFile {
   bool force_;
 };
 
+/// A new folder that its owner alone may enter, removed with all that is in it.
+class TemporaryFolder {
+ public:
+  /// Below TMPDIR. @throws Error (failure).
+  TemporaryFolder();
+  TemporaryFolder(TemporaryFolder&& other) noexcept : path_(std::exchange(other.path_, {})) {}
+  TemporaryFolder& operator=(TemporaryFolder&&) = delete;
+  ~TemporaryFolder();
+
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
 /// Writes a whole file as a NewFile, so that `path` is never half-written.
 /// @throws Error (invalid) as refuseOutput; (failure) where writing fails, with the temporary file removed.
 void writeText(const std::filesystem::path& path, std::string_view text, bool force);

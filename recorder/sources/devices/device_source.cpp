@@ -75,8 +75,18 @@ constexpr std::int64_t secondHand = 500'000'000;  // ns that the other hand is w
 constexpr std::size_t freshRoom = 1024;
 constexpr std::size_t mostTold = 100;
 constexpr double sameJaw = 1e-3;  // rad
+// What is no trembling of a hand and no noise of a device.
+constexpr double motionDistance = 2e-3;  // m
+constexpr double motionAngle = 0.1;      // rad, of the shaft and of the jaws
 constexpr std::uint8_t actingButtons =
     button::cutPedal | button::coagulatePedal | button::fire | button::retractMore | button::retractLess;
+
+/// Are these poses of a hand that has moved, worked its jaw or pressed something in between?
+bool isMotion(const DeviceSample& from, const DeviceSample& to) {
+  const double halfAngle = std::min(1.0, std::abs(from.orientation.dot(to.orientation)));  // its cosine
+  return (to.position - from.position).norm() > motionDistance || halfAngle < std::cos(0.5 * motionAngle) ||
+         std::abs(to.gripper - from.gripper) > motionAngle || to.buttons != from.buttons;
+}
 
 }  // namespace
 
@@ -116,16 +126,7 @@ DeviceSource::DeviceSource(std::unique_ptr<Device> device, const SceneDescriptio
       return settings_.calibration && settings_.calibration->hand[which] ? &*settings_.calibration->hand[which]
                                                                          : nullptr;
     };
-    HandState state{DeviceMapping(scene.hands[h], scene.camera, of(h), of(1 - h)),
-                    {},
-                    {},
-                    false,
-                    false,
-                    false,
-                    {},
-                    false,
-                    false,
-                    0};
+    HandState state{DeviceMapping(scene.hands[h], scene.camera, of(h), of(1 - h))};
     state.held.position = scene.hands[h].home;
     state.held.orientation = pointing(scene.hands[h].port, scene.hands[h].home);
     state.held.instrument = InstrumentKind::none;
@@ -206,6 +207,18 @@ void DeviceSource::waitForFirst(double seconds, const std::atomic<bool>* stop) {
     else
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
+}
+
+bool DeviceSource::moved() {
+  gather();
+  if (settings_.tickClock) settings_.tickClock->now += tickNanoseconds;
+  bool any = ended_;
+  for (HandState& hand : hand_) {
+    if (!hand.newest) continue;
+    if (!hand.still) hand.still = hand.newest;
+    any = any || isMotion(*hand.still, *hand.newest);
+  }
+  return any;
 }
 
 /// Jaw and lock stay as they are held until the device takes over.

@@ -143,6 +143,11 @@ class DeviceSource final : public SampleSource {
   /// and why.
   void waitForFirst(double seconds, const std::atomic<bool>* stop = nullptr);
 
+  /// Before the first tick: has a hand moved, worked its jaw or pressed something since this was asked first? Discards
+  /// what the device sends until then, so that an attempt begins with its operator's first motion. True once the device
+  /// sends nothing more.
+  bool moved();
+
   /// Before the first tick: the hands set out from here instead of the scene's home (a branch), with jaw and lock as
   /// they were until each takes over (TakeOver). A hand that has no instrument there begins at home.
   void setOutFrom(const TickSamples& start);
@@ -169,12 +174,13 @@ class DeviceSource final : public SampleSource {
  private:
   struct HandState {
     DeviceMapping mapping;
-    std::optional<DeviceSample> newest;  ///< valid
-    InstrumentSample held;
+    std::optional<DeviceSample> newest = {};  ///< valid
+    std::optional<DeviceSample> still = {};   ///< moved(): where it was
+    InstrumentSample held = {};
     bool anchorAgain = false;
     bool clutched = false;
     bool placed = false;  ///< setOutFrom(): held says where it begins
-    TakeOver takeOver;
+    TakeOver takeOver = {};
     bool used = false;            ///< the tick's pose was made from the newest
     bool trigger = false;         ///< of the clip applier: down
     std::uint32_t triggered = 0;  ///< ticks for which its last press still counts

@@ -100,7 +100,7 @@ TEST(MetricScript, TheSameInputGivesTheSameValue) {
     motion.hand[0].jaw.push_back(i == 7 ? 0.5 : std::numeric_limits<double>::quiet_NaN());
     motion.hand[0].pedal.push_back(i == 3);
   }
-  const TemporaryFolder input = writeMetricInput(motion, recorder::Outcome::completed, "right", "reach");
+  const recorder::TemporaryFolder input = writeMetricInput(motion, recorder::Outcome::completed, "right", "reach");
   const CheckpointValue value = script.compute(input.path());
   ASSERT_TRUE(value.value);
   EXPECT_NEAR(*value.value, 1.595, 1e-12);

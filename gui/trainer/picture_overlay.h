@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <optional>
+#include <QPointF>
+#include <QRectF>
+#include <QTimer>
+#include <QWidget>
+
+#include "gui/trainer/attempt_monitor.h"
+
+namespace calot::gui {
+
+/// Where an instrument is to be looked for that is out of the picture: the unit direction across the picture, right and
+/// down; none where its tip is seen.
+/// @param tip p_CI: right, down, away from the endoscope (m)
+/// @param size of the picture (pixels) @param verticalFieldOfView rad
+[[nodiscard]] std::optional<QPointF> directionOutside(const Vec3& tip, QSizeF size, double verticalFieldOfView);
+
+/// Over the picture of the operation: a countdown, an error in words when it happens, and at the rim an arrow towards
+/// each instrument that is out of the picture. Takes no mouse.
+class PictureOverlay : public QWidget {
+  Q_OBJECT
+ public:
+  explicit PictureOverlay(QWidget* picture);
+
+  /// Large, in the middle: "3". Empty: nothing.
+  void showCount(const QString& text);
+  /// An error for a few seconds.
+  void showError(const analytics::ErrorLine& error);
+  void clearError();
+  /// @param figures of the attempt; null: no instruments
+  void showInstruments(const AttemptFigures* figures, double verticalFieldOfView);
+
+  [[nodiscard]] const QString& error() const { return error_; }
+  /// Direction of each hand's arrow; none: no arrow.
+  [[nodiscard]] const std::array<std::optional<QPointF>, handCount>& arrows() const { return arrow_; }
+
+ protected:
+  void paintEvent(QPaintEvent* event) override;
+
+ private:
+  QString count_, error_;
+  Severity severity_ = Severity::minor;
+  std::array<std::optional<QPointF>, handCount> arrow_;
+  QTimer errorShown_;
+};
+
+}  // namespace calot::gui
