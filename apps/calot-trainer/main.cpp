@@ -16,6 +16,7 @@
 #include <string>
 #include <utility>
 
+#include "analytics/checkpoints/replay_words.h"
 #include "analytics/cohort/cohort_database.h"
 #include "apps/calot/environment.h"
 #include "apps/calot/source_options.h"
@@ -32,7 +33,10 @@
 #include "recorder/base/files.h"
 #include "recorder/compliance_cache.h"
 #include "recorder/kept/kept_engine.h"
+#include "recorder/loop.h"
 #include "recorder/prepared_scene.h"
+#include "recorder/recording/probe.h"
+#include "recorder/recording/reader.h"
 #include "recorder/sources/devices/mouse_device.h"
 
 namespace calot::apps {
@@ -42,6 +46,7 @@ struct Options {
   SourceOptions source;
   std::string scene, participant, station, stationKey, purpose = "training", handedness = "unknown", folder = ".";
   std::string mode = "practice", pictures, graphics = "auto", cohort, broadPhase = "grid";
+  std::string parent, at;  ///< of a branch
   LookOptions look;
   bool aloud = false;
   std::uint64_t seed = 1;
@@ -64,6 +69,12 @@ void add(CLI::App& app, Options& o) {
   app.footer("Example:\n  calot-trainer --participant P1 --cohort c.db -o recordings");
   app.add_option("--scene", o.scene,
                  "name of a scene (calot scenes), or a scene file; without one, the window offers them");
+  auto* const branch = app.add_option("--branch", o.parent, "go on with this recording, from the moment --at")
+                           ->excludes(app.get_option("--scene"));
+  auto* const at =
+      app.add_option("--at", o.at, "where the branch leaves it: seconds (12.5) or minutes and seconds (1:02.5)");
+  at->needs(branch);
+  branch->needs(at);
   auto* const device =
       app.add_option("--device", o.source.device.name, recorder::deviceUsage() + "; default: mouse and keyboard");
   app.add_option("--performer", o.source.performer,
@@ -259,12 +270,33 @@ void onMessage(QtMsgType type, const QMessageLogContext& context, const QString&
   std::_Exit(static_cast<int>(ExitCode::failure));
 }
 
+/// A recording to go on with, and its scene.
+struct Parent {
+  std::filesystem::path file;
+  double time = 0.0;  ///< s
+  recorder::LoadedScene scene;
+};
+
+/// Its faults are reported before there is a window.
+std::optional<Parent> parentOf(const Options& o) {
+  if (o.parent.empty()) return std::nullopt;
+  if (o.mode == "assessment") throw Error(ErrorKind::invalid, "--branch: an assessment has no branches; practise it");
+  const recorder::ChainVerdict chain = recorder::probe(o.parent);
+  const recorder::Recording recording(o.parent);
+  analytics::refuseBrokenParent(o.parent, chain);
+  recorder::refuseParent(recording);
+  Parent parent{o.parent, parseTime(o.at), recorder::sceneFromAssets(recording.header().assets)};
+  static_cast<void>(recorder::forkStepAt(recording, parent.time));
+  return parent;
+}
+
 int run(const Options& o, int argc, char** argv) {
   stopOnSignals();
   recorder::useComplianceCache(recorder::userCacheFolder());
   const recorder::ProgramFiles files = recorder::ProgramFiles::ofThisProgram();
   recorder::useEngines(recorder::userEnginePlaces(files.programs(), files.assetRoots()));
-  std::optional<recorder::LoadedScene> scene = sceneOf(o.scene);
+  std::optional<Parent> parent = parentOf(o);
+  std::optional<recorder::LoadedScene> scene = parent ? std::move(parent->scene) : sceneOf(o.scene);
   gui::TrainerSetup setup = setUp(o, scene);
   std::vector<std::string> faults;
   if (!scene || !o.pictures.empty()) setup.scenes = gui::sceneChoices(assetFolders(), faults);
@@ -288,7 +320,10 @@ int run(const Options& o, int argc, char** argv) {
     takePictures(window, std::move(scene), o.pictures);
     return 0;
   }
-  if (scene) window.begin(std::move(*scene));
+  if (parent)
+    window.beginBranch(std::move(*scene), parent->file, parent->time);
+  else if (scene)
+    window.begin(std::move(*scene));
   QTimer asking;
   QObject::connect(&asking, &QTimer::timeout, &window, [&window, seconds = o.seconds] {
     const bool over =

@@ -34,6 +34,20 @@ QBoxLayout* parts::fill(QBoxLayout* layout, std::initializer_list<Item> items) {
   return layout;
 }
 
+QFrame* parts::sheet(QLayout* layout) {
+  auto* const made = named("sheet", new QFrame);
+  made->setStyleSheet("QFrame#sheet { background: palette(base); border: 1px solid palette(mid); border-radius: 6px; }");
+  layout->setContentsMargins(18, 14, 18, 14);
+  made->setLayout(layout);
+  return made;
+}
+
+QPushButton* parts::primary(QPushButton* button) {
+  embolden(button);
+  button->setDefault(true);
+  return button;
+}
+
 void parts::savePicture(QWidget& window, const QString& file) {
   QApplication::processEvents();
   if (!window.grab().save(file, "PNG"))

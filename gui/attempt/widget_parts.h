@@ -117,6 +117,11 @@ inline QWidget* boxed(QLayout* layout) {
   return made;
 }
 
+/// A sheet of paper on a page: what belongs together, on a ground and in a frame of its own.
+QFrame* sheet(QLayout* layout);
+/// The button with what is most likely wanted next.
+QPushButton* primary(QPushButton* button);
+
 /// Writes a PNG of what a window shows. @throws calot::Error (failure)
 void savePicture(QWidget& window, const QString& file);
 

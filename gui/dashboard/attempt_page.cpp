@@ -11,7 +11,7 @@
 #include "gui/attempt/replay_player.h"
 #include "gui/dashboard/dialogs.h"
 #include "gui/dashboard/figure_panel.h"
-#include "gui/dashboard/verdict_card.h"
+#include "gui/attempt/verdict_card.h"
 #include "gui/moments/moments.h"
 #include "gui/report/pdf_report.h"
 #include "recorder/base/errors.h"

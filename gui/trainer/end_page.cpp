@@ -1,78 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "gui/trainer/end_page.h"
 
-#include <algorithm>
-#include <cmath>
 #include <QListWidget>
 #include <QPushButton>
-#include <system_error>
 #include <utility>
 
 #include "analytics/assess.h"
-#include "analytics/checkpoints/checkpoint.h"
-#include "analytics/checkpoints/collector.h"
 #include "analytics/checkpoints/replay_words.h"
-#include "analytics/report/key_figures.h"
 #include "gui/attempt/figure_text.h"
+#include "gui/attempt/verdict_card.h"
 #include "gui/attempt/widget_parts.h"
 #include "gui/trainer/run_panel.h"
 #include "gui/view/scene_picture_widget.h"
 #include "recorder/base/errors.h"
-#include "recorder/recording/reader.h"
 
 namespace calot::gui {
 namespace {
-
-using Access = analytics::CohortDatabase::Access;
-
-bool isThere(const std::filesystem::path& cohort) {
-  std::error_code ignored;
-  return !cohort.empty() && std::filesystem::exists(cohort, ignored);
-}
-
-const analytics::CheckpointValue* sameFigure(const std::vector<analytics::CheckpointValue>& values,
-                                             const analytics::CheckpointValue& as) {
-  const auto at = std::find_if(values.begin(), values.end(), [&](const analytics::CheckpointValue& v) {
-    return v.name == as.name && v.subject == as.subject && v.version == as.version;
-  });
-  return at == values.end() ? nullptr : &*at;
-}
-
-/// @param of the value whose checkpoint the number belongs to
-QString withUnit(double number, const analytics::CheckpointValue& of) {
-  const QString text = numberText(number, analytics::definitionOf(of)), unit = displayedValue(of).unit;
-  return unit.isEmpty() ? text : text + ' ' + unit;
-}
-
-QString normWords(const FigureStanding& standing, const analytics::CheckpointValue& of) {
-  QString text;
-  if (standing.cut) text = "pass mark " + withUnit(*standing.cut, of);
-  if (standing.band) {
-    text += text.isEmpty() ? "half of the competent people " : ", half of the competent people ";
-    text += numberText(standing.band->p25, analytics::definitionOf(of)) + " to " + withUnit(standing.band->p75, of);
-  }
-  if (standing.passed) text += *standing.passed ? ": reached" : ": falls short";
-  if (standing.passed && standing.undecided) text += " (not decided by this simulation)";
-  return text;
-}
-
-/// @param judges both attempts were completed: who did less of a task was not better at it
-QString beforeWords(const analytics::CheckpointValue& now, const analytics::CheckpointValue& before, bool judges) {
-  if (!before.value) return {};
-  const QString then = valueText(before);
-  if (!now.value) return then;
-  const DisplayedValue a = displayedValue(before), b = displayedValue(now);
-  const double change = b.number - a.number;
-  constexpr double nothing = 1e-6;  // of what is shown: rounding, as of the path of a tip that stands still
-  if (numberText(a.number) == numberText(b.number) || std::abs(change) < nothing) return then + ", the same";
-  const QString by = withUnit(std::abs(change), now);
-  const analytics::CheckpointDefinition* const definition = analytics::definitionOf(now);
-  const auto direction = definition != nullptr ? definition->direction : analytics::Direction::none;
-  if (!judges || direction == analytics::Direction::none)
-    return then + (change > 0.0 ? ", now more by " : ", now less by ") + by;
-  const bool better = (change < 0.0) == (direction == analytics::Direction::lower);
-  return then + (better ? ", better by " : ", worse by ") + by;
-}
 
 QString figureWords(const FigureReport& figure) {
   QString text = figure.title + ": " + figure.now;
@@ -97,93 +40,12 @@ QString putIntoCohort(const std::filesystem::path& file, const std::filesystem::
   return badgeText(found.record->verification.verdict);
 }
 
+QString titleFor(Purpose purpose) {
+  if (purpose == Purpose::controls) return "You have tried the controls";
+  return purpose == Purpose::demonstration ? "The demonstration has ended" : "The attempt has ended";
+}
+
 }  // namespace
-
-AttemptFacts readFacts(const std::filesystem::path& file, const std::filesystem::path& cohort) {
-  AttemptFacts facts;
-  recorder::Recording recording(file);
-  const std::string uuid = recording.header().attempt;
-  if (isThere(cohort)) {
-    const analytics::CohortDatabase database(cohort.string(), Access::read);
-    if (auto row = database.attempt(uuid)) {
-      facts.attempt = std::move(*row);
-      facts.values = database.values(uuid);
-      facts.intervals = database.intervals(uuid);
-      facts.inCohort = true;
-      return facts;
-    }
-  }
-  const recorder::ChainVerdict chain = recording.verifyChain();
-  if (!chain.intact())
-    throw Error(ErrorKind::refused, Where{file.string()}, "its content does not agree with its chain: no figures");
-  recorder::ReplayReport own;
-  own.outcome = recording.outcome();
-  own.complete = recording.complete();
-  own.steps = recording.stepCount();
-  analytics::AttemptRecord& record = facts.attempt;
-  record = analytics::recordOf(recording.header(), own, file.string());
-  record.verification = {};  // nothing was re-simulated
-  if (own.steps > 0) facts.values = analytics::valuesFromObservables(recording);
-  return facts;
-}
-
-std::optional<AttemptFacts> previousInCohort(const AttemptFacts& now, const std::filesystem::path& cohort) {
-  if (now.attempt.participant.empty() || !isThere(cohort)) return std::nullopt;
-  const analytics::CohortDatabase database(cohort.string(), Access::read);
-  std::optional<analytics::AttemptRow> newest;
-  for (analytics::AttemptRow& row : database.listAttempts()) {  // by start
-    if (row.uuid == now.attempt.uuid || row.startUtc > now.attempt.startUtc) continue;
-    if (row.participant != now.attempt.participant || row.comparabilityKey != now.attempt.comparabilityKey) continue;
-    if (!row.parent.empty() || !row.complete || row.synthetic != now.attempt.synthetic) continue;
-    newest = std::move(row);
-  }
-  if (!newest) return std::nullopt;
-  AttemptFacts facts;
-  facts.values = database.values(newest->uuid);
-  facts.attempt = std::move(*newest);
-  facts.inCohort = true;
-  return facts;
-}
-
-std::vector<analytics::Norm> normsOf(const std::filesystem::path& cohort) {
-  if (!isThere(cohort)) return {};
-  return analytics::CohortDatabase(cohort.string(), Access::read).norms();
-}
-
-AttemptReport reportOf(AttemptFacts now, const std::optional<AttemptFacts>& previous,
-                       const std::vector<analytics::Norm>& norms) {
-  AttemptReport report;
-  const std::vector<const analytics::Norm*> fitting = normsFor(now.attempt, norms);
-  std::optional<AttemptStanding> standing;
-  if (!fitting.empty()) standing = standingOf(now.attempt, now.values, *fitting.front(), now.intervals);
-  const bool judged = standing && standing->judged;
-  report.summary = summaryOf(now.attempt, now.values, judged && standing->grade ? &*standing->grade : nullptr);
-  if (!standing)
-    report.norm = "No norm for this task, device and mode.";
-  else if (judged)
-    report.norm =
-        QString("Norm %1: %2").arg(QString::fromStdString(standing->norm), QString::fromStdString(standing->verdict));
-  else
-    report.norm = QString("Norm %1: judged when the attempt is verified and in the cohort.")
-                      .arg(QString::fromStdString(standing->norm));
-  report.previous = previous ? "Last time: " + startText(previous->attempt.startUtc) + ", " +
-                                   outcomeText(previous->attempt.outcome) + '.'
-                             : QString("No earlier attempt at this task to compare with.");
-  const bool judges = now.attempt.outcome == recorder::Outcome::completed && previous &&
-                      previous->attempt.outcome == recorder::Outcome::completed;
-  for (const analytics::KeyFigure& figure : analytics::keyFigures(now.values, nullptr)) {
-    const analytics::CheckpointValue& value = figure.value;
-    FigureReport& line = report.figures.emplace_back();
-    line.title = QString::fromStdString(figure.title);
-    line.now = value.value ? valueText(value) : QString::fromStdString(value.reason);
-    const FigureStanding* const stands = standing ? entryOf(standing->figures, value) : nullptr;
-    if (stands != nullptr) line.norm = normWords(*stands, value);
-    const analytics::CheckpointValue* const then = previous ? sameFigure(previous->values, value) : nullptr;
-    if (then != nullptr) line.before = beforeWords(value, *then, judges);
-  }
-  report.facts = std::move(now);
-  return report;
-}
 
 using parts::button;
 using parts::say;
@@ -194,12 +56,13 @@ EndPage::EndPage(Setup setup)
       title_(selectableLabel("endTitle")),
       syntheticMark_(selectableLabel("endSynthetic")),
       outcome_(selectableLabel("endOutcome")),
-      verdict_(selectableLabel("endVerdict")),
       norm_(selectableLabel("endNorm")),
       previous_(selectableLabel("endPrevious")),
+      lesson_(parts::named("lesson", new QLabel)),
       figures_(selectableLabel("endFigures")),
       momentsTitle_(selectableLabel("momentsTitle")),
       storeText_(selectableLabel("storeText")),
+      verdict_(new VerdictCard),
       moments_(parts::named("moments", new QListWidget)),
       store_(button("&Put into the cohort", "store")),
       back_(button("Go &back to 2 s before it", "endBack")),
@@ -207,20 +70,31 @@ EndPage::EndPage(Setup setup)
       next_(button("&Next task", "next")),
       scenes_(button("&Other scene", "endScenes")),
       picture_(new ScenePictureWidget),
+      parentPicture_(new ScenePictureWidget),
       strip_(new WorkStrip(work_)) {
-  replay_ = std::make_unique<Replay>(
-      [picture = picture_](std::shared_ptr<const SceneView> view) { picture->showView(std::move(view)); });
+  const auto replayIn = [](ScenePictureWidget* picture) {
+    return std::make_unique<Replay>(
+        [picture](std::shared_ptr<const SceneView> view) { picture->showView(std::move(view)); });
+  };
+  replay_ = replayIn(picture_);
+  parentReplay_ = replayIn(parentPicture_);
+  pair_ = std::make_unique<PairReplay>(*parentReplay_, *replay_);
   replaySide_ = buildReplay();
   store_->setToolTip("Simulates the attempt again, which verifies it, and stores its figures");
   back_->setToolTip("Simulates the attempt again up to two seconds before the mistake, and goes on from there");
-  QBoxLayout* const buttons = parts::bare(parts::row({store_, parts::spring(), back_, again_, next_, scenes_}));
-  setLayout(parts::bare(parts::column({{parts::row({{replaySide_, 3}, {buildWords(), 2}}), 1}, strip_, buttons})));
+  setLayout(parts::bare(parts::column({{parts::row({{replaySide_, 3}, {buildWords(), 2}}), 1}, strip_})));
   replaySide_->setVisible(setup_.mode == recorder::Mode::practice);
 
   connect(moments_, &QListWidget::itemClicked, this, &EndPage::replayMoment);
   connect(moments_, &QListWidget::itemActivated, this, &EndPage::replayMoment);
   connect(moments_, &QListWidget::currentRowChanged, this, [this](int at) { back_->setEnabled(at >= 0); });
   connect(replay_.get(), &Replay::failed, this, [this](const QString& reason) { picture_->showText(reason); });
+  connect(parentReplay_.get(), &Replay::failed, this,
+          [this](const QString& reason) { parentPicture_->showText(reason); });
+  for (Replay* const replay : {replay_.get(), parentReplay_.get()})
+    connect(replay, &Replay::opened, this, &EndPage::alignReplays);
+  connect(verdict_, &VerdictCard::timeChosen, this,
+          [this](double time) { playFrom(std::max(0.0, time - goBackBy)); });
   connect(back_, &QPushButton::clicked, this, [this] {
     if (const auto time = chosenBranch(*moments_)) emit backRequested(*time);
   });
@@ -247,73 +121,125 @@ EndPage::EndPage(Setup setup)
   });
 }
 
-EndPage::~EndPage() { replay_.reset(); }  // its threads use the picture
+EndPage::~EndPage() {  // threads of replays use the pictures
+  replay_.reset();
+  parentReplay_.reset();
+}
 
 QWidget* EndPage::buildReplay() {
   moments_->setAccessibleName("Moments to see again");
   moments_->setWordWrap(true);
   moments_->setToolTip("A click replays the moment, from two seconds before it");
-  return parts::boxed(parts::column({{picture_, 3}, new TransportBar(*replay_), momentsTitle_, {moments_, 1}}));
+  const auto titled = [](const char* text) {
+    auto* const label = new QLabel(text);
+    parts::embolden(label);
+    return label;
+  };
+  nowTitle_ = titled("This time");
+  parentSide_ = parts::boxed(parts::column({titled("Before"), {parentPicture_, 1}}));
+  QWidget* const nowSide = parts::boxed(parts::column({nowTitle_, {picture_, 1}}));
+  transport_ = new TransportBar(*replay_);
+  pairTransport_ = new PairTransport(*pair_);
+  return parts::boxed(parts::column({{parts::row({{parentSide_, 1}, {nowSide, 1}}), 3},
+                                     transport_,
+                                     pairTransport_,
+                                     momentsTitle_,
+                                     {moments_, 1}}));
 }
 
 QWidget* EndPage::buildWords() {
-  parts::enlarge(title_, 1.5);
-  parts::embolden(verdict_);
+  parts::enlarge(title_, 1.6);
   parts::embolden(syntheticMark_);
   syntheticMark_->setText("SYNTHETIC: made by a performer, no person's attempt");
   theme::setGround(*syntheticMark_, QColor(0xf0, 0xe4, 0x42), Qt::black);
   figures_->setAccessibleName("Figures that count");
+  lesson_->setAccessibleName("Both attempts in figures, from where the branch left its parent");
+  lesson_->setWordWrap(true);
+  lesson_->setTextFormat(Qt::RichText);
   auto* const inside = new QWidget;
-  inside->setLayout(parts::column(
-      {title_, syntheticMark_, outcome_, verdict_, norm_, previous_, figures_, storeText_, parts::spring()}));
-  return parts::scrolled(inside);
+  inside->setLayout(parts::bare(parts::column({syntheticMark_, outcome_, verdict_, lesson_, norm_, previous_, figures_,
+                                               storeText_, parts::spring()})));
+  QBoxLayout* const first = parts::row({back_, parts::spring(), store_});
+  QBoxLayout* const second = parts::row({scenes_, again_, parts::spring(), parts::primary(next_)});
+  return parts::sheet(parts::column({title_, {parts::scrolled(inside), 1}, first, second}));
 }
 
-void EndPage::showAttempt(const TrainingStatus& status, const QString& result, double stepSeconds, bool next) {
+void EndPage::showAttempt(const TrainingStatus& status, const Ended& ended) {
   const bool practice = setup_.mode == recorder::Mode::practice;
   if (shown_ && shown_->attempt.parent.empty()) earlier_ = std::exchange(shown_, std::nullopt);
   shown_.reset();
   file_ = status.file;
   attempt_ = status.attempt;
+  parent_ = status.parentFile;
+  branchedAt_ = status.branchedAt;
   inCohort_ = false;
+  kept_ = status.kept;
   synthetic_ = status.operatorKind != recorder::OperatorKind::human;
-  title_->setText("The attempt has ended");
+  title_->setText(titleFor(ended.purpose));
   syntheticMark_->setVisible(synthetic_);
-  say(outcome_, result);
-  for (QLabel* const label : {verdict_, previous_, figures_, storeText_}) say(label, {});
+  say(outcome_, ended.result);
+  verdict_->hide();
+  for (QLabel* const label : {previous_, lesson_, figures_, storeText_}) say(label, {});
   say(norm_, practice ? QString("Reading the figures …")
                       : QString("An assessment shows neither figures nor mistakes here. Whoever instructs finds them "
                                 "in the dashboard, when the attempt is in the cohort."));
-  next_->setVisible(next);
+  next_->setVisible(ended.next);
+  next_->setText(ended.purpose == Purpose::own ? "&Next task" : "&Begin the task");
   back_->setVisible(practice && !synthetic_ && !status.figures.errors->empty());
   showStoring();
   if (!practice) {
     again_->setFocus();
     return;
   }
-  listErrors(*moments_, *status.figures.errors, stepSeconds);
+  listErrors(*moments_, *status.figures.errors, ended.stepSeconds);
   moments_->setCurrentRow(0);
   momentsTitle_->setText(moments_->count() > 0 ? "What went wrong: a click shows it again." : "Nothing went wrong.");
-  picture_->showText("Opening the replay …");
-  replay_->open(file_, attempt_);
+  errors_ = status.figures.errors;
+  openReplays(status);
   read();
   (moments_->count() > 0 ? static_cast<QWidget*>(moments_) : again_)->setFocus();
 }
 
+void EndPage::openReplays(const TrainingStatus& status) {
+  const bool branch = !parent_.empty();
+  pair_->clear();
+  for (QWidget* const part : {parentSide_, nowTitle_, pairTransport_}) part->setVisible(branch);
+  transport_->setVisible(!branch);
+  picture_->showText("Opening the replay …");
+  replay_->open(file_, attempt_);
+  if (!branch) return;
+  parentPicture_->showText("Opening the replay …");
+  parentReplay_->open(parent_, status.parent);
+}
+
+/// Both stand where the branch left its parent.
+void EndPage::alignReplays() {
+  if (parent_.empty() || !replay_->isOpen() || !parentReplay_->isOpen()) return;
+  pair_->align({branchedAt_, branchedAt_});
+}
+
+void EndPage::playFrom(double time) {
+  if (!pair_->alignment()) return replay_->playFrom(time);
+  pair_->goTo(time - branchedAt_);
+  pair_->play(true);
+}
+
 void EndPage::replayMoment() {
-  if (const auto time = chosenBranch(*moments_)) replay_->playFrom(*time);
+  if (const auto time = chosenBranch(*moments_)) playFrom(*time);
 }
 
 void EndPage::read() {
   if (setup_.mode != recorder::Mode::practice) return;
   reading_ = true;
-  const auto job = [this, file = file_, cohort = setup_.cohort, earlier = earlier_] {
+  const auto job = [this, file = file_, parent = parent_, cohort = setup_.cohort, earlier = earlier_] {
     AttemptFacts facts = readFacts(file, cohort);
     std::optional<AttemptFacts> before = previousInCohort(facts, cohort);
     const bool comparable = earlier && earlier->attempt.comparabilityKey == facts.attempt.comparabilityKey &&
                             earlier->attempt.synthetic == facts.attempt.synthetic;
     if (comparable && (!before || before->attempt.startUtc < earlier->attempt.startUtc)) before = earlier;
-    return [this, report = reportOf(std::move(facts), before, normsOf(cohort))] { showReport(report); };
+    std::optional<Lesson> lesson;
+    if (!parent.empty()) lesson = lessonOf(parent, file);
+    return [this, report = reportOf(std::move(facts), before, normsOf(cohort)), lesson] { showReport(report, lesson); };
   };
   background_.run(job, [this](const QString& reason) {
     reading_ = false;
@@ -321,14 +247,15 @@ void EndPage::read() {
   });
 }
 
-void EndPage::showReport(const AttemptReport& report) {
+void EndPage::showReport(const AttemptReport& report, const std::optional<Lesson>& lesson) {
   reading_ = false;
   shown_ = report.facts;
   inCohort_ = report.facts.inCohort;
-  QStringList verdict;
-  for (const std::string& sentence : report.summary.errors) verdict += QString::fromStdString(sentence);
-  if (!report.summary.criticalView.empty()) verdict.prepend(QString::fromStdString(report.summary.criticalView));
-  say(verdict_, verdict.join('\n'));
+  verdict_->showSummary(report.summary);
+  if (errors_) verdict_->showErrors(*errors_);
+  if (lesson)
+    say(lesson_, QString("<b>Over %1 s from the branch on</b>").arg(numberText(lesson->seconds)) +
+                     stretchTable(lesson->figures, {"before", "this time"}));
   say(norm_, report.norm);
   say(previous_, report.previous);
   QStringList figures;
@@ -338,10 +265,10 @@ void EndPage::showReport(const AttemptReport& report) {
 }
 
 void EndPage::showStoring() {
-  store_->setVisible(!setup_.cohort.empty() && !synthetic_);
+  store_->setVisible(!setup_.cohort.empty() && !synthetic_ && kept_);
   store_->setEnabled(!work_.busy() && !inCohort_);
   store_->setText(inCohort_ ? "Is in the cohort" : "&Put into the cohort");
-  if (storeText_->text().isEmpty() && setup_.cohort.empty() && !synthetic_)
+  if (storeText_->text().isEmpty() && setup_.cohort.empty() && !synthetic_ && kept_)
     say(storeText_, "To keep figures and to hold them against a norm, name a cohort when the trainer starts.");
 }
 
@@ -354,12 +281,17 @@ void EndPage::store() {
   showStoring();
 }
 
-void EndPage::leave() { replay_->close(); }
+void EndPage::leave() {
+  pair_->clear();
+  replay_->close();
+  parentReplay_->close();
+}
 
 bool EndPage::settled() const {
   const bool practice = setup_.mode == recorder::Mode::practice;
   return !reading_ && !work_.busy() &&
-         (!practice || !replay_->isOpen() || (replay_->position().settled && picture_->shown() > 0));
+         (!practice || !replay_->isOpen() || (replay_->position().settled && picture_->shown() > 0)) &&
+         (parent_.empty() || pair_->alignment());
 }
 
 }  // namespace calot::gui

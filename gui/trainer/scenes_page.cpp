@@ -108,13 +108,12 @@ ScenesPage::ScenesPage(bool practice, bool demonstrates)
   for (QPushButton* const button : {begin_, tutorial_, demonstration_}) button->setEnabled(false);
 
   pastSide_->hide();
-  auto* const column = new QWidget;
-  column->setMaximumWidth(1300);
-  column->setLayout(parts::column({title,
+  QFrame* const column = parts::sheet(parts::column({title,
                                    text,
                                    parts::space(6),
                                    {parts::row({{list_, 3}, {pastSide_, 2}}), 1},
-                                   parts::row({tutorial_, parts::spring(), demonstration_, begin_})}));
+                                   parts::row({tutorial_, parts::spring(), demonstration_, parts::primary(begin_)})}));
+  column->setMaximumWidth(1300);
   QBoxLayout* const outer = parts::row({parts::spring(), {column, 20}, parts::spring()});
   outer->setContentsMargins(16, 8, 16, 8);
   setLayout(outer);

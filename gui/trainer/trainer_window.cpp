@@ -95,6 +95,19 @@ void TrainerWindow::connectPages() {
 }
 
 void TrainerWindow::begin(recorder::LoadedScene scene, Purpose purpose) {
+  open(std::move(scene), purpose);
+  session_->start();
+  showOperation();
+}
+
+void TrainerWindow::beginBranch(recorder::LoadedScene scene, const std::filesystem::path& recording, double time) {
+  open(std::move(scene), Purpose::own);
+  session_->branchOf(recording, time);
+  showOperation();
+}
+
+/// Makes the scene's session.
+void TrainerWindow::open(recorder::LoadedScene scene, Purpose purpose) {
   endSession();
   problem_->hide();
   setWindowTitle(QString::fromStdString(scene.description.name) + QString::fromUtf8(" – Calot trainer"));
@@ -115,9 +128,7 @@ void TrainerWindow::begin(recorder::LoadedScene scene, Purpose purpose) {
   session_ = std::make_unique<TrainingSession>(
       std::move(settings), purpose == Purpose::demonstration ? setup_.demonstration : setup_.input,
       [view = view_](std::shared_ptr<const SceneView> seen) { view->showView(std::move(seen)); });
-  session_->start();
   timer_.start();
-  showOperation();
 }
 
 bool TrainerWindow::openScene(const QString& file, Purpose purpose) {
@@ -310,7 +321,7 @@ void TrainerWindow::showEnd(const TrainingStatus& status, const QString& result)
   ended_ = status.attempt;
   if (status.figures.ticks == 0) return;
   stack_->setCurrentWidget(end_);
-  end_->showAttempt(status, result, tickLength * session_->scene().ticksPerStep, taskAfterThis().has_value());
+  end_->showAttempt(status, {result, tickLength * session_->scene().ticksPerStep, purpose_, taskAfterThis().has_value()});
 }
 
 void TrainerWindow::buildMenus() {

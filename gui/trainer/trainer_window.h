@@ -50,7 +50,9 @@ class TrainerWindow : public QMainWindow {
 
   /// Begins with a scene: an attempt starts as soon as all is ready.
   void begin(recorder::LoadedScene scene, Purpose purpose = Purpose::own);
-  /// The same from a file. On failure says why in one line on the window, and returns false.
+  /// Goes on with a recording of this scene, of whomever, from that time of it (s).
+  void beginBranch(recorder::LoadedScene scene, const std::filesystem::path& recording, double time);
+  /// As begin(), from a file. On failure says why in one line on the window, and returns false.
   bool openScene(const QString& file, Purpose purpose = Purpose::own);
   /// Back to the scenes; what runs ends.
   void chooseScene();
@@ -82,6 +84,7 @@ class TrainerWindow : public QMainWindow {
   void nextTask();
   void readHistory();
   void showOver(const TrainingStatus& status);
+  void open(recorder::LoadedScene scene, Purpose purpose);
   void showEnd(const TrainingStatus& status, const QString& result);
   [[nodiscard]] Pointer pointer(const TrainingStatus& status) const;
   [[nodiscard]] std::optional<Hand> driven() const;

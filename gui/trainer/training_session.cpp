@@ -79,7 +79,7 @@ TrainingSession::TrainingSession(TrainingSettings settings, std::shared_ptr<Atte
 TrainingSession::~TrainingSession() { stop(); }
 
 void TrainingSession::stop() {
-  post({true, std::nullopt}, Outcome::stopped);
+  post({true}, Outcome::stopped);
   if (thread_.joinable()) thread_.join();
 }
 
@@ -106,6 +106,12 @@ bool TrainingSession::goBack(double time) {
     if (!(time >= stepSeconds && time <= now)) return false;
   }
   post({false, time}, Outcome::stopped);
+  return true;
+}
+
+bool TrainingSession::branchOf(const std::filesystem::path& recording, double time) {
+  if (mode() != recorder::Mode::practice) return false;
+  post({false, time, recording}, Outcome::stopped);
   return true;
 }
 
@@ -183,7 +189,7 @@ void TrainingSession::work() {
     }
     std::string problem;
     try {
-      attempt(command.back);
+      attempt(command);
     } catch (const Interrupted&) {
     } catch (const std::exception& error) {
       problem = problemText(error);
@@ -200,15 +206,16 @@ void TrainingSession::giveWay() const {
   if (command_) throw Interrupted{};
 }
 
-/// A new attempt, or a branch of the last one, from that time of it.
-void TrainingSession::attempt(std::optional<double> back) {
-  std::filesystem::path parentFile;
+/// A new attempt, or a branch.
+void TrainingSession::attempt(const Command& command) {
+  const std::optional<double>& back = command.back;
+  std::filesystem::path parentFile = command.parent;
   {
     const std::lock_guard lock(mutex_);
     status_.stage = back ? Stage::takingParent : Stage::preparing;
     status_.progress = 0.0;
     status_.problem.clear();
-    parentFile = status_.file;
+    if (parentFile.empty()) parentFile = status_.file;
   }
   if (!prepared_) prepared_ = recorder::prepareScene(settings_.scene.assets, Where{"scene " + scene().name});
   const Model& model = prepared_->model();
@@ -222,9 +229,15 @@ void TrainingSession::attempt(std::optional<double> back) {
     recorder::refuseParent(*parent);
     fork = recorder::forkStepAt(*parent, *back);
   }
-  const recorder::AttemptHeader header =
+  recorder::AttemptHeader header =
       parent ? recorder::branchHeader(*parent, model, fork, source->provenance())
              : recorder::makeHeader(model, settings_.scene.assets, source->provenance(), settings_.attempt);
+  // Who goes on with another's attempt is who acts.
+  if (!settings_.attempt.participant.empty()) header.participant = settings_.attempt.participant;
+  {
+    const std::lock_guard lock(mutex_);
+    status_.parentFile = parent ? parentFile : std::filesystem::path();
+  }
   const std::filesystem::path file = freshFile(settings_.folder, scene().name, header.startUtc);
   std::optional<recorder::NewFile> place;  // until the parent's part is taken
   if (parent) place.emplace(file, false, ".branch");

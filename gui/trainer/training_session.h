@@ -98,6 +98,7 @@ struct TrainingStatus {
   bool kept = true;             ///< the file stays when the session ends
   bool locked = true;           ///< its file system granted a lock
   std::string attempt, parent;  ///< uuids; parent empty unless it is a branch
+  std::filesystem::path parentFile;
   double branchedAt = 0.0;      ///< where a branch left its parent (s)
   recorder::OperatorKind operatorKind = recorder::OperatorKind::human;
   recorder::RunReport report;  ///< of the attempt that ended
@@ -128,6 +129,10 @@ class TrainingSession {
   /// Ends what runs as stopped, and goes on from that moment of it in a branch.
   /// @param time of the attempt (s), not before its first step's end and not after its last step
   bool goBack(double time);
+  /// Goes on from a moment of any recording, of whomever: a branch of it by this session's participant. Its faults are
+  /// in the status. Practice only.
+  /// @param time of that attempt (s)
+  bool branchOf(const std::filesystem::path& recording, double time);
   /// Exchanges a hand's instrument, which takes TrainingSettings::exchange; meanwhile the hand has none.
   bool mount(Hand hand, InstrumentKind instrument);
   /// Asks the assistant for more or less retraction.
@@ -148,13 +153,14 @@ class TrainingSession {
  private:
   struct Command {
     bool quit = false;
-    std::optional<double> back;  ///< go back to this time; none: a new attempt
+    std::optional<double> back = {};     ///< go back to this time; none: a new attempt
+    std::filesystem::path parent = {};   ///< of that recording; empty: of the last attempt
   };
   struct Interrupted {};  ///< thrown where another command came before a run began
 
   void post(Command command, recorder::Outcome ending);
   void work();
-  void attempt(std::optional<double> back);
+  void attempt(const Command& command);
   void takeParent(recorder::Recording& parent, recorder::Session& session, std::uint64_t fork,
                   recorder::RecordingWriter& writer);
   void run(recorder::Session& session, recorder::SampleSource& source, recorder::ControlledSource& controlled,

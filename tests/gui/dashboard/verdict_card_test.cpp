@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The verdict on a page, and the way from each error to its moment: by mouse, and by keys alone.
-#include "gui/dashboard/verdict_card.h"
+#include "gui/attempt/verdict_card.h"
 
 #include <gtest/gtest.h>
 #include <algorithm>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How an attempt went, in words: against a norm, and against the last time.
-#include "gui/trainer/end_page.h"
+#include "gui/trainer/attempt_report.h"
 
 #include <gtest/gtest.h>
 

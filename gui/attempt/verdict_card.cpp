@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "gui/dashboard/verdict_card.h"
+#include "gui/attempt/verdict_card.h"
 
 #include <QLabel>
 #include <QPushButton>
