@@ -82,9 +82,12 @@ AttemptPage::AttemptPage()
       figures_(new FigurePanel),
       recording_(new RecordingView({})),
       find_(parts::named("find-recording", new QPushButton("Find the &recording …"))),
+      goOn_(parts::named("go-on", new QPushButton("&Go on from here …"))),
       force_(new TraceChart("force-trace", "Force on the hand (N): left solid, right dashed")) {
   static_cast<QBoxLayout*>(recording_->layout())->insertWidget(1, find_, 0, Qt::AlignHCenter);
-  QBoxLayout* const left = parts::column({{recording_, 1}, &recording_->timeline(), force_});
+  goOn_->setToolTip("A branch: a performer, or a person in the trainer, does what comes now in another way");
+  QBoxLayout* const left = parts::column({{recording_, 1}, &recording_->timeline(), force_,
+                                          parts::row({parts::spring(), goOn_})});
   left->setSpacing(2);
   QBoxLayout* const right = parts::column({verdict_, {figures_, 1}});
   QSplitter* const all = makeSplitter(Qt::Horizontal, {{parts::boxed(left), 3}, {parts::boxed(right), 2}});
@@ -97,6 +100,10 @@ AttemptPage::AttemptPage()
 
 void AttemptPage::connectParts() {
   connect(find_, &QPushButton::clicked, this, &AttemptPage::askForRecording);
+  connect(goOn_, &QPushButton::clicked, this, [this] {
+    emit continuationRequested(QString::fromStdString(recording_->file().string()),
+                               recording_->replay().position().time);
+  });
   connect(figures_, &FigurePanel::summaryChanged, this, [this] {
     verdict_->showSummary(figures_->summary());
     verdict_->showErrors(figures_->errors());
@@ -115,6 +122,7 @@ void AttemptPage::connectParts() {
   connect(verdict_, &VerdictCard::timeChosen, replay, &Replay::seek);
   connect(&recording_->timeline(), &TimelineBar::timeChosen, replay, &Replay::seek);
   connect(force_, &TraceChart::timeChosen, replay, &Replay::seek);
+  connect(replay, &Replay::positionChanged, goOn_, [this] { goOn_->setEnabled(recording_->isOpen()); });
   connect(replay, &Replay::positionChanged, force_, [this, replay] { force_->setPosition(replay->position().time); });
   connect(recording_, &RecordingView::opened, this, [this] { figures_->setMomentsText("looking …"); });
   connect(recording_, &RecordingView::momentsFound, figures_, &FigurePanel::setMoments);
@@ -152,11 +160,13 @@ void AttemptPage::clear() {
   verdict_->hide();
   figures_->clear();
   find_->hide();
+  goOn_->setEnabled(false);
   force_->clear();
 }
 
 void AttemptPage::read() {
   banner_->showAttempt(*attempt_);
+  goOn_->setEnabled(false);
   force_->clear();
   figures_->setAttempt(document_, *attempt_);
   const bool found = recording_->open(*attempt_, *document_, judgedFigures(figures_->values()));

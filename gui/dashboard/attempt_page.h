@@ -39,6 +39,8 @@ class AttemptPage : public CohortPage {
  signals:
   void sheetWritten(const QString& text);
   void normRequested();
+  /// Somebody is to go on from a moment of the attempt. @param time s
+  void continuationRequested(const QString& recording, double time);
 
  private:
   void read() override;
@@ -55,7 +57,7 @@ class AttemptPage : public CohortPage {
   VerdictCard* verdict_;
   FigurePanel* figures_;
   RecordingView* recording_;
-  QPushButton* find_;
+  QPushButton *find_, *goOn_;
   TraceChart* force_;
 };
 

@@ -186,6 +186,7 @@ void DashboardWindow::connectPages() {
   connect(greeting_, &GreetingPage::importRequested, this, &DashboardWindow::askForRecordings);
   connect(attempt_, &AttemptPage::sheetWritten, this,
           [this](const QString& text) { statusBar()->showMessage(text, noticeFor); });
+  connect(attempt_, &AttemptPage::continuationRequested, this, &DashboardWindow::askForContinuation);
   connect(attempt_, &AttemptPage::normRequested, this, &DashboardWindow::askForNorm);
   connect(attempts_, &AttemptsPage::groupEdited, this, &DashboardWindow::changeGroup);
   connect(rating_, &RatingPage::nextWanted, attempts_, &AttemptsPage::selectNext);
@@ -240,6 +241,7 @@ void DashboardWindow::setDocument(std::shared_ptr<const CohortDocument> document
   }
   if (!awaited_.isEmpty() && document_->attempt(awaited_.toStdString()) != nullptr)
     openAttempt(std::exchange(awaited_, QString()));
+  showBranch();
   emit documentShown();
 }
 
@@ -304,6 +306,27 @@ void DashboardWindow::importRecordings(const QStringList& paths) {
   for (const QString& file : files) settings::rememberRecordingFolder(QFileInfo(file).absolutePath());
   importDock_->show();
   imports_.add(files);
+}
+
+void DashboardWindow::addBranch(const BranchRequest& request, const QString& parentUuid) {
+  if (!imports_.busy())
+    imports_.configure(settings::calotProgram(), QString::fromStdString(document_->path()), settings::importThreads());
+  settings::rememberRecordingFolder(QFileInfo(request.file).absolutePath());
+  branched_ = parentUuid.toStdString();
+  branchName_ = QFileInfo(request.file).fileName().toStdString();
+  importDock_->show();
+  imports_.addBranch(request);
+}
+
+/// Once the branch is in the cohort.
+void DashboardWindow::showBranch() {
+  const auto branch = std::ranges::find_if(document_->attempts(), [this](const analytics::AttemptRow& attempt) {
+    return attempt.parent == branched_ && attempt.fileName == branchName_;
+  });
+  if (branched_.empty() || branch == document_->attempts().end()) return;
+  pair_->setAttempt(0, std::exchange(branched_, {}));
+  pair_->setAttempt(1, branch->uuid);
+  tabs_->setCurrentWidget(pair_);
 }
 
 void DashboardWindow::showRecording(const QString& file, const QString& uuid) {

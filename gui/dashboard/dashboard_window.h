@@ -53,6 +53,9 @@ class DashboardWindow : public QMainWindow {
   void reload();
   /// Puts recordings (files, and folders with such) into the import's queue. @pre a database is open
   void importRecordings(const QStringList& paths);
+  /// Has a performer go on with an attempt's recording; both are shown side by side when the branch is in the cohort.
+  /// @pre a cohort is open
+  void addBranch(const BranchRequest& request, const QString& parentUuid);
   /// Shows an attempt as soon as the open database has it; imports its recording where it has not.
   /// @pre a database is open
   void showRecording(const QString& file, const QString& uuid);
@@ -103,6 +106,8 @@ class DashboardWindow : public QMainWindow {
   void askForExclusion();
   void askForTag(bool add);
   void askForNorm();
+  void askForContinuation(const QString& recording, double time);
+  void showBranch();
   void askForList();
   void print();  ///< what the page shows
   void showManual();
@@ -129,6 +134,7 @@ class DashboardWindow : public QMainWindow {
   QDockWidget* importDock_ = nullptr;
   QTimer* refresh_ = nullptr;  ///< while an import runs
   ImportQueue imports_;
+  std::string branched_, branchName_;  ///< the parent's uuid and the branch's file name: to be shown side by side
   CohortWriter writer_;
   Background loader_;  ///< reads again what is open
   Background opener_;  ///< opens another

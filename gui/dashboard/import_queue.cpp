@@ -86,6 +86,12 @@ ImportQueue::ImportQueue(AssessProgram how) : how_(std::move(how)) {
   connect(&process_, &QProcess::readyReadStandardError, this, [this] { collect(); });
   connect(&process_, &QProcess::finished, this, [this](int code, QProcess::ExitStatus status) {
     collect();
+    if (making_ && code == 0 && status == QProcess::NormalExit && !cancelled_) {
+      making_.reset();
+      QTimer::singleShot(0, this, [this] { run(); });  // not from within the process's own signal
+      return;
+    }
+    if (making_) return finishCurrent({current_, ImportResult::Kind::failed, "no branch was made: " + lastLine(errors_)});
     finishCurrent(importResultOf(how_, current_, code, status == QProcess::CrashExit, output_, errors_));
   });
   connect(&process_, &QProcess::errorOccurred, this, [this](QProcess::ProcessError error) {
@@ -112,8 +118,15 @@ void ImportQueue::configure(const QString& program, const QString& database, int
 
 void ImportQueue::add(const QStringList& files) {
   if (!busy()) done_ = total_ = 0;
-  waiting_ += files;
+  for (const QString& file : files) waiting_.append({file});
   total_ += static_cast<int>(files.size());
+  if (current_.isEmpty()) startNext();
+}
+
+void ImportQueue::addBranch(const BranchRequest& request) {
+  if (!busy()) done_ = total_ = 0;
+  waiting_.append({request.file, request});
+  ++total_;
   if (current_.isEmpty()) startNext();
 }
 
@@ -130,14 +143,21 @@ void ImportQueue::startNext() {
     emit allDone();
     return;
   }
-  current_ = waiting_.takeFirst();
+  const Item next = waiting_.takeFirst();
+  current_ = next.file;
+  making_ = next.branch;
   cancelled_ = false;
+  clock_.start();
+  run();
+}
+
+void ImportQueue::run() {
   output_.clear();
   errors_.clear();
-  clock_.start();
   emit progressed();
   // An absolute path: no file's name is an option.
-  process_.start(program_, how_.arguments(QFileInfo(current_).absoluteFilePath(), database_, threads_));
+  process_.start(program_, making_ ? how_.branch(*making_)
+                                   : how_.arguments(QFileInfo(current_).absoluteFilePath(), database_, threads_));
   process_.closeWriteChannel();
 }
 
@@ -151,6 +171,7 @@ void ImportQueue::finishCurrent(ImportResult result) {
   if (cancelled_) result = {current_, ImportResult::Kind::failed, "stopped"};
   ++done_;
   current_.clear();
+  making_.reset();
   emit fileDone(result);
   emit progressed();
   // Not from within the process's own signal.
@@ -187,8 +208,9 @@ void ImportPanel::showProgress() {
   bar_->setValue(queue_.done());
   const QString count = QString("%1 of %2 recordings").arg(queue_.done()).arg(queue_.total());
   if (!queue_.current().isEmpty())
-    text_->setText(QString("%1 done. Simulating %2 again, %3 s so far … %4")
-                       .arg(count, QFileInfo(queue_.current()).fileName())
+    text_->setText(QString("%1 done. %2 %3, %4 s so far … %5")
+                       .arg(count, queue_.making() ? "Making the branch" : "Simulating again",
+                            QFileInfo(queue_.current()).fileName())
                        .arg(queue_.seconds())
                        .arg(leftText(left)));
   else

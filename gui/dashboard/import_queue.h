@@ -8,6 +8,9 @@
 #include <QString>
 #include <QStringList>
 #include <QWidget>
+#include <optional>
+
+#include "gui/dashboard/continuation.h"
 
 class QLabel;
 class QListWidget;
@@ -21,6 +24,8 @@ namespace calot::gui {
 struct AssessProgram {
   /// Arguments for one recording, with its report as JSON. @param file an absolute path
   std::function<QStringList(const QString& file, const QString& database, int threads)> arguments;
+  /// Arguments that make a branch by a performer.
+  std::function<QStringList(const BranchRequest& request)> branch;
   /// True if an exit code blames the recording: damaged, or in conflict with the cohort.
   std::function<bool(int exitCode)> refused;
   /// Command line that assesses a recording into this database.
@@ -59,6 +64,8 @@ class ImportQueue : public QObject {
   void configure(const QString& program, const QString& database, int threads);
   /// Puts recordings behind those that wait; starts.
   void add(const QStringList& files);
+  /// The same for a performer's continuation, whose recording is made first.
+  void addBranch(const BranchRequest& request);
   /// Stops the one that is being assessed (the cohort keeps nothing of it) and drops the others.
   void cancel();
 
@@ -66,6 +73,7 @@ class ImportQueue : public QObject {
   [[nodiscard]] int done() const { return done_; }
   [[nodiscard]] int total() const { return total_; }
   [[nodiscard]] QString current() const { return current_; }
+  [[nodiscard]] bool making() const { return making_.has_value(); }  ///< the current one is being made
   [[nodiscard]] qint64 seconds() const { return current_.isEmpty() ? 0 : clock_.elapsed() / 1000; }  ///< of the current
 
  signals:
@@ -81,8 +89,15 @@ class ImportQueue : public QObject {
   AssessProgram how_;
   QString program_, database_;
   int threads_ = 1;
-  QStringList waiting_;
+  struct Item {
+    QString file;
+    std::optional<BranchRequest> branch = {};  ///< to be made before it is assessed
+  };
+  void run();
+
+  QList<Item> waiting_;
   QString current_;
+  std::optional<BranchRequest> making_;  ///< the branch that the process makes
   int done_ = 0, total_ = 0;
   bool cancelled_ = false;
   QByteArray output_, errors_;

@@ -14,6 +14,8 @@
 #include <QMenu>
 #include <QPrintDialog>
 #include <QPrinter>
+#include <QProcess>
+#include <QStandardPaths>
 #include <QStackedWidget>
 #include <QStatusBar>
 #include <QTabWidget>
@@ -247,6 +249,25 @@ void DashboardWindow::pairSelected() {
   }
   for (std::size_t side = 0; side < 2; ++side) pair_->setAttempt(side, chosen[side].uuid);
   tabs_->setCurrentWidget(pair_);
+}
+
+void DashboardWindow::askForContinuation(const QString& recording, double time) {
+  const analytics::AttemptRow* const attempt = attempts_->selected();
+  if (attempt == nullptr) return;
+  const QString uuid = QString::fromStdString(attempt->uuid);
+  ContinuationDialog dialog(time, this);
+  if (dialog.exec() != QDialog::Accepted) return;
+  if (dialog.byPerformer()) {
+    const QString profile = dialog.profile();
+    addBranch({recording, time, profile, dialog.seconds(), branchFile(recording, profile, time)}, uuid);
+    return;
+  }
+  const QString trainer =
+      QStandardPaths::findExecutable("calot-trainer", {QFileInfo(settings::calotProgram()).absolutePath()});
+  const QStringList arguments{"--branch", recording, "--at", QString::number(time, 'f', 3), "--cohort",
+                              QString::fromStdString(document_->path()), "-o", QFileInfo(recording).absolutePath()};
+  if (trainer.isEmpty() || !QProcess::startDetached(trainer, arguments))
+    showProblem("The trainer cannot be started: it is looked for beside the program that File, Settings names.");
 }
 
 void DashboardWindow::askForDatabase() {

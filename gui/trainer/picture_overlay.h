@@ -33,6 +33,7 @@ class PictureOverlay : public QWidget {
   /// @param figures of the attempt; null: no instruments
   void showInstruments(const AttemptFigures* figures, double verticalFieldOfView);
 
+  [[nodiscard]] const QString& count() const { return count_; }
   [[nodiscard]] const QString& error() const { return error_; }
   /// Direction of each hand's arrow; none: no arrow.
   [[nodiscard]] const std::array<std::optional<QPointF>, handCount>& arrows() const { return arrow_; }

@@ -9,6 +9,7 @@
 
 #include "gui/trainer/operation_view.h"
 #include "sim/instruments/instruments.h"
+#include "tests/support/message.h"
 
 namespace calot::gui {
 namespace {
@@ -65,7 +66,7 @@ TEST(Hints, FollowTheProcedure) {
   figures.procedure.criticalViewFrozen = true;
   figures.procedure.lowerThirdFreed = 0;  // frozen as it is: no way back
   figures.vessel[0].clips = 3;
-  EXPECT_EQ(hint(), "Take the scissors. Cut the cystic duct between its clips, 2 on the side that stays.");
+  EXPECT_EQ(hint(), "Take the scissors. Cut the cystic duct between its clips: 2 stay with the patient.");
   figures.vessel[0].partings = 1;
   figures.vessel[1].clips = 1;
   EXPECT_EQ(hint(), "Clip the cystic artery: 1 of 3 clips are on, 2 stay with the patient.");
@@ -75,7 +76,7 @@ TEST(Hints, FollowTheProcedure) {
   EXPECT_EQ(hint(),
             "Take the gallbladder off its bed: pull it away and burn what is stretched. 25 % is still attached.");
   figures.attached = 0.0;
-  EXPECT_EQ(hint(), "Fat still holds the gallbladder: pull it away and divide what is drawn out.");
+  EXPECT_EQ(hint(), "Pull the gallbladder away and divide the fat that still holds it.");
   EXPECT_EQ(whatIsUndone(scene, figures), "nothing was touched");
   figures.touched = true;
   EXPECT_EQ(whatIsUndone(scene, figures), "the procedure was still at its phase identification");
@@ -84,6 +85,17 @@ TEST(Hints, FollowTheProcedure) {
   figures.procedure.phase = Phase::done;
   EXPECT_EQ(whatIsUndone(scene, figures), "");
   EXPECT_EQ(hint(), "All is done. End the attempt when you are content.");
+}
+
+TEST(Hints, TellAWatcherWhatThePerformerDoes) {
+  const SceneDescription scene = operation();
+  AttemptFigures figures = figuresAt(Phase::identification);
+  const auto hint = [&] { return hintFor(scene, "summary", figures, true); };
+  EXPECT_EQ(hint(), "Watch the performer carve the fat off Calot's triangle.");
+  figures.procedure.criticalViewFrozen = true;
+  EXPECT_EQ(hint(), "Watch the performer clip the cystic duct: 0 of 3 clips are on, 2 stay with the patient.");
+  figures.procedure.phase = Phase::done;
+  EXPECT_EQ(hint(), "The performer has done.");
 }
 
 TEST(Hints, AreTheSummaryWhereThereIsNoProcedure) {
@@ -110,6 +122,19 @@ class Texts : public ::testing::Test {
   }
 };
 
+TEST_F(Texts, ForceAndDepthAreSaidWhereTheTaskIsAboutThem) {
+  TrainingStatus status = running();
+  status.figures.hand[1].force = 0.42;
+  status.figures.hand[1].depth = 0.0061;
+  status.figures.hand[1].greatestForce = 1.25;
+  const auto right = [&](const SceneDescription& scene, recorder::Mode mode) {
+    return panelText(status, scene, "", mode, std::nullopt).hand[1].toStdString();
+  };
+  expectHolds(right(SceneDescription{}, recorder::Mode::practice), {"6 mm", "0.4 N", "1.2 N"});
+  EXPECT_EQ(right(operation(), recorder::Mode::practice).find(" N"), std::string::npos);
+  EXPECT_EQ(right(SceneDescription{}, recorder::Mode::assessment).find(" N"), std::string::npos) << "a score";
+}
+
 TEST_F(Texts, ACountdownIsSaid) {
   TrainingStatus status = running();
   status.stage = Stage::countdown;
@@ -125,7 +150,8 @@ TEST_F(Texts, SayWhatRuns) {
   EXPECT_EQ(text.stage, QString::fromUtf8("● Recording"));
   EXPECT_EQ(text.mode, "Practice");
   EXPECT_EQ(text.time, "1:02.5") << "a clock does not round up";
-  EXPECT_EQ(text.deadlines, "Forces on time");
+  EXPECT_EQ(text.technical, "Forces on time");
+  EXPECT_EQ(text.late, "");
   EXPECT_EQ(text.phase, "Phase: clipping");
   EXPECT_EQ(text.score, "Critical view 0 of 6\nErrors: 1 critical, 2 minor");
   EXPECT_FALSE(text.hint.isEmpty());
@@ -153,13 +179,15 @@ TEST_F(Texts, LateForcesAndALostDeviceAreTold) {
   status.figures.ticks = 20000;
   status.figures.missedDeadlines = 30;
   PanelText text = panelText(status, operation(), "", recorder::Mode::practice, std::nullopt);
-  EXPECT_EQ(text.deadlines, "30 forces late (0.15 %)");
-  EXPECT_FALSE(text.late) << "long ago";
-  status.figures.missedLately = 1;
+  EXPECT_EQ(text.technical, "30 forces late (0.15 %)");
+  EXPECT_EQ(text.late, "") << "long ago";
+  status.figures.missedLately = 9;
+  EXPECT_EQ(panelText(status, operation(), "", recorder::Mode::practice, std::nullopt).late, "") << "nobody feels these";
+  status.figures.missedLately = 10;
   status.figures.stretched = 1.25;
   text = panelText(status, operation(), "", recorder::Mode::practice, std::nullopt);
-  EXPECT_TRUE(text.late);
-  EXPECT_TRUE(text.deadlines.startsWith("30 forces late (0.15 %)\nClock slowed by 1.")) << text.deadlines.toStdString();
+  expectHolds(text.late.toStdString(), {"too slow"});
+  EXPECT_TRUE(text.technical.startsWith("30 forces late (0.15 %)\nClock slowed by 1.")) << text.technical.toStdString();
   status.waiting = true;
   EXPECT_EQ(panelText(status, operation(), "", recorder::Mode::practice, std::nullopt).stage,
             QString::fromUtf8("Waiting for the device …"));
@@ -230,7 +258,7 @@ TEST_F(Texts, NumbersFollowTheLocale) {
   status.figures.missedDeadlines = 3000;
   const PanelText text = panelText(status, operation(), "", recorder::Mode::practice, std::nullopt);
   EXPECT_EQ(text.time, "1:02,5");
-  EXPECT_EQ(text.deadlines, "3.000 forces late (0,15 %)");
+  EXPECT_EQ(text.technical, "3.000 forces late (0,15 %)");
 }
 
 TEST(KeyBindings, EveryKeyOnceAndEveryControlHasOne) {

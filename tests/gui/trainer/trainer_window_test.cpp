@@ -11,6 +11,7 @@
 #include <QLocale>
 #include <QMouseEvent>
 #include <QPushButton>
+#include <QSlider>
 #include <QTest>
 
 #include "analytics/cohort/cohort_database.h"
@@ -25,6 +26,7 @@
 #include "recorder/sources/scope/scope_source.h"
 #include "tests/gui/trainer/support/spoken.h"
 #include "tests/gui/trainer/support/trainer_rig.h"
+#include "tests/gui/trainer/support/trainer_window_rig.h"
 #include "tests/support/fault.h"
 #include "tests/support/message.h"
 
@@ -32,112 +34,8 @@ namespace calot::gui {
 namespace {
 
 using trainertest::expectExact;
-
-constexpr int patience = 60000;  // ms
-
-class Trainer : public ::testing::Test {
- protected:
-  static void SetUpTestSuite() {
-    qputenv("QT_QPA_PLATFORM", "offscreen");
-    static int count = 1;
-    static char name[] = "test";
-    static char* arguments[] = {name, nullptr};
-    if (QApplication::instance() == nullptr) new QApplication(count, arguments);
-  }
-  void SetUp() override { QLocale::setDefault(QLocale::c()); }
-  void TearDown() override {
-    window_.reset();
-    QLocale::setDefault(QLocale::c());
-  }
-
-  /// @param device another device's input; null: mouse and keyboard
-  TrainerWindow& open(std::shared_ptr<AttemptInput> device = nullptr, recorder::Mode mode = recorder::Mode::practice) {
-    return open(std::move(device), mode, nullptr);
-  }
-  /// @param scope keys of an endoscope that moves; null: it is fixed
-  TrainerWindow& open(std::shared_ptr<AttemptInput> device, recorder::Mode mode,
-                      const std::shared_ptr<recorder::ScopeInput>& scope) {
-    TrainerSetup setup;
-    setup.scope = scope;
-    setup.settings.attempt.mode = mode;
-    setup.settings.attempt.participant = participant_;
-    setup.cohort = cohort_;
-    setup.demonstration = std::make_shared<trainertest::ScriptInput>(trainertest::swayingScript(20.0));
-    setup.settings.folder = folder_ / "";
-    setup.settings.countdown = std::chrono::milliseconds(1500);
-    setup.settings.exchange = std::chrono::milliseconds(500);
-    setup.scenes = {{"touch-liver", "A touch.", CALOT_SOURCE_DIR "/assets/scenes/touch-liver.json"},
-                    {"gone", "Is not there.", "/nowhere/gone.json"}};
-    if (device) {
-      setup.input = std::move(device);
-    } else {
-      setup.mouse = std::make_shared<recorder::MouseInput>();
-      MouseAttemptInput::AddScope addScope;
-      if (scope) {
-        addScope = [scope](std::unique_ptr<recorder::SampleSource> source, const SceneDescription& scene) {
-          return std::make_unique<recorder::ScopeSource>(std::move(source), recorder::Endoscope(scene, 0.0),
-                                                         std::make_unique<recorder::ScopeKeys>(scope));
-        };
-      }
-      setup.input =
-          std::make_shared<MouseAttemptInput>(setup.mouse, recorder::DeviceSourceSettings{}, std::move(addScope));
-    }
-    window_ = std::make_unique<TrainerWindow>(std::move(setup));
-    window_->show();
-    window_->activateWindow();
-    EXPECT_TRUE(QTest::qWaitForWindowActive(window_.get()));
-    return *window_;
-  }
-  void beginSmall() {
-    window_->begin(trainertest::smallLoadedScene());
-    ASSERT_TRUE(runs(0.1));
-  }
-  bool runs(double time) {
-    return QTest::qWaitFor(
-        [&] {
-          const TrainingStatus status = window_->session()->status();
-          return status.stage == Stage::running && status.figures.time >= time;
-        },
-        patience);
-  }
-  bool reaches(Stage stage) {
-    const bool there = QTest::qWaitFor([&] { return window_->session()->status().stage == stage; }, patience);
-    window_->refresh();
-    return there;
-  }
-  template <class T>
-  T* child(const char* name) {
-    T* const found = window_->findChild<T*>(name);
-    EXPECT_NE(found, nullptr) << name;
-    return found;
-  }
-  QString text(const char* label) { return child<QLabel>(label)->text(); }
-  /// What the panel says of the pointer at this moment, were it there.
-  QString saidOf(Pointer pointer) {
-    const TrainingSession& session = *window_->session();
-    return panelText(session.status(), session.scene(), "", session.mode(), Hand::right, pointer).pointer;
-  }
-  /// Lets a key be down until something is so.
-  void hold(Qt::Key key, const std::function<bool()>& until) {
-    QTest::keyPress(window_->view(), key);
-    EXPECT_TRUE(QTest::qWaitFor(until, patience));
-    QTest::keyRelease(window_->view(), key);
-  }
-  /// Moves the pointer within the picture. The event is sent: the platform's own comes when it likes, and not at all
-  /// where the pointer is there already.
-  void pointTo(const QPoint& there) {
-    QWidget& view = *window_->view();
-    QCursor::setPos(view.mapToGlobal(there));
-    QMouseEvent move(QEvent::MouseMove, there, view.mapToGlobal(there), Qt::NoButton, Qt::NoButton, Qt::NoModifier);
-    QApplication::sendEvent(&view, &move);
-  }
-  double jaw() { return window_->session()->status().figures.hand[1].jaw; }
-
-  recorder::test::Folder folder_;
-  std::filesystem::path cohort_;  ///< of the next window; empty: none
-  std::string participant_;
-  std::unique_ptr<TrainerWindow> window_;
-};
+using trainertest::patience;
+using trainertest::Trainer;
 
 TEST_F(Trainer, GreetsAndBeginsByKeyboard) {
   TrainerWindow& window = open();
@@ -293,6 +191,8 @@ TEST_F(Trainer, PausesListsTheMistakeAndGoesBack) {
   hold(Qt::Key_S, [&] { return jaw() > 0.5; });
   hold(Qt::Key_A, [&] { return !window.session()->status().figures.errors->empty(); });
   const TrainingStatus before = window.session()->status();
+  window.refresh();
+  expectHolds(view.over().error().toStdString(), {before.figures.errors->front().text});
   QTest::keyClick(&view, Qt::Key_Escape);
   ASSERT_TRUE(reaches(Stage::paused));
   EXPECT_EQ(text("stage"), QString::fromUtf8("❚❚ Paused"));
@@ -305,8 +205,8 @@ TEST_F(Trainer, PausesListsTheMistakeAndGoesBack) {
   pointTo(view.rect().center() + QPoint(60, 60));
   QTest::keyClick(mistakes, Qt::Key_Return);
   ASSERT_TRUE(reaches(Stage::countdown));
-  EXPECT_TRUE(text("stage").contains(text("over"))) << text("stage").toStdString();
-  EXPECT_TRUE(child<QLabel>("over")->isVisible());
+  EXPECT_TRUE(text("stage").contains(view.over().count())) << text("stage").toStdString();
+  EXPECT_FALSE(view.over().count().isEmpty());
   ASSERT_TRUE(QTest::qWaitFor([&] { return window.session()->status().parent == before.attempt; }, patience));
   ASSERT_TRUE(runs(window.session()->status().branchedAt + 0.2));
   EXPECT_TRUE(window.session()->status().figures.errors->empty()) << "it has not happened in the branch";
@@ -474,6 +374,25 @@ TEST_F(Trainer, ADemonstrationIsWatchedAndIsNoAttemptOfTheTrainee) {
   EXPECT_TRUE(child<QLabel>("endSynthetic")->isVisible());
   EXPECT_FALSE(child<QPushButton>("store")->isVisible());
   EXPECT_EQ(recorder::Recording(window.session()->status().file).header().participant, "");
+  expectHolds(text("result").toStdString(), {"not kept"});
+  window.chooseScene();
+  EXPECT_TRUE(window.endAndReport().empty() || window.endAndReport().back().find(".h5") == std::string::npos);
+  EXPECT_TRUE(std::filesystem::is_empty(folder_ / "")) << "it leaves no file";
+}
+
+TEST_F(Trainer, ABranchStandsBesideItsParentAtTheEnd) {
+  TrainerWindow& window = open();
+  beginSmall();
+  hold(Qt::Key_Right, [&] { return window.session()->status().figures.time > 1.0; });
+  ASSERT_TRUE(window.session()->goBack(0.5));
+  ASSERT_TRUE(QTest::qWaitFor([&] { return !window.session()->status().parent.empty(); }, patience));
+  ASSERT_TRUE(runs(0.8));
+  window.session()->finish();
+  ASSERT_TRUE(reaches(Stage::ended));
+  ASSERT_TRUE(QTest::qWaitFor([&] { return window.endPage()->settled(); }, patience));
+  EXPECT_EQ(window.findChildren<QSlider*>("pair-scrub").size(), 1);
+  EXPECT_TRUE(child<QSlider>("pair-scrub")->isVisible());
+  expectHolds(text("lesson").toStdString(), {"path of the right tip", "mm"});
 }
 
 TEST_F(Trainer, AnAssessmentShowsNoHintsNoScoreAndNoPause) {

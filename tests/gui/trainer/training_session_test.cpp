@@ -8,6 +8,7 @@
 #include <cmath>
 #include <thread>
 
+#include "gui/trainer/attempt_report.h"
 #include "recorder/base/errors.h"
 #include "recorder/recording/reader.h"
 #include "tests/gui/trainer/support/trainer_rig.h"
@@ -108,6 +109,46 @@ TEST(TrainingSession, AnAttemptBeginsWhenItsFirstPictureWasShown) {
   EXPECT_EQ(session.status().report.outcome, Outcome::completed);
 }
 
+TEST(TrainingSession, TimeStartsWithTheFirstMotion) {
+  recorder::test::Folder folder;
+  const auto input = std::make_shared<ScriptInput>(trainertest::swayingScript(1.0));
+  TrainingSettings settings = trainertest::smallSettings(folder);
+  settings.fromFirstMotion = true;
+  TrainingSession session(std::move(settings), input, [](const auto& /*view*/) {});
+  session.start();
+  ASSERT_TRUE(waitFor([&] { return session.status().stage == Stage::ready; }));
+  EXPECT_FALSE(session.finish());
+  ASSERT_TRUE(waitFor([&] { return session.status().stage == Stage::ended; }));
+  const TrainingStatus status = session.status();
+  EXPECT_EQ(status.report.outcome, Outcome::completed);
+  // The script's hands go 2 mm in the first tenth of a second.
+  EXPECT_NEAR(status.figures.time, 0.9, 0.03);
+  expectExact(status.file);
+}
+
+TEST(TrainingSession, WhoQuitsBeforeTheFirstMotionMadeNoAttempt) {
+  recorder::test::Folder folder;
+  recorder::DeviceScript still = trainertest::swayingScript(1.0);
+  for (recorder::DeviceSample& sample : still.samples) {
+    sample.position = Vec3::Zero();
+    sample.gripper = 0.0;
+  }
+  for (int i = 0; i < 2000; ++i) {  // for ten seconds more
+    recorder::DeviceSample next = still.samples.back();
+    next.hostTime = next.deviceTime += 5'000'000;
+    still.samples.push_back(next);
+  }
+  const auto input = std::make_shared<ScriptInput>(still);
+  TrainingSettings settings = trainertest::smallSettings(folder);
+  settings.fromFirstMotion = true;
+  TrainingSession session(std::move(settings), input, [](const auto& /*view*/) {});
+  session.start();
+  ASSERT_TRUE(waitFor([&] { return session.status().stage == Stage::ready; }));
+  session.stop();
+  EXPECT_TRUE(session.recorded().empty());
+  EXPECT_TRUE(std::filesystem::is_empty(folder / ""));
+}
+
 TEST(TrainingSession, APauseLeavesNoTick) {
   Rig rig(0.8);
   rig.session->start();
@@ -165,6 +206,12 @@ TEST(TrainingSession, GoesBackAndBranches) {
   EXPECT_EQ(b.header().parent, a.header().attempt);
   EXPECT_EQ(b.header().forkStep, 49);
   for (std::uint64_t n = 0; n < 50; ++n) ASSERT_EQ(a.step(n).brief, b.step(n).brief) << n;
+  // A lesson is what the branch did otherwise, from the fork to the end of the shorter one.
+  const Lesson lesson = lessonOf(parent.file, branch.file);
+  EXPECT_NEAR(lesson.seconds, std::min(a.seconds(), b.seconds()) - 0.5, 1e-9);
+  ASSERT_EQ(lesson.figures.size(), 7U);
+  EXPECT_EQ(lesson.figures[0].text, (std::array<std::string, 2>{"none", "none"}));
+  EXPECT_THROW(lessonOf(parent.file, twig.file), Error) << "a branch of the branch";
   // The hands set out from where they were, with what they had.
   const TickSamples before = b.step(49).samples.back();
   const TickSamples after = b.step(50).samples.front();
@@ -172,6 +219,51 @@ TEST(TrainingSession, GoesBackAndBranches) {
     EXPECT_LT((after.hand[h].position - before.hand[h].position).norm(), 1e-4) << h;
   EXPECT_EQ(before.hand[1].instrument, InstrumentKind::scissors);
   EXPECT_EQ(after.hand[1].instrument, InstrumentKind::scissors);
+}
+
+TEST(TrainingSession, GoesOnWithAnothersRecording) {
+  Rig rig(2.0);
+  rig.session->start();
+  ASSERT_TRUE(waitForTime(*rig.session, 0.8));
+  rig.session->stop();
+  const std::filesystem::path trainees = rig.session->status().file;
+  const std::string parent = recorder::Recording(trainees).header().attempt;
+  recorder::test::Folder folder;
+  TrainingSettings settings = trainertest::smallSettings(folder);
+  settings.attempt.participant = "I1";
+  TrainingSession session(std::move(settings), rig.input, [](const auto& /*view*/) {});
+  EXPECT_TRUE(session.branchOf(trainees, 0.4));
+  ASSERT_TRUE(waitFor([&] { return session.status().parent == parent && session.status().stage == Stage::running; }));
+  ASSERT_TRUE(waitForTime(session, 0.6));
+  session.stop();
+  const TrainingStatus status = session.status();
+  EXPECT_EQ(status.parentFile, trainees);
+  expectExact(status.file);
+  recorder::Recording branch(status.file);
+  EXPECT_EQ(branch.header().participant, "I1") << "who goes on is who acts";
+  EXPECT_EQ(branch.header().forkStep, 39);
+  TrainingSession wrong(trainertest::smallSettings(folder), rig.input, [](const auto& /*view*/) {});
+  EXPECT_TRUE(wrong.branchOf(folder / "gone.h5", 0.4));
+  ASSERT_TRUE(waitFor([&] { return wrong.status().stage == Stage::ended; }));
+  expectHolds(wrong.status().problem, {"gone.h5"});
+}
+
+TEST(TrainingSession, WhatIsNotKeptGoesWithTheSession) {
+  std::filesystem::path file;
+  {
+    TrainingSettings settings = trainertest::smallSettings(recorder::test::Folder());
+    settings.folder.clear();
+    TrainingSession session(std::move(settings), std::make_shared<ScriptInput>(trainertest::swayingScript(0.5)),
+                            [](const auto& /*view*/) {});
+    session.start();
+    ASSERT_TRUE(waitFor([&] { return session.status().stage == Stage::ended; }));
+    file = session.status().file;
+    EXPECT_FALSE(session.status().kept);
+    expectExact(file);
+    EXPECT_TRUE(session.recorded().empty());
+  }
+  EXPECT_FALSE(std::filesystem::exists(file));
+  EXPECT_FALSE(std::filesystem::exists(file.parent_path()));
 }
 
 TEST(TrainingSession, AnExchangeOfInstrumentsTakesItsTimeAndReplays) {

@@ -226,6 +226,31 @@ TEST(Mouse, ABranchSetsOutFromWhereTheHandsWere) {
   for (std::size_t h = 0; h < handCount; ++h) EXPECT_EQ(rig.now.hand[h].position, start.hand[h].position);
 }
 
+TEST(Mouse, TheFirstMotionIsAwaited) {
+  SourceRig rig;
+  rig.source->waitForFirst(1.0);
+  const auto movesWithin = [&](int calls) {
+    for (int i = 0; i < calls; ++i)
+      if (rig.source->moved()) return true;
+    return false;
+  };
+  EXPECT_FALSE(movesWithin(500));
+  rig.mouse->move(3.0, 0.0);  // 0.45 mm: a hand trembles
+  EXPECT_FALSE(movesWithin(100));
+  rig.mouse->move(30.0, 0.0);
+  EXPECT_TRUE(movesWithin(100));
+  rig.run(*rig.source, 1);
+  for (std::size_t h = 0; h < handCount; ++h)
+    EXPECT_LT((rig.now.hand[h].position - rig.scene.hands[h].home).norm(), 1e-4) << "the attempt begins at home";
+  SourceRig pressing;
+  pressing.source->waitForFirst(1.0);
+  EXPECT_FALSE(pressing.source->moved());
+  pressing.mouse->hold(MouseControl::cut, true);
+  bool moved = false;
+  for (int i = 0; i < 100 && !moved; ++i) moved = pressing.source->moved();
+  EXPECT_TRUE(moved) << "a pedal, too";
+}
+
 TEST(Mouse, ABranchActsOnlyWhenTheHandDoes) {
   SourceRig rig;
   rig.mouse->hold(MouseControl::fire, true);
