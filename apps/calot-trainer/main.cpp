@@ -28,7 +28,6 @@
 #include "gui/trainer/run_panel.h"
 #include "gui/trainer/trainer_window.h"
 #include "gui/trainer/training_session.h"
-#include "recorder/base/dates.h"
 #include "recorder/base/errors.h"
 #include "recorder/base/files.h"
 #include "recorder/compliance_cache.h"
@@ -37,7 +36,6 @@
 #include "recorder/prepared_scene.h"
 #include "recorder/recording/probe.h"
 #include "recorder/recording/reader.h"
-#include "recorder/sources/devices/mouse_device.h"
 
 namespace calot::apps {
 namespace {
@@ -125,28 +123,18 @@ class OptionsInput final : public gui::AttemptInput {
     return makeSource(options_, scene, seed_);
   }
   void drive(recorder::SampleSource& source, recorder::RunSettings& run) override { driveDevice(source, run); }
+  void setMode(recorder::Mode mode, const std::filesystem::path& calibration) override {
+    SourceOptions wanted = options_;
+    wanted.mode = mode;
+    if (!calibration.empty()) wanted.device.calibration = calibration.string();
+    if (wanted.performer.empty()) static_cast<void>(makeSource(wanted, SceneDescription{}, seed_));  // its faults
+    options_ = std::move(wanted);
+  }
 
  private:
   SourceOptions options_;
   std::uint64_t seed_;
 };
-
-/// Options for mouse and keyboard.
-recorder::DeviceSourceSettings mouseSettings(const Options& o, recorder::Mode mode) {
-  const std::string& file = o.source.device.calibration;
-  recorder::DeviceSourceSettings settings;
-  settings.mode = mode;
-  if (file.empty() && mode == recorder::Mode::assessment) {
-    throw Error(ErrorKind::invalid,
-                "--mode assessment: mouse and keyboard need a --calibration (calot devices calibrate mouse --pixel "
-                "declares one), or name a --device and its own");
-  }
-  if (file.empty()) return settings;
-  settings.calibration = recorder::readCalibration(file);
-  const recorder::MouseDevice device(std::make_shared<recorder::MouseInput>());
-  recorder::checkCalibration(*settings.calibration, device.info(), mode, recorder::presentDate(), file);
-  return settings;
-}
 
 /// A cohort that cannot be opened is reported before there is a window; a missing one is made when it is needed.
 std::filesystem::path cohortOf(const std::string& cohort) {
@@ -192,7 +180,13 @@ gui::TrainerSetup setUp(const Options& o, const std::optional<recorder::LoadedSc
         return withScope(std::move(source), scope, of, {}, 0);
       };
     }
-    setup.input = std::make_shared<gui::MouseAttemptInput>(setup.mouse, mouseSettings(o, mode), addScope);
+    setup.input = std::make_shared<gui::MouseAttemptInput>(setup.mouse, addScope);
+    if (o.source.device.calibration.empty() && mode == recorder::Mode::assessment) {
+      throw Error(ErrorKind::invalid,
+                  "--mode assessment: mouse and keyboard need a --calibration (calot devices calibrate mouse --pixel "
+                  "declares one), or name a --device and its own");
+    }
+    setup.input->setMode(mode, o.source.device.calibration);
   } else {
     auto input = std::make_shared<OptionsInput>(who, o.seed);
     // Its faults are reported now. A performer needs a scene; a device is there or not whatever the scene.

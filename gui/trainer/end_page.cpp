@@ -83,7 +83,6 @@ EndPage::EndPage(Setup setup)
   store_->setToolTip("Simulates the attempt again, which verifies it, and stores its figures");
   back_->setToolTip("Simulates the attempt again up to two seconds before the mistake, and goes on from there");
   setLayout(parts::bare(parts::column({{parts::row({{replaySide_, 3}, {buildWords(), 2}}), 1}, strip_})));
-  replaySide_->setVisible(setup_.mode == recorder::Mode::practice);
 
   connect(moments_, &QListWidget::itemClicked, this, &EndPage::replayMoment);
   connect(moments_, &QListWidget::itemActivated, this, &EndPage::replayMoment);
@@ -164,8 +163,13 @@ QWidget* EndPage::buildWords() {
   return parts::sheet(parts::column({title_, {parts::scrolled(inside), 1}, first, second}));
 }
 
+void EndPage::setMode(recorder::Mode mode) {
+  mode_ = mode;
+  replaySide_->setVisible(mode == recorder::Mode::practice);
+}
+
 void EndPage::showAttempt(const TrainingStatus& status, const Ended& ended) {
-  const bool practice = setup_.mode == recorder::Mode::practice;
+  const bool practice = mode_ == recorder::Mode::practice;
   if (shown_ && shown_->attempt.parent.empty()) earlier_ = std::exchange(shown_, std::nullopt);
   shown_.reset();
   file_ = status.file;
@@ -229,7 +233,7 @@ void EndPage::replayMoment() {
 }
 
 void EndPage::read() {
-  if (setup_.mode != recorder::Mode::practice) return;
+  if (mode_ != recorder::Mode::practice) return;
   reading_ = true;
   const auto job = [this, file = file_, parent = parent_, cohort = setup_.cohort, earlier = earlier_] {
     AttemptFacts facts = readFacts(file, cohort);
@@ -288,7 +292,7 @@ void EndPage::leave() {
 }
 
 bool EndPage::settled() const {
-  const bool practice = setup_.mode == recorder::Mode::practice;
+  const bool practice = mode_ == recorder::Mode::practice;
   return !reading_ && !work_.busy() &&
          (!practice || !replay_->isOpen() || (replay_->position().settled && picture_->shown() > 0)) &&
          (parent_.empty() || pair_->alignment());

@@ -33,13 +33,13 @@ class EndPage : public QWidget {
   Q_OBJECT
  public:
   struct Setup {
-    recorder::Mode mode = recorder::Mode::practice;
     std::filesystem::path cohort;  ///< may not exist yet; empty: none
     unsigned threads = 1;          ///< of the verification
   };
   explicit EndPage(Setup setup);
   ~EndPage() override;
 
+  void setMode(recorder::Mode mode);
   /// What ended.
   struct Ended {
     QString result;  ///< what the panel says of it
@@ -77,6 +77,7 @@ class EndPage : public QWidget {
   void showStoring();
 
   Setup setup_;
+  recorder::Mode mode_ = recorder::Mode::practice;
   bool reading_ = false, synthetic_ = false, inCohort_ = false, kept_ = true;
   std::filesystem::path file_;
   std::string attempt_, storing_;                ///< uuids

@@ -73,8 +73,9 @@ std::optional<double> chosenBranch(const QListWidget& list) {
   return item == nullptr ? std::nullopt : std::optional(item->data(Qt::UserRole).toDouble());
 }
 
-RunPanel::RunPanel(recorder::Mode mode, bool mouse, bool scope)
-    : mode_(mode),
+RunPanel::RunPanel(bool mouse, bool scope)
+    : mouse_(mouse),
+      scope_(scope),
       stage_(plainLabel("stage", false)),
       modeLabel_(plainLabel("mode", false)),
       time_(plainLabel("time", false)),
@@ -89,7 +90,6 @@ RunPanel::RunPanel(recorder::Mode mode, bool mouse, bool scope)
       assistant_(plainLabel("assistant")),
       progress_(parts::named("progress", new QProgressBar)),
       lower_(new QStackedWidget),
-      keys_(parts::scrolled(keyPage(mouse, scope, mode == recorder::Mode::practice))),
       mistakesTitle_(plainLabel("mistakesTitle")),
       list_(parts::named("mistakes", new QListWidget)),
       back_(button("Go &back to 2 s before it", "back")),
@@ -114,8 +114,8 @@ RunPanel::RunPanel(recorder::Mode mode, bool mouse, bool scope)
   back_->setToolTip("Simulates the attempt again up to two seconds before the mistake, and goes on from there");
 
   mistakesTitle_->setAlignment(Qt::AlignTop | Qt::AlignLeft);  // also where there is no list below it
-  lower_->addWidget(keys_);
   lower_->addWidget(mistakes_);
+  setMode(mode_);
   auto* const buttons = new QGridLayout;
   buttons->addWidget(pause_, 0, 0);
   buttons->addWidget(finish_, 0, 1);
@@ -162,6 +162,14 @@ void RunPanel::show(const TrainingStatus& status, const PanelText& text, double 
   const bool looksBack = practice && (status.stage == Stage::paused || status.stage == Stage::ended);
   lower_->setCurrentWidget(looksBack ? mistakes_ : keys_);
   if (looksBack) showErrors(status, stepSeconds);
+}
+
+/// Its keys are those of the mode.
+void RunPanel::setMode(recorder::Mode mode) {
+  mode_ = mode;
+  delete keys_;
+  keys_ = parts::scrolled(keyPage(mouse_, scope_, mode == recorder::Mode::practice));
+  lower_->addWidget(keys_);
 }
 
 void RunPanel::setTechnical(bool shown) { technical_->setVisible(shown); }

@@ -33,9 +33,10 @@ class RunPanel : public QWidget {
   Q_OBJECT
  public:
   /// @param mouse both hands are driven by mouse and keyboard @param scope keys move the endoscope
-  RunPanel(recorder::Mode mode, bool mouse, bool scope);
+  RunPanel(bool mouse, bool scope);
 
   void show(const TrainingStatus& status, const PanelText& text, double stepSeconds);
+  void setMode(recorder::Mode mode);
   /// Sets whether figures are shown that only who looks after the computer needs.
   void setTechnical(bool shown);
 
@@ -52,13 +53,14 @@ class RunPanel : public QWidget {
   void goBack();
   void announce(QLabel* label, const QString& text);  ///< shows it, and announces it when its words change
 
-  recorder::Mode mode_;
+  recorder::Mode mode_ = recorder::Mode::practice;
+  bool mouse_, scope_;
   QLabel *stage_, *modeLabel_, *time_, *late_, *technical_, *phase_, *score_, *hint_, *pointer_, *result_;
   std::array<QLabel*, handCount> hand_;
   QLabel* assistant_;
   QProgressBar* progress_;
   QStackedWidget* lower_;
-  QWidget* keys_;
+  QWidget* keys_ = nullptr;
   QLabel* mistakesTitle_;
   QListWidget* list_;
   QPushButton* back_;

@@ -2,6 +2,7 @@
 #include "gui/trainer/scenes_page.h"
 
 #include <algorithm>
+#include <QComboBox>
 #include <QIcon>
 #include <QLabel>
 #include <QListWidget>
@@ -77,22 +78,25 @@ QString titleOf(const SceneChoice& scene, std::size_t number) {
 
 }  // namespace
 
-ScenesPage::ScenesPage(bool practice, bool demonstrates)
+ScenesPage::ScenesPage(bool demonstrates)
     : list_(parts::named("scenes", new QListWidget)),
       past_(parts::named("past", new QListWidget)),
       pastTitle_(parts::plainLabel("pastTitle")),
+      text_(new QLabel),
+      modeNote_(parts::plainLabel("mode-note")),
+      mode_(parts::named("mode-choice", new QComboBox)),
+      calibration_(parts::button("&Calibration …", "calibration")),
+      demonstrates_(demonstrates),
       pastSide_(parts::boxed(parts::column({pastTitle_, {past_, 1}}))),
       begin_(parts::button("&Begin", "begin")),
       tutorial_(parts::button("&Learn the controls", "tutorial")),
       demonstration_(parts::button("&Watch a demonstration", "demonstration")) {
   auto* const title = new QLabel("Welcome to the trainer");
   parts::enlarge(title, 1.6);
-  auto* const text = new QLabel(
-      practice
-          ? "Choose what to practise; the tasks become harder from the top. Every attempt is recorded; you can pause, "
-            "and go back to before a mistake and try again."
-          : "Choose a task. Every attempt is recorded and can be assessed; there is no pause and no going back.");
-  text->setWordWrap(true);
+  text_->setWordWrap(true);
+  mode_->addItem("Practice", static_cast<int>(recorder::Mode::practice));
+  mode_->addItem("Assessment", static_cast<int>(recorder::Mode::assessment));
+  calibration_->setToolTip("Of the device that drives the hands: an assessment needs one");
   list_->setAccessibleName("Scenes");
   list_->setWordWrap(true);
   list_->setIconSize(pictureSize);
@@ -103,13 +107,12 @@ ScenesPage::ScenesPage(bool practice, bool demonstrates)
   pastTitle_->setAlignment(Qt::AlignTop | Qt::AlignLeft);  // also where there is no list below it
   tutorial_->setToolTip("Asks for one control after the other, on the first task's scene");
   demonstration_->setToolTip("A skilled performer does it: a program, no person; its recording is marked synthetic");
-  demonstration_->setVisible(demonstrates);
-  tutorial_->setVisible(practice);
   for (QPushButton* const button : {begin_, tutorial_, demonstration_}) button->setEnabled(false);
 
   pastSide_->hide();
   QFrame* const column = parts::sheet(parts::column({title,
-                                   text,
+                                   text_,
+                                   parts::row({{"&Mode", mode_}, calibration_, {modeNote_, 1}}),
                                    parts::space(6),
                                    {parts::row({{list_, 3}, {pastSide_, 2}}), 1},
                                    parts::row({tutorial_, parts::spring(), demonstration_, parts::primary(begin_)})}));
@@ -118,6 +121,9 @@ ScenesPage::ScenesPage(bool practice, bool demonstrates)
   outer->setContentsMargins(16, 8, 16, 8);
   setLayout(outer);
 
+  connect(mode_, &QComboBox::activated, this,
+          [this] { emit modeChosen(static_cast<recorder::Mode>(mode_->currentData().toInt())); });
+  connect(calibration_, &QPushButton::clicked, this, &ScenesPage::calibrationRequested);
   const auto choose = [this](Purpose purpose) {
     const int row = list_->currentRow();
     if (row >= 0) emit chosen(QString::fromStdString(choices_[static_cast<std::size_t>(row)].file.string()), purpose);
@@ -132,6 +138,21 @@ ScenesPage::ScenesPage(bool practice, bool demonstrates)
   connect(tutorial_, &QPushButton::clicked, this, [this] {
     if (!choices_.empty()) emit chosen(QString::fromStdString(choices_.front().file.string()), Purpose::controls);
   });
+}
+
+void ScenesPage::showMode(recorder::Mode mode, const QString& note) {
+  const bool practice = mode == recorder::Mode::practice;
+  mode_->setCurrentIndex(mode_->findData(static_cast<int>(mode)));
+  text_->setText(
+      practice
+          ? "Choose what to practise; the tasks become harder from the top. Every attempt is recorded; you can pause, "
+            "and go back to before a mistake and try again. Time starts with your first motion."
+          : "Choose a task. Every attempt is recorded and can be assessed; there is no pause and no going back. Time "
+            "starts with your first motion.");
+  calibration_->setVisible(!practice || !note.isEmpty());
+  parts::say(modeNote_, note);
+  tutorial_->setVisible(practice);
+  demonstration_->setVisible(practice && demonstrates_);
 }
 
 void ScenesPage::setScenes(const std::vector<SceneChoice>& scenes) {

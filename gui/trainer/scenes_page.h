@@ -12,6 +12,7 @@
 #include "analytics/cohort/cohort_database.h"
 #include "gui/trainer/scene_choices.h"
 
+class QComboBox;
 class QLabel;
 class QListWidget;
 class QPushButton;
@@ -52,8 +53,10 @@ QString pastText(const PastAttempt& attempt);
 class ScenesPage : public QWidget {
   Q_OBJECT
  public:
-  /// @param practice the controls can be learnt @param demonstrates a performer can be watched
-  ScenesPage(bool practice, bool demonstrates);
+  /// @param demonstrates a performer can be watched
+  explicit ScenesPage(bool demonstrates);
+  /// @param note beside it: which calibration is used, or why there is no assessment
+  void showMode(recorder::Mode mode, const QString& note);
   void setScenes(const std::vector<SceneChoice>& scenes);
   /// @param history none: nobody's is known
   void setHistory(std::optional<std::vector<PastAttempt>> history);
@@ -61,6 +64,8 @@ class ScenesPage : public QWidget {
 
  signals:
   void chosen(const QString& file, calot::gui::Purpose purpose);
+  void modeChosen(calot::recorder::Mode mode);
+  void calibrationRequested();
 
  private:
   void showTexts();
@@ -69,7 +74,10 @@ class ScenesPage : public QWidget {
   std::vector<SceneChoice> choices_;
   std::optional<std::vector<PastAttempt>> history_;
   QListWidget *list_, *past_;
-  QLabel* pastTitle_;
+  QLabel *pastTitle_, *text_, *modeNote_;
+  QComboBox* mode_;
+  QPushButton* calibration_;
+  bool demonstrates_;
   QWidget* pastSide_;
   QPushButton *begin_, *tutorial_, *demonstration_;
 };

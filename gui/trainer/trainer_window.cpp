@@ -14,29 +14,34 @@
 #include <utility>
 
 #include "gui/attempt/widget_parts.h"
+#include "gui/trainer/calibration_dialog.h"
 #include "gui/trainer/end_page.h"
 #include "gui/trainer/operation_view.h"
 #include "gui/trainer/run_panel.h"
 #include "gui/words/problem_words.h"
 #include "recorder/base/errors.h"
+#include "recorder/base/files.h"
 
 namespace calot::gui {
 namespace {
 constexpr int refreshPeriod = 50;  // ms
 constexpr int faultShown = 10000;  // ms, of what stops no attempt
+
+/// Of mouse and keyboard of this station, as the trainer's window declares it.
+std::filesystem::path declaredCalibration() {
+  return recorder::userFolder("XDG_DATA_HOME", ".local/share") / "calot" / "mouse-calibration.json";
+}
 }  // namespace
 
 TrainerWindow::TrainerWindow(TrainerSetup setup)
     : setup_(std::move(setup)),
       problem_(parts::selectableLabel("problem")),
       stack_(new QStackedWidget),
-      scenes_(
-          new ScenesPage(setup_.settings.attempt.mode == recorder::Mode::practice,
-                         setup_.settings.attempt.mode == recorder::Mode::practice && setup_.demonstration != nullptr)),
+      scenes_(new ScenesPage(setup_.demonstration != nullptr)),
       operation_(new QWidget),
       view_(new OperationView(setup_.mouse, setup_.scope)),
-      panel_(new RunPanel(setup_.settings.attempt.mode, setup_.mouse != nullptr, setup_.scope != nullptr)),
-      end_(new EndPage({setup_.settings.attempt.mode, setup_.cohort, setup_.settings.threads})) {
+      panel_(new RunPanel(setup_.mouse != nullptr, setup_.scope != nullptr)),
+      end_(new EndPage({setup_.cohort, setup_.settings.threads})) {
   setWindowTitle("Calot trainer");
   problem_->setStyleSheet(
       "QLabel { background: #fbe3d6; color: #5a1e00; border-left: 6px solid #d55e00; padding: 8px; }");
@@ -53,6 +58,7 @@ TrainerWindow::TrainerWindow(TrainerSetup setup)
   resize((operation_->sizeHint() + around).boundedTo(screen()->availableSize()));
   scenes_->setScenes(setup_.scenes);
   connectPages();
+  showMode({});
   connect(&timer_, &QTimer::timeout, this, &TrainerWindow::refresh);
   timer_.setInterval(refreshPeriod);
   readHistory();
@@ -63,6 +69,8 @@ TrainerWindow::~TrainerWindow() { endSession(); }
 
 void TrainerWindow::connectPages() {
   connect(scenes_, &ScenesPage::chosen, this, &TrainerWindow::openScene);
+  connect(scenes_, &ScenesPage::modeChosen, this, [this](recorder::Mode mode) { setMode(mode, {}); });
+  connect(scenes_, &ScenesPage::calibrationRequested, this, &TrainerWindow::askForCalibration);
   connect(view_, &OperationView::mountRequested, this, &TrainerWindow::mount);
   connect(view_, &OperationView::retractionRequested, this, [this](bool more) {
     if (session_) session_->askForRetraction(more);
@@ -203,6 +211,35 @@ void TrainerWindow::nextTask() {
   if (!session_) return;
   if (const std::optional<std::size_t> next = taskAfterThis())
     openScene(QString::fromStdString(setup_.scenes[*next].file.string()));
+}
+
+/// All pages are of this mode from now on.
+void TrainerWindow::showMode(const QString& note) {
+  const recorder::Mode mode = setup_.settings.attempt.mode;
+  scenes_->showMode(mode, note);
+  panel_->setMode(mode);
+  end_->setMode(mode);
+  pauseAction_->setVisible(mode == recorder::Mode::practice);
+}
+
+/// The calibration that was declared on this station, where there is one, if none is named.
+void TrainerWindow::setMode(recorder::Mode mode, const std::filesystem::path& calibration) {
+  std::error_code ignored;
+  const bool declared = setup_.mouse != nullptr && std::filesystem::exists(declaredCalibration(), ignored);
+  const std::filesystem::path file =
+      calibration.empty() && declared && mode == recorder::Mode::assessment ? declaredCalibration() : calibration;
+  try {
+    setup_.input->setMode(mode, file);
+    setup_.settings.attempt.mode = mode;
+    showMode(file.empty() ? QString() : "Calibration: " + QString::fromStdString(file.string()));
+  } catch (const Error& error) {
+    showMode("No assessment yet: " + QString::fromStdString(problemText(error)));
+  }
+}
+
+void TrainerWindow::askForCalibration() {
+  CalibrationDialog dialog(setup_.mouse != nullptr, declaredCalibration(), this);
+  if (dialog.exec() == QDialog::Accepted) setMode(recorder::Mode::assessment, dialog.file());
 }
 
 void TrainerWindow::readHistory() {

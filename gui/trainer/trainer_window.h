@@ -85,6 +85,9 @@ class TrainerWindow : public QMainWindow {
   void readHistory();
   void showOver(const TrainingStatus& status);
   void open(recorder::LoadedScene scene, Purpose purpose);
+  void showMode(const QString& note);
+  void setMode(recorder::Mode mode, const std::filesystem::path& calibration);
+  void askForCalibration();
   void showEnd(const TrainingStatus& status, const QString& result);
   [[nodiscard]] Pointer pointer(const TrainingStatus& status) const;
   [[nodiscard]] std::optional<Hand> driven() const;

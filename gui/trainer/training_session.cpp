@@ -9,6 +9,7 @@
 #include "analytics/checkpoints/replay_words.h"
 #include "gui/trainer/trainer_texts.h"
 #include "gui/words/problem_words.h"
+#include "recorder/base/dates.h"
 #include "recorder/base/errors.h"
 #include "recorder/base/files.h"
 #include "recorder/live/worker_pool.h"
@@ -45,9 +46,21 @@ void AttemptInput::setOut(recorder::SampleSource& source, const SceneDescription
   if (auto* const scope = source.scope(); scope != nullptr) scope->setOutFrom(start.camera);
 }
 
-MouseAttemptInput::MouseAttemptInput(std::shared_ptr<recorder::MouseInput> mouse,
-                                     recorder::DeviceSourceSettings settings, AddScope addScope)
-    : mouse_(std::move(mouse)), settings_(std::move(settings)), addScope_(std::move(addScope)) {}
+MouseAttemptInput::MouseAttemptInput(std::shared_ptr<recorder::MouseInput> mouse, AddScope addScope)
+    : mouse_(std::move(mouse)), addScope_(std::move(addScope)) {}
+
+void MouseAttemptInput::setMode(recorder::Mode mode, const std::filesystem::path& calibration) {
+  std::optional<recorder::Calibration> used = settings_.calibration;
+  if (!calibration.empty()) used = recorder::readCalibration(calibration);
+  if (!used && mode == recorder::Mode::assessment)
+    throw Error(ErrorKind::invalid, "an assessment by mouse and keyboard needs a calibration");
+  if (used) {
+    const recorder::DeviceInfo device = recorder::MouseDevice(mouse_).info();
+    recorder::checkCalibration(*used, device, mode, recorder::presentDate(), calibration.string());
+  }
+  settings_.mode = mode;
+  settings_.calibration = std::move(used);
+}
 
 std::unique_ptr<recorder::SampleSource> MouseAttemptInput::open(const SceneDescription& scene) {
   mouse_->reset();

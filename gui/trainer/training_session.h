@@ -38,6 +38,10 @@ class AttemptInput {
   /// Before the first tick of a branch: hands and endoscope of the source set out from here.
   virtual void setOut(recorder::SampleSource& source, const SceneDescription& scene, const TickSamples& start);
 
+  /// Mode of the attempts to come, between sessions. @param calibration file of the device's; empty: the one that it has
+  /// @throws Error where an assessment may not use it, as recorder::checkCalibration, or there is none
+  virtual void setMode(recorder::Mode /*mode*/, const std::filesystem::path& /*calibration*/) {}
+
   /// Requirements of the source on its run: feedback to motors.
   virtual void drive(recorder::SampleSource& /*source*/, recorder::RunSettings& /*run*/) {}
 };
@@ -50,11 +54,11 @@ class MouseAttemptInput final : public AttemptInput {
                                                                          const SceneDescription&)>;
 
   /// @param mouse what the window writes to; not null. @param addScope empty: the camera is fixed
-  explicit MouseAttemptInput(std::shared_ptr<recorder::MouseInput> mouse, recorder::DeviceSourceSettings settings = {},
-                             AddScope addScope = {});
+  explicit MouseAttemptInput(std::shared_ptr<recorder::MouseInput> mouse, AddScope addScope = {});
 
   std::unique_ptr<recorder::SampleSource> open(const SceneDescription& scene) override;
   void setOut(recorder::SampleSource& source, const SceneDescription& scene, const TickSamples& start) override;
+  void setMode(recorder::Mode mode, const std::filesystem::path& calibration) override;
 
  private:
   std::shared_ptr<recorder::MouseInput> mouse_;

@@ -78,7 +78,7 @@ class Trainer : public ::testing::Test {
         };
       }
       setup.input =
-          std::make_shared<MouseAttemptInput>(setup.mouse, recorder::DeviceSourceSettings{}, std::move(addScope));
+          std::make_shared<MouseAttemptInput>(setup.mouse, std::move(addScope));
     }
     window_ = std::make_unique<TrainerWindow>(std::move(setup));
     window_->show();
