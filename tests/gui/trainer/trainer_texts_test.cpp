@@ -126,7 +126,7 @@ TEST_F(Texts, ForceAndDepthAreSaidWhereTheTaskIsAboutThem) {
   TrainingStatus status = running();
   status.figures.hand[1].force = 0.42;
   status.figures.hand[1].depth = 0.0061;
-  status.figures.hand[1].greatestForce = 1.25;
+  status.figures.hand[1].greatestForce = 1.24;
   const auto right = [&](const SceneDescription& scene, recorder::Mode mode) {
     return panelText(status, scene, "", mode, std::nullopt).hand[1].toStdString();
   };
