@@ -251,7 +251,8 @@ StoredMotion storeMotion(CohortDatabase& database, const recorder::TrackedMotion
 MetricOutcomes externalOf(const recorder::TrackedMotion& motion, const MotionDeclaration& declaration,
                           const std::vector<MetricScript>& metrics) {
   if (metrics.empty()) return {};
-  const recorder::TemporaryFolder input = writeMetricInput(motion, declaration.outcome, declaration.handedness, declaration.task);
+  const recorder::TemporaryFolder input =
+      writeMetricInput(motion, declaration.outcome, declaration.handedness, declaration.task);
   return computeMetrics(metrics, input.path());
 }
 

@@ -256,7 +256,7 @@ void MetricInput::onEnd(recorder::Outcome outcome) {
 }
 
 recorder::TemporaryFolder writeMetricInput(const recorder::TrackedMotion& motion, recorder::Outcome outcome,
-                                 const std::string& handedness, const std::string& task) {
+                                           const std::string& handedness, const std::string& task) {
   recorder::TemporaryFolder folder;
   InputColumns samples(folder.path(), "samples");
   for (std::size_t i = 0; i < motion.time.size(); ++i) {

@@ -127,6 +127,6 @@ class MetricInput final : public recorder::Observer {
 /// The same of motion without a scene: its rows are the samples.
 /// @param outcome as declared. @param handedness "right", "left", "unknown"
 recorder::TemporaryFolder writeMetricInput(const recorder::TrackedMotion& motion, recorder::Outcome outcome,
-                                 const std::string& handedness, const std::string& task);
+                                           const std::string& handedness, const std::string& task);
 
 }  // namespace calot::analytics

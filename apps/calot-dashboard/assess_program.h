@@ -13,9 +13,11 @@ inline gui::AssessProgram assessProgram() {
     return QStringList{"assess", file, "--cohort", database, "--threads", QString::number(threads), "--json"};
   };
   program.branch = [](const gui::BranchRequest& request) {
-    return QStringList{"branch",    request.parent,  "--at",      QString::number(request.time, 'f', 3),
-                       "--seconds", QString::number(request.seconds), "--performer", request.profile,
-                       "-o",        request.file};
+    return QStringList{"branch",      request.parent,
+                       "--at",        QString::number(request.time, 'f', 3),
+                       "--seconds",   QString::number(request.seconds),
+                       "--performer", request.profile,
+                       "-o",          request.file};
   };
   program.refused = [](int exitCode) {
     return exitCode == static_cast<int>(ExitCode::damaged) || exitCode == static_cast<int>(ExitCode::no);

@@ -129,8 +129,7 @@ PairTransport::PairTransport(PairReplay& pair)
   setLayout(parts::bare(parts::row({play_, {scrub_, 1}, time_, speed_})));
   connect(&pair_, &PairReplay::changed, this, &PairTransport::show);
   connect(play_, &QToolButton::clicked, this, [this] { pair_.play(!pair_.playing()); });
-  connect(speed_, &QComboBox::currentIndexChanged, this,
-          [this] { pair_.setSpeed(speed_->currentData().toDouble()); });
+  connect(speed_, &QComboBox::currentIndexChanged, this, [this] { pair_.setSpeed(speed_->currentData().toDouble()); });
   connect(scrub_, &QSlider::valueChanged, this, [this](int value) {
     const std::optional<PairAlignment>& both = pair_.alignment();
     if (both) pair_.goTo(both->begin() + (both->end() - both->begin()) * static_cast<double>(value) / scrubSteps);

@@ -107,10 +107,9 @@ std::vector<StretchFigure> stretchFigures(const std::array<const AttemptTrack*, 
                                  return millimetresOfMetre * pathOf(track, h, a, b);
                                }),
                                0, "mm"));
-    figures.push_back(
-        quantity("greatest force, " + side + " hand",
-                 each([&](const AttemptTrack& track, double a, double b) { return greatestForce(track, h, a, b); }), 1,
-                 "N"));
+    figures.push_back(quantity(
+        "greatest force, " + side + " hand",
+        each([&](const AttemptTrack& track, double a, double b) { return greatestForce(track, h, a, b); }), 1, "N"));
   }
   return figures;
 }
@@ -119,8 +118,8 @@ QString stretchTable(const std::vector<StretchFigure>& figures, const std::array
   const auto cell = [](const QString& text, const char* tag = "td") {
     return QString("<%1 align=\"left\" style=\"padding: 1px 14px 1px 0\">%2</%1>").arg(tag, text.toHtmlEscaped());
   };
-  QString rows = "<tr>" + cell("", "th") + cell(names[0], "th") + cell(names[1], "th") + cell("difference", "th") +
-                 "</tr>";
+  QString rows =
+      "<tr>" + cell("", "th") + cell(names[0], "th") + cell(names[1], "th") + cell("difference", "th") + "</tr>";
   for (const StretchFigure& figure : figures) {
     rows += "<tr>" + cell(QString::fromStdString(figure.title));
     for (const std::string& text : figure.text) rows += cell(QString::fromStdString(text));

@@ -36,7 +36,8 @@ QBoxLayout* parts::fill(QBoxLayout* layout, std::initializer_list<Item> items) {
 
 QFrame* parts::sheet(QLayout* layout) {
   auto* const made = named("sheet", new QFrame);
-  made->setStyleSheet("QFrame#sheet { background: palette(base); border: 1px solid palette(mid); border-radius: 6px; }");
+  made->setStyleSheet(
+      "QFrame#sheet { background: palette(base); border: 1px solid palette(mid); border-radius: 6px; }");
   layout->setContentsMargins(18, 14, 18, 14);
   made->setLayout(layout);
   return made;

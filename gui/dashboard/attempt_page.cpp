@@ -9,9 +9,9 @@
 #include "analytics/report/attempt_sheet.h"
 #include "gui/attempt/figure_text.h"
 #include "gui/attempt/replay_player.h"
+#include "gui/attempt/verdict_card.h"
 #include "gui/dashboard/dialogs.h"
 #include "gui/dashboard/figure_panel.h"
-#include "gui/attempt/verdict_card.h"
 #include "gui/moments/moments.h"
 #include "gui/report/pdf_report.h"
 #include "recorder/base/errors.h"
@@ -86,8 +86,8 @@ AttemptPage::AttemptPage()
       force_(new TraceChart("force-trace", "Force on the hand (N): left solid, right dashed")) {
   static_cast<QBoxLayout*>(recording_->layout())->insertWidget(1, find_, 0, Qt::AlignHCenter);
   goOn_->setToolTip("A branch: a performer, or a person in the trainer, does what comes now in another way");
-  QBoxLayout* const left = parts::column({{recording_, 1}, &recording_->timeline(), force_,
-                                          parts::row({parts::spring(), goOn_})});
+  QBoxLayout* const left =
+      parts::column({{recording_, 1}, &recording_->timeline(), force_, parts::row({parts::spring(), goOn_})});
   left->setSpacing(2);
   QBoxLayout* const right = parts::column({verdict_, {figures_, 1}});
   QSplitter* const all = makeSplitter(Qt::Horizontal, {{parts::boxed(left), 3}, {parts::boxed(right), 2}});

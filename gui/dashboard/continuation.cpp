@@ -16,7 +16,8 @@ namespace calot::gui {
 
 ContinuationDialog::ContinuationDialog(double time, QWidget* parent)
     : QDialog(parent),
-      performer_(parts::named("by-performer", new QRadioButton("A &performer goes on, and both are shown side by side"))),
+      performer_(
+          parts::named("by-performer", new QRadioButton("A &performer goes on, and both are shown side by side"))),
       person_(parts::named("by-person", new QRadioButton("A p&erson goes on, in the trainer"))),
       profile_(parts::named("continuation-profile", new QComboBox)),
       seconds_(parts::named("continuation-seconds", new QSpinBox)) {
@@ -31,11 +32,10 @@ ContinuationDialog::ContinuationDialog(double time, QWidget* parent)
       "begins there. To undo it, delete that recording, and exclude the attempt.");
   text->setWordWrap(true);
   auto* const decision = new QDialogButtonBox(QDialogButtonBox::Ok | QDialogButtonBox::Cancel);
-  setLayout(parts::column({text,
-                           performer_,
-                           parts::row({parts::space(24), {"P&rofile", profile_}, {"&Goes on for", seconds_}, parts::spring()}),
-                           person_,
-                           decision}));
+  setLayout(parts::column(
+      {text, performer_,
+       parts::row({parts::space(24), {"P&rofile", profile_}, {"&Goes on for", seconds_}, parts::spring()}), person_,
+       decision}));
   connect(performer_, &QRadioButton::toggled, this, [this](bool on) {
     profile_->setEnabled(on);
     seconds_->setEnabled(on);

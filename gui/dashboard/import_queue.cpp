@@ -91,7 +91,8 @@ ImportQueue::ImportQueue(AssessProgram how) : how_(std::move(how)) {
       QTimer::singleShot(0, this, [this] { run(); });  // not from within the process's own signal
       return;
     }
-    if (making_) return finishCurrent({current_, ImportResult::Kind::failed, "no branch was made: " + lastLine(errors_)});
+    if (making_)
+      return finishCurrent({current_, ImportResult::Kind::failed, "no branch was made: " + lastLine(errors_)});
     finishCurrent(importResultOf(how_, current_, code, status == QProcess::CrashExit, output_, errors_));
   });
   connect(&process_, &QProcess::errorOccurred, this, [this](QProcess::ProcessError error) {

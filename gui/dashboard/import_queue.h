@@ -2,13 +2,13 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <QElapsedTimer>
 #include <QObject>
 #include <QProcess>
 #include <QString>
 #include <QStringList>
 #include <QWidget>
-#include <optional>
 
 #include "gui/dashboard/continuation.h"
 

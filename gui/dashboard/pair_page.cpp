@@ -2,6 +2,7 @@
 #include "gui/dashboard/pair_page.h"
 
 #include <algorithm>
+#include <QLocale>
 
 #include "gui/attempt/figure_text.h"
 #include "gui/attempt/stretch_figures.h"
@@ -106,7 +107,8 @@ PairPage::PairPage()
       {"force, left hand (N)", "force, right hand (N)", "speed, left tip (mm/s)", "speed, right tip (mm/s)"});
   figures_->setTextFormat(Qt::RichText);
   figures_->setWordWrap(true);
-  figures_->setAccessibleName("Both in figures, from the moment that they are aligned by to the end of the shorter one");
+  figures_->setAccessibleName(
+      "Both in figures, from the moment that they are aligned by to the end of the shorter one");
   QBoxLayout* const transport =
       parts::row({{"&Trace", trace_}, {"In &step from", from_}, {new PairTransport(*pair_), 1}});
   setLayout(parts::column({{parts::row({{sides_[0], 1}, {sides_[1], 1}}), 1}, traces_, figures_, transport}));
@@ -199,7 +201,7 @@ void PairPage::showFigures() {
   if (!both || !sides_[0]->track() || !sides_[1]->track()) return figures_->clear();
   const double seconds = both->shared();
   const std::array tracks{&*sides_[0]->track(), &*sides_[1]->track()};
-  figures_->setText(QString("<b>Both, over %1 s from there</b>").arg(numberText(seconds)) +
+  figures_->setText(QString("<b>Both, over %1 s from there</b>").arg(QLocale().toString(seconds, 'f', 1)) +
                     stretchTable(stretchFigures(tracks, both->offsets(), seconds), {"left", "right"}));
 }
 

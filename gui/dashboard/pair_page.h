@@ -45,8 +45,8 @@ std::optional<double> firstOf(const AttemptTrack& track, Phase phase);
 /// Phases that both have, in the procedure's order.
 std::vector<Phase> commonPhases(const AttemptTrack& a, const AttemptTrack& b);
 
-/// Two recordings side by side in step: an expert's beside a trainee's, from their starts or from a phase on; or a branch
-/// beside its parent, from where it left it, with what it did otherwise in figures.
+/// Two recordings side by side in step: an expert's beside a trainee's, from their starts or from a phase on; or a
+/// branch beside its parent, from where it left it, with what it did otherwise in figures.
 class PairPage : public CohortPage {
   Q_OBJECT
  public:

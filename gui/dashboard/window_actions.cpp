@@ -15,8 +15,8 @@
 #include <QPrintDialog>
 #include <QPrinter>
 #include <QProcess>
-#include <QStandardPaths>
 #include <QStackedWidget>
+#include <QStandardPaths>
 #include <QStatusBar>
 #include <QTabWidget>
 #include <QUndoCommand>
@@ -264,8 +264,10 @@ void DashboardWindow::askForContinuation(const QString& recording, double time) 
   }
   const QString trainer =
       QStandardPaths::findExecutable("calot-trainer", {QFileInfo(settings::calotProgram()).absolutePath()});
-  const QStringList arguments{"--branch", recording, "--at", QString::number(time, 'f', 3), "--cohort",
-                              QString::fromStdString(document_->path()), "-o", QFileInfo(recording).absolutePath()};
+  const QStringList arguments{"--branch", recording,
+                              "--at",     QString::number(time, 'f', 3),
+                              "--cohort", QString::fromStdString(document_->path()),
+                              "-o",       QFileInfo(recording).absolutePath()};
   if (trainer.isEmpty() || !QProcess::startDetached(trainer, arguments))
     showProblem("The trainer cannot be started: it is looked for beside the program that File, Settings names.");
 }

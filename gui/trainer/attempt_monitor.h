@@ -62,7 +62,7 @@ struct AttemptFigures {
   std::uint64_t missedLately = 0;     ///< of the ticks of the last hundred steps
   double stretched = 0.0;             ///< by how much the tick clock was (s)
   std::shared_ptr<const std::vector<analytics::ErrorLine>> errors;  ///< the gravest first; never null
-  std::uint64_t noticed = 0;  ///< how often something went wrong: occasions
+  std::uint64_t noticed = 0;                                        ///< how often something went wrong: occasions
   std::shared_ptr<const analytics::ErrorLine> latest;               ///< the gravest of the newest occasion; or null
   std::chrono::steady_clock::time_point seen;                       ///< when the last step was over
 
@@ -98,7 +98,7 @@ class AttemptMonitor final : public recorder::Observer {
   TickSamples lastPose_;
   std::uint64_t occasions_ = 0;                             ///< of errors, as listed
   std::array<std::optional<Vec3>, handCount> touchedAt_{};  ///< p_WI of a tip when it began to touch tissue
-  std::array<std::uint32_t, 100> missed_{};  ///< in each of the last steps
+  std::array<std::uint32_t, 100> missed_{};                 ///< in each of the last steps
   std::size_t slot_ = 0;
 
   mutable std::mutex mutex_;

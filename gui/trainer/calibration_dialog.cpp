@@ -31,11 +31,12 @@ CalibrationDialog::CalibrationDialog(bool mouse, std::filesystem::path target, Q
       fault_(parts::plainLabel("calibration-fault")) {
   setWindowTitle("Calibration");
   auto* const text = new QLabel(
-      mouse ? "An assessment compares people at like stations, so it says how far the hand moves for a pixel. Move the "
-              "mouse slowly along a ruler, count the pixels, and divide. The system sets this value: it is declared, "
-              "not measured, and holds for thirty days. A later declaration replaces it."
-            : "An assessment needs the calibration of this device: a file, as measured for this station within the last "
-              "thirty days.");
+      mouse
+          ? "An assessment compares people at like stations, so it says how far the hand moves for a pixel. Move the "
+            "mouse slowly along a ruler, count the pixels, and divide. The system sets this value: it is declared, "
+            "not measured, and holds for thirty days. A later declaration replaces it."
+          : "An assessment needs the calibration of this device: a file, as measured for this station within the last "
+            "thirty days.");
   text->setWordWrap(true);
   pixel_->setRange(0.005, 5.0);
   pixel_->setDecimals(3);
@@ -43,7 +44,8 @@ CalibrationDialog::CalibrationDialog(bool mouse, std::filesystem::path target, Q
   pixel_->setValue(usualPixel);
   pixel_->setSuffix(" mm");
   auto* const declareButton = parts::button("&Declare it", "declare");
-  auto* const row = parts::boxed(parts::row({{"The hand moves for a &pixel by", pixel_}, declareButton, parts::spring()}));
+  auto* const row =
+      parts::boxed(parts::row({{"The hand moves for a &pixel by", pixel_}, declareButton, parts::spring()}));
   row->setVisible(mouse);
   auto* const chooseButton = parts::button("Choose a &file …", "choose-calibration");
   auto* const cancel = new QDialogButtonBox(QDialogButtonBox::Cancel);
@@ -69,7 +71,8 @@ void CalibrationDialog::declare() {
 }
 
 void CalibrationDialog::choose() {
-  const QString chosen = QFileDialog::getOpenFileName(this, "A calibration", {}, "Calibrations (*.json);;All files (*)");
+  const QString chosen =
+      QFileDialog::getOpenFileName(this, "A calibration", {}, "Calibrations (*.json);;All files (*)");
   if (chosen.isEmpty()) return;
   file_ = chosen.toStdString();
   accept();

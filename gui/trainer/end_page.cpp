@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "gui/trainer/end_page.h"
 
+#include <algorithm>
 #include <QListWidget>
+#include <QLocale>
 #include <QPushButton>
 #include <utility>
 
@@ -92,8 +94,7 @@ EndPage::EndPage(Setup setup)
           [this](const QString& reason) { parentPicture_->showText(reason); });
   for (Replay* const replay : {replay_.get(), parentReplay_.get()})
     connect(replay, &Replay::opened, this, &EndPage::alignReplays);
-  connect(verdict_, &VerdictCard::timeChosen, this,
-          [this](double time) { playFrom(std::max(0.0, time - goBackBy)); });
+  connect(verdict_, &VerdictCard::timeChosen, this, [this](double time) { playFrom(std::max(0.0, time - goBackBy)); });
   connect(back_, &QPushButton::clicked, this, [this] {
     if (const auto time = chosenBranch(*moments_)) emit backRequested(*time);
   });
@@ -139,11 +140,8 @@ QWidget* EndPage::buildReplay() {
   QWidget* const nowSide = parts::boxed(parts::column({nowTitle_, {picture_, 1}}));
   transport_ = new TransportBar(*replay_);
   pairTransport_ = new PairTransport(*pair_);
-  return parts::boxed(parts::column({{parts::row({{parentSide_, 1}, {nowSide, 1}}), 3},
-                                     transport_,
-                                     pairTransport_,
-                                     momentsTitle_,
-                                     {moments_, 1}}));
+  return parts::boxed(parts::column(
+      {{parts::row({{parentSide_, 1}, {nowSide, 1}}), 3}, transport_, pairTransport_, momentsTitle_, {moments_, 1}}));
 }
 
 QWidget* EndPage::buildWords() {
@@ -156,11 +154,14 @@ QWidget* EndPage::buildWords() {
   lesson_->setWordWrap(true);
   lesson_->setTextFormat(Qt::RichText);
   auto* const inside = new QWidget;
-  inside->setLayout(parts::bare(parts::column({syntheticMark_, outcome_, verdict_, lesson_, norm_, previous_, figures_,
-                                               storeText_, parts::spring()})));
+  inside->setLayout(parts::bare(parts::column(
+      {syntheticMark_, outcome_, verdict_, lesson_, norm_, previous_, figures_, storeText_, parts::spring()})));
   QBoxLayout* const first = parts::row({back_, parts::spring(), store_});
   QBoxLayout* const second = parts::row({scenes_, again_, parts::spring(), parts::primary(next_)});
-  return parts::sheet(parts::column({title_, {parts::scrolled(inside), 1}, first, second}));
+  QScrollArea* const scroll = parts::scrolled(inside);
+  scroll->viewport()->setAutoFillBackground(false);  // the sheet shows
+  inside->setAutoFillBackground(false);
+  return parts::sheet(parts::column({title_, {scroll, 1}, first, second}));
 }
 
 void EndPage::setMode(recorder::Mode mode) {
@@ -209,6 +210,7 @@ void EndPage::openReplays(const TrainingStatus& status) {
   pair_->clear();
   for (QWidget* const part : {parentSide_, nowTitle_, pairTransport_}) part->setVisible(branch);
   transport_->setVisible(!branch);
+  limitPictures();
   picture_->showText("Opening the replay …");
   replay_->open(file_, attempt_);
   if (!branch) return;
@@ -258,7 +260,7 @@ void EndPage::showReport(const AttemptReport& report, const std::optional<Lesson
   verdict_->showSummary(report.summary);
   if (errors_) verdict_->showErrors(*errors_);
   if (lesson)
-    say(lesson_, QString("<b>Over %1 s from the branch on</b>").arg(numberText(lesson->seconds)) +
+    say(lesson_, QString("<b>Over %1 s from the branch on</b>").arg(QLocale().toString(lesson->seconds, 'f', 1)) +
                      stretchTable(lesson->figures, {"before", "this time"}));
   say(norm_, report.norm);
   say(previous_, report.previous);
@@ -283,6 +285,17 @@ void EndPage::store() {
     return putIntoCohort(file, cohort, threads, control);
   });
   showStoring();
+}
+
+/// Two pictures beside each other are as wide as high, or they would show the middle alone.
+void EndPage::resizeEvent(QResizeEvent* event) {
+  QWidget::resizeEvent(event);
+  limitPictures();
+}
+
+void EndPage::limitPictures() {
+  const int most = parent_.empty() ? QWIDGETSIZE_MAX : std::max(160, replaySide_->width() * 3 / 8);
+  for (ScenePictureWidget* const picture : {picture_, parentPicture_}) picture->setMaximumHeight(most);
 }
 
 void EndPage::leave() {

@@ -64,7 +64,11 @@ class EndPage : public QWidget {
   void problem(const QString& message);
   void stored();
 
+ protected:
+  void resizeEvent(QResizeEvent* event) override;
+
  private:
+  void limitPictures();
   QWidget* buildReplay();
   QWidget* buildWords();
   void read();
@@ -80,7 +84,7 @@ class EndPage : public QWidget {
   recorder::Mode mode_ = recorder::Mode::practice;
   bool reading_ = false, synthetic_ = false, inCohort_ = false, kept_ = true;
   std::filesystem::path file_;
-  std::string attempt_, storing_;                ///< uuids
+  std::string attempt_, storing_;  ///< uuids
   std::shared_ptr<const std::vector<analytics::ErrorLine>> errors_;
   std::optional<AttemptFacts> shown_, earlier_;  ///< of this window, the one before it
 

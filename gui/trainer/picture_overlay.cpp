@@ -13,7 +13,8 @@
 namespace calot::gui {
 namespace {
 
-constexpr int errorTime = 5000;  // ms that an error is shown
+constexpr int errorTime = 5000;       // ms that an error is shown
+constexpr double oneDirection = 0.9;  // cosine between arrows that would cover each other
 
 // White letters on these keep a contrast of 4.5 (WCAG 2.1); Okabe and Ito's vermilion, orange and blue, darkened.
 QColor groundOf(Severity severity) {
@@ -66,6 +67,12 @@ void PictureOverlay::showCount(const QString& text) {
   update();
 }
 
+void PictureOverlay::showSentence(const QString& text) {
+  if (sentence_ == text) return;
+  sentence_ = text;
+  update();
+}
+
 void PictureOverlay::showError(const analytics::ErrorLine& error) {
   severity_ = error.severity;
   error_ = QString::fromStdString(analytics::nameOf(error.severity) + std::string(": ") + error.text);
@@ -112,22 +119,25 @@ void PictureOverlay::paintEvent(QPaintEvent* /*event*/) {
   const QPointF middle = QRectF(rect()).center();
   const double radius = std::min(middle.x(), middle.y()) - 1.5 * size;
   for (std::size_t h = 0; h < handCount; ++h) {
-    // Both may lie in one direction: each has a ring of its own.
-    const double ring = radius - (h == 0 ? 0.0 : 2.2 * size);
-    if (arrow_[h]) drawArrow(painter, middle + *arrow_[h] * ring, *arrow_[h], size, h == 0 ? 'L' : 'R');
+    if (!arrow_[h]) continue;
+    // Where both lie in one direction the second stands behind the first.
+    const bool behind = h > 0 && arrow_[0] && QPointF::dotProduct(*arrow_[0], *arrow_[h]) > oneDirection;
+    const double ring = radius - (behind ? 2.2 * size : 0.0);
+    drawArrow(painter, middle + *arrow_[h] * ring, *arrow_[h], size, h == 0 ? 'L' : 'R');
   }
-  if (error_.isEmpty()) return;
+  const QString& words = error_.isEmpty() ? sentence_ : error_;
+  if (words.isEmpty()) return;
   const QRectF limits = QRectF(rect()).adjusted(0.1 * width(), 0.5 * height(), -0.1 * width(), -0.04 * height());
   constexpr int flags = Qt::AlignHCenter | Qt::AlignBottom | Qt::TextWordWrap;
-  QFont words = font;
-  words.setPointSizeF(1.4 * font.pointSizeF());
-  painter.setFont(words);
-  const QRectF text = painter.boundingRect(limits, flags, error_);
+  QFont larger = font;
+  larger.setPointSizeF(1.4 * font.pointSizeF());
+  painter.setFont(larger);
+  const QRectF text = painter.boundingRect(limits, flags, words);
   painter.setPen(Qt::NoPen);
-  painter.setBrush(groundOf(severity_));
+  painter.setBrush(error_.isEmpty() ? QColor(0x20, 0x28, 0x30) : groundOf(severity_));
   painter.drawRoundedRect(text.adjusted(-14.0, -8.0, 14.0, 8.0), 6.0, 6.0);
   painter.setPen(Qt::white);
-  painter.drawText(text, flags, error_);
+  painter.drawText(text, flags, words);
 }
 
 }  // namespace calot::gui

@@ -18,8 +18,8 @@ namespace calot::gui {
 /// @param size of the picture (pixels) @param verticalFieldOfView rad
 [[nodiscard]] std::optional<QPointF> directionOutside(const Vec3& tip, QSizeF size, double verticalFieldOfView);
 
-/// Over the picture of the operation: a countdown, an error in words when it happens, and at the rim an arrow towards
-/// each instrument that is out of the picture. Takes no mouse.
+/// Over the picture of the operation: a countdown, a sentence, an error in words when it happens, and at the rim an
+/// arrow towards each instrument that is out of the picture. Takes no mouse.
 class PictureOverlay : public QWidget {
   Q_OBJECT
  public:
@@ -27,7 +27,9 @@ class PictureOverlay : public QWidget {
 
   /// Large, in the middle: "3". Empty: nothing.
   void showCount(const QString& text);
-  /// An error for a few seconds.
+  /// A sentence below the picture, until another is shown. Empty: nothing.
+  void showSentence(const QString& text);
+  /// An error for a few seconds, instead of the sentence.
   void showError(const analytics::ErrorLine& error);
   void clearError();
   /// @param figures of the attempt; null: no instruments
@@ -42,7 +44,7 @@ class PictureOverlay : public QWidget {
   void paintEvent(QPaintEvent* event) override;
 
  private:
-  QString count_, error_;
+  QString count_, sentence_, error_;
   Severity severity_ = Severity::minor;
   std::array<std::optional<QPointF>, handCount> arrow_;
   QTimer errorShown_;

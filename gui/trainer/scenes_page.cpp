@@ -110,12 +110,13 @@ ScenesPage::ScenesPage(bool demonstrates)
   for (QPushButton* const button : {begin_, tutorial_, demonstration_}) button->setEnabled(false);
 
   pastSide_->hide();
-  QFrame* const column = parts::sheet(parts::column({title,
-                                   text_,
-                                   parts::row({{"&Mode", mode_}, calibration_, {modeNote_, 1}}),
-                                   parts::space(6),
-                                   {parts::row({{list_, 3}, {pastSide_, 2}}), 1},
-                                   parts::row({tutorial_, parts::spring(), demonstration_, parts::primary(begin_)})}));
+  QFrame* const column =
+      parts::sheet(parts::column({title,
+                                  text_,
+                                  parts::row({{"&Mode", mode_}, calibration_, modeNote_, parts::spring()}),
+                                  parts::space(6),
+                                  {parts::row({{list_, 3}, {pastSide_, 2}}), 1},
+                                  parts::row({tutorial_, parts::spring(), demonstration_, parts::primary(begin_)})}));
   column->setMaximumWidth(1300);
   QBoxLayout* const outer = parts::row({parts::spring(), {column, 20}, parts::spring()});
   outer->setContentsMargins(16, 8, 16, 8);
@@ -196,7 +197,7 @@ void ScenesPage::showPast() {
   }
   past_->setVisible(past_->count() > 0);
   pastTitle_->setText(past_->count() > 0 ? "Your attempts at it, from the cohort:"
-                                         : "No attempt of yours at it is in the cohort.");
+                                         : "You have no attempts at this task yet.");
 }
 
 void ScenesPage::focusList() { list_->setFocus(); }

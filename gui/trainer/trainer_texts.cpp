@@ -24,7 +24,7 @@ QString stageText(const TrainingStatus& status) {
     case Stage::countdown:
       return QString("Going on in %1 …").arg(QLocale().toString(status.countdown));
     case Stage::ready:
-      return "Ready: time starts with your first motion";
+      return "Ready";
     case Stage::running:
       if (!status.kept) return "Demonstration";
       return status.waiting ? QString("Waiting for the device …") : QString::fromUtf8("● Recording");

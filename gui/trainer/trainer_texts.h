@@ -16,10 +16,10 @@ namespace calot::gui {
 
 /// Beside the picture. Empty: not said.
 struct PanelText {
-  QString stage;  ///< "● recording", "❚❚ paused", ...
-  QString mode;   ///< "practice", "assessment", with "synthetic" where no person acts
-  QString time;   ///< "1:02.5"
-  QString late;   ///< one sentence where forces come late at present
+  QString stage;      ///< "● recording", "❚❚ paused", ...
+  QString mode;       ///< "practice", "assessment", with "synthetic" where no person acts
+  QString time;       ///< "1:02.5"
+  QString late;       ///< one sentence where forces come late at present
   QString technical;  ///< figures of that, for who looks after the computer
   QString phase;
   QString assistant;  ///< how far it retracts; empty where the scene has none that can be asked

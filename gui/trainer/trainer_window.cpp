@@ -233,7 +233,7 @@ void TrainerWindow::setMode(recorder::Mode mode, const std::filesystem::path& ca
     setup_.settings.attempt.mode = mode;
     showMode(file.empty() ? QString() : "Calibration: " + QString::fromStdString(file.string()));
   } catch (const Error& error) {
-    showMode("No assessment yet: " + QString::fromStdString(problemText(error)));
+    showMode("No assessment yet: " + QString::fromStdString(problemText(error)) + '.');
   }
 }
 
@@ -340,6 +340,7 @@ void TrainerWindow::refresh() {
 /// Errors are a score: an assessment shows none.
 void TrainerWindow::showOver(const TrainingStatus& status) {
   PictureOverlay& over = view_->over();
+  over.showSentence(status.stage == Stage::ready ? "Time starts with your first motion" : QString());
   over.showCount(status.stage == Stage::countdown ? QString::number(status.countdown) : QString());
   const bool moves = status.stage == Stage::running || status.stage == Stage::ready;
   over.showInstruments(moves ? &status.figures : nullptr, session_->scene().verticalFieldOfView);
@@ -358,7 +359,8 @@ void TrainerWindow::showEnd(const TrainingStatus& status, const QString& result)
   ended_ = status.attempt;
   if (status.figures.ticks == 0) return;
   stack_->setCurrentWidget(end_);
-  end_->showAttempt(status, {result, tickLength * session_->scene().ticksPerStep, purpose_, taskAfterThis().has_value()});
+  end_->showAttempt(status,
+                    {result, tickLength * session_->scene().ticksPerStep, purpose_, taskAfterThis().has_value()});
 }
 
 void TrainerWindow::buildMenus() {
@@ -381,7 +383,8 @@ void TrainerWindow::buildMenus() {
   aloudAction_ = look->addAction("Read &aloud", Qt::CTRL | Qt::Key_L, this, &TrainerWindow::setAloud);
   aloudAction_->setToolTip("What the panel asks for and says is spoken, too");
   aloudAction_->setCheckable(true);
-  QAction* const technical = look->addAction("&Technical figures", Qt::CTRL | Qt::Key_T, panel_, &RunPanel::setTechnical);
+  QAction* const technical =
+      look->addAction("&Technical figures", Qt::CTRL | Qt::Key_T, panel_, &RunPanel::setTechnical);
   technical->setToolTip("How punctual forces are, for who looks after this computer");
   technical->setCheckable(true);
   look->addAction("&Operation", Qt::Key_F6, this, [this] { view_->setFocus(); });

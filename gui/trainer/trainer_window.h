@@ -114,7 +114,7 @@ class TrainerWindow : public QMainWindow {
   std::optional<ControlsTutorial> tutorial_;
   std::string noticedIn_;      ///< the attempt whose errors are shown when they happen
   std::uint64_t noticed_ = 0;  ///< of them, so far
-  std::string ended_;  ///< the attempt that the end page shows
+  std::string ended_;          ///< the attempt that the end page shows
   std::vector<std::string> recorded_;
   std::unique_ptr<TrainingSession> session_;
   Background background_;  ///< reads the trainee's history

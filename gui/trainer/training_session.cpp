@@ -325,8 +325,10 @@ void TrainingSession::run(recorder::Session& session, recorder::SampleSource& so
     });
   } else if (auto* const device = source.device(); device != nullptr && settings_.fromFirstMotion) {
     const auto awaitMotion = [&](Clock::duration) {
+      controlled.rest();
       const std::lock_guard lock(mutex_);
       status_.stage = Stage::ready;
+      status_.figures = monitor.figures();
       return !device->moved();
     };
     during(untilAsked, awaitMotion);

@@ -38,7 +38,8 @@ class AttemptInput {
   /// Before the first tick of a branch: hands and endoscope of the source set out from here.
   virtual void setOut(recorder::SampleSource& source, const SceneDescription& scene, const TickSamples& start);
 
-  /// Mode of the attempts to come, between sessions. @param calibration file of the device's; empty: the one that it has
+  /// Mode of the attempts to come, between sessions. @param calibration file of the device's; empty: the one that it
+  /// has
   /// @throws Error where an assessment may not use it, as recorder::checkCalibration, or there is none
   virtual void setMode(recorder::Mode /*mode*/, const std::filesystem::path& /*calibration*/) {}
 
@@ -103,7 +104,7 @@ struct TrainingStatus {
   bool locked = true;           ///< its file system granted a lock
   std::string attempt, parent;  ///< uuids; parent empty unless it is a branch
   std::filesystem::path parentFile;
-  double branchedAt = 0.0;      ///< where a branch left its parent (s)
+  double branchedAt = 0.0;  ///< where a branch left its parent (s)
   recorder::OperatorKind operatorKind = recorder::OperatorKind::human;
   recorder::RunReport report;  ///< of the attempt that ended
   std::string undone;          ///< why an attempt that the trainee ended was abandoned; or empty
@@ -151,14 +152,15 @@ class TrainingSession {
   [[nodiscard]] recorder::Mode mode() const { return settings_.attempt.mode; }
   [[nodiscard]] const SceneDescription& scene() const { return settings_.scene.description; }
   [[nodiscard]] const std::string& summary() const { return settings_.scene.summary; }
-  /// Recordings that are kept so far, two lines each for a terminal: what was recorded, and how punctual its forces were.
+  /// Recordings that are kept so far, two lines each for a terminal: what was recorded, and how punctual its forces
+  /// were.
   [[nodiscard]] std::vector<std::string> recorded() const;
 
  private:
   struct Command {
     bool quit = false;
-    std::optional<double> back = {};     ///< go back to this time; none: a new attempt
-    std::filesystem::path parent = {};   ///< of that recording; empty: of the last attempt
+    std::optional<double> back = {};    ///< go back to this time; none: a new attempt
+    std::filesystem::path parent = {};  ///< of that recording; empty: of the last attempt
   };
   struct Interrupted {};  ///< thrown where another command came before a run began
 

@@ -6,11 +6,11 @@
 #include <openssl/sha.h>  // uses the processor's own instructions, as libsodium does not
 #include <sodium.h>
 #include <stdio.h>
+#include <stdlib.h>  // mkdtemp
 #include <sys/stat.h>
 #include <unistd.h>
 #include <array>
 #include <cerrno>
-#include <stdlib.h>  // mkdtemp
 #include <cstdlib>
 #include <cstring>
 #include <fstream>

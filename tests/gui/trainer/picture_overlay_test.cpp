@@ -44,8 +44,7 @@ TEST(DirectionOutside, AgreesWithTheRenderersField) {
   for (int i = 0; i < 5000; ++i) {
     const Vec3 tip(across(random), across(random), away(random));
     const double x = f * tip.x() / tip.z(), y = f * tip.y() / tip.z();
-    const bool within =
-        std::hypot(x, y) < rim && std::abs(x) < 0.5 * wide.width() && std::abs(y) < 0.5 * wide.height();
+    const bool within = std::hypot(x, y) < rim && std::abs(x) < 0.5 * wide.width() && std::abs(y) < 0.5 * wide.height();
     ASSERT_EQ(!directionOutside(tip, wide, view), within) << tip.transpose() << ", seed " << seed;
     seen += within;
   }

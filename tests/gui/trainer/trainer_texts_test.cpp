@@ -182,7 +182,8 @@ TEST_F(Texts, LateForcesAndALostDeviceAreTold) {
   EXPECT_EQ(text.technical, "30 forces late (0.15 %)");
   EXPECT_EQ(text.late, "") << "long ago";
   status.figures.missedLately = 9;
-  EXPECT_EQ(panelText(status, operation(), "", recorder::Mode::practice, std::nullopt).late, "") << "nobody feels these";
+  EXPECT_EQ(panelText(status, operation(), "", recorder::Mode::practice, std::nullopt).late, "")
+      << "nobody feels these";
   status.figures.missedLately = 10;
   status.figures.stretched = 1.25;
   text = panelText(status, operation(), "", recorder::Mode::practice, std::nullopt);

@@ -77,8 +77,7 @@ class Trainer : public ::testing::Test {
                                                          std::make_unique<recorder::ScopeKeys>(scope));
         };
       }
-      setup.input =
-          std::make_shared<MouseAttemptInput>(setup.mouse, std::move(addScope));
+      setup.input = std::make_shared<MouseAttemptInput>(setup.mouse, std::move(addScope));
     }
     window_ = std::make_unique<TrainerWindow>(std::move(setup));
     window_->show();
