@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <QFileInfo>
+
 #include "apps/common/program.h"
 #include "gui/dashboard/import_queue.h"
 
@@ -18,6 +20,10 @@ inline gui::AssessProgram assessProgram() {
                        "--seconds",   QString::number(request.seconds),
                        "--performer", request.profile,
                        "-o",          request.file};
+  };
+  program.goOn = [](const QString& recording, double time, const QString& database) {
+    return QStringList{"--branch", recording, "--at", QString::number(time, 'f', 3),
+                       "--cohort", database,  "-o",   QFileInfo(recording).absolutePath()};
   };
   program.refused = [](int exitCode) {
     return exitCode == static_cast<int>(ExitCode::damaged) || exitCode == static_cast<int>(ExitCode::no);

@@ -12,8 +12,8 @@
 
 namespace calot::gui {
 
-/// Where a branch leaves its parent, or two branches of one parent leave each other: the attempts' own time (s), which
-/// is the same for both. None where neither is so.
+/// The moment when a branch leaves its parent, or two branches of one parent leave each other: the attempts' own time
+/// (s), which is the same for both. None where neither is so.
 [[nodiscard]] std::optional<double> partingTime(const AttemptTrack& a, const AttemptTrack& b);
 
 /// A figure of both over the stretch.

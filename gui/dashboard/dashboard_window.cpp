@@ -74,6 +74,7 @@ DashboardWindow::DashboardWindow(const AssessProgram& program, const std::vector
       rating_(new RatingPage),
       undo_(new QUndoStack(this)),
       assetFolders_(assetFolders),
+      program_(program),
       imports_(program) {
   setWindowTitle("Calot");
   resize(theme::windowSizeFor(screen()->availableSize()));

@@ -133,6 +133,7 @@ class DashboardWindow : public QMainWindow {
   std::vector<std::filesystem::path> assetFolders_;
   QDockWidget* importDock_ = nullptr;
   QTimer* refresh_ = nullptr;  ///< while an import runs
+  AssessProgram program_;
   ImportQueue imports_;
   std::string branched_, branchName_;  ///< the parent's uuid and the branch's file name: to be shown side by side
   CohortWriter writer_;

@@ -26,6 +26,8 @@ struct AssessProgram {
   std::function<QStringList(const QString& file, const QString& database, int threads)> arguments;
   /// Arguments that make a branch by a performer.
   std::function<QStringList(const BranchRequest& request)> branch;
+  /// Arguments with which the trainer goes on with a recording, from a time (s).
+  std::function<QStringList(const QString& recording, double time, const QString& database)> goOn;
   /// True if an exit code blames the recording: damaged, or in conflict with the cohort.
   std::function<bool(int exitCode)> refused;
   /// Command line that assesses a recording into this database.

@@ -19,7 +19,7 @@ QString attemptText(const AttemptLines& lines, int row) {
            lines.cell(row, AttemptLines::startColumn), lines.cell(row, AttemptLines::verificationColumn));
 }
 
-/// Of the choice of moments to align by; others are phases.
+/// Data of an entry of the choice to align by; others are phases.
 constexpr int byParting = -2;
 
 }  // namespace

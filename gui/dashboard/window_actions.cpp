@@ -264,10 +264,7 @@ void DashboardWindow::askForContinuation(const QString& recording, double time) 
   }
   const QString trainer =
       QStandardPaths::findExecutable("calot-trainer", {QFileInfo(settings::calotProgram()).absolutePath()});
-  const QStringList arguments{"--branch", recording,
-                              "--at",     QString::number(time, 'f', 3),
-                              "--cohort", QString::fromStdString(document_->path()),
-                              "-o",       QFileInfo(recording).absolutePath()};
+  const QStringList arguments = program_.goOn(recording, time, QString::fromStdString(document_->path()));
   if (trainer.isEmpty() || !QProcess::startDetached(trainer, arguments))
     showProblem("The trainer cannot be started: it is looked for beside the program that File, Settings names.");
 }

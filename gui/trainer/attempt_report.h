@@ -54,7 +54,7 @@ std::vector<analytics::Norm> normsOf(const std::filesystem::path& cohort);
 AttemptReport reportOf(AttemptFacts now, const std::optional<AttemptFacts>& previous,
                        const std::vector<analytics::Norm>& norms);
 
-/// What a branch did otherwise than its parent, from where it left it to the end of the shorter one.
+/// Figures of a branch beside its parent's than its parent, from where it left it to the end of the shorter one.
 struct Lesson {
   double seconds = 0.0;  ///< how long that is
   std::vector<StretchFigure> figures;

@@ -40,7 +40,7 @@ class EndPage : public QWidget {
   ~EndPage() override;
 
   void setMode(recorder::Mode mode);
-  /// What ended.
+  /// How an attempt ended.
   struct Ended {
     QString result;  ///< what the panel says of it
     double stepSeconds = 0.01;

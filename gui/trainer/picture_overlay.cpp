@@ -120,7 +120,7 @@ void PictureOverlay::paintEvent(QPaintEvent* /*event*/) {
   const double radius = std::min(middle.x(), middle.y()) - 1.5 * size;
   for (std::size_t h = 0; h < handCount; ++h) {
     if (!arrow_[h]) continue;
-    // Where both lie in one direction the second stands behind the first.
+    // If both lie in one direction the second stands behind the first.
     const bool behind = h > 0 && arrow_[0] && QPointF::dotProduct(*arrow_[0], *arrow_[h]) > oneDirection;
     const double ring = radius - (behind ? 2.2 * size : 0.0);
     drawArrow(painter, middle + *arrow_[h] * ring, *arrow_[h], size, h == 0 ? 'L' : 'R');

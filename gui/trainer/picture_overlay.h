@@ -12,7 +12,7 @@
 
 namespace calot::gui {
 
-/// Where an instrument is to be looked for that is out of the picture: the unit direction across the picture, right and
+/// Direction of an instrument that is out of the picture: a unit vector across the picture, right and
 /// down; none where its tip is seen.
 /// @param tip p_CI: right, down, away from the endoscope (m)
 /// @param size of the picture (pixels) @param verticalFieldOfView rad

@@ -51,7 +51,7 @@ enum class Pointer {
 /// Next instruction in an attempt of this scene, in one or two sentences: from what the procedure asks for and what has
 /// been done of it. For practice; an assessment has no hints.
 /// @param summary of the scene: what is said where it has no procedure
-/// @param watched a performer acts: its watcher is told what it does, and nothing to do
+/// @param watched a performer acts: the text says to its watcher what it does
 [[nodiscard]] std::string hintFor(const SceneDescription& scene, const std::string& summary,
                                   const AttemptFigures& figures, bool watched = false);
 

@@ -27,7 +27,7 @@ namespace {
 constexpr int refreshPeriod = 50;  // ms
 constexpr int faultShown = 10000;  // ms, of what stops no attempt
 
-/// Of mouse and keyboard of this station, as the trainer's window declares it.
+/// Calibration of mouse and keyboard of this station, as the trainer's window declares it.
 std::filesystem::path declaredCalibration() {
   return recorder::userFolder("XDG_DATA_HOME", ".local/share") / "calot" / "mouse-calibration.json";
 }

@@ -245,7 +245,7 @@ void TrainingSession::attempt(const Command& command) {
   recorder::AttemptHeader header =
       parent ? recorder::branchHeader(*parent, model, fork, source->provenance())
              : recorder::makeHeader(model, settings_.scene.assets, source->provenance(), settings_.attempt);
-  // Who goes on with another's attempt is who acts.
+  // The participant of a branch is the one who goes on, whoever made its parent.
   if (!settings_.attempt.participant.empty()) header.participant = settings_.attempt.participant;
   {
     const std::lock_guard lock(mutex_);

@@ -75,7 +75,7 @@ constexpr std::int64_t secondHand = 500'000'000;  // ns that the other hand is w
 constexpr std::size_t freshRoom = 1024;
 constexpr std::size_t mostTold = 100;
 constexpr double sameJaw = 1e-3;  // rad
-// What is no trembling of a hand and no noise of a device.
+// Less is a hand's trembling, or noise of a device.
 constexpr double motionDistance = 2e-3;  // m
 constexpr double motionAngle = 0.1;      // rad, of the shaft and of the jaws
 constexpr std::uint8_t actingButtons =

@@ -374,7 +374,7 @@ TEST_F(Trainer, ADemonstrationIsWatchedAndIsNoAttemptOfTheTrainee) {
   EXPECT_TRUE(child<QLabel>("endSynthetic")->isVisible());
   EXPECT_FALSE(child<QPushButton>("store")->isVisible());
   EXPECT_EQ(recorder::Recording(window.session()->status().file).header().participant, "");
-  expectHolds(text("result").toStdString(), {"not kept"});
+  EXPECT_FALSE(text("result").contains(".h5"));
   window.chooseScene();
   EXPECT_TRUE(window.endAndReport().empty() || window.endAndReport().back().find(".h5") == std::string::npos);
   EXPECT_TRUE(std::filesystem::is_empty(folder_ / "")) << "it leaves no file";
@@ -392,7 +392,7 @@ TEST_F(Trainer, ABranchStandsBesideItsParentAtTheEnd) {
   ASSERT_TRUE(QTest::qWaitFor([&] { return window.endPage()->settled(); }, patience));
   EXPECT_EQ(window.findChildren<QSlider*>("pair-scrub").size(), 1);
   EXPECT_TRUE(child<QSlider>("pair-scrub")->isVisible());
-  expectHolds(text("lesson").toStdString(), {"path of the right tip", "mm"});
+  expectHolds(text("lesson").toStdString(), {"mm"});
 }
 
 TEST_F(Trainer, AnAssessmentShowsNoHintsNoScoreAndNoPause) {
