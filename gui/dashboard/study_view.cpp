@@ -100,18 +100,6 @@ std::vector<std::string> groupsOf(const std::vector<analytics::AttemptRow>& atte
   return {names.begin(), names.end()};
 }
 
-std::string registrationText(const analytics::Study& study) {
-  if (!study.protocol)
-    return "No protocol: the choices on this page were made after the data, so that the study is exploratory.";
-  const analytics::StudyProtocol& p = *study.protocol;
-  const std::string protocol = "protocol " + p.name + " version " + std::to_string(p.version);
-  const std::string registered = p.whyExploratory.empty()
-                                     ? "Confirmatory: " + protocol + " was registered on " + p.registeredUtc +
-                                           ", before the first attempt (" + p.firstAttemptUtc + ")."
-                                     : "Exploratory, by " + protocol + ": " + p.whyExploratory + ".";
-  return registered + " " + analytics::lockText(p);
-}
-
 std::string studyText(const analytics::Study& study) {
   std::string html;
   if (study.synthetic)
@@ -119,7 +107,7 @@ std::string studyText(const analytics::Study& study) {
             analytics::escaped(analytics::watermarkText) + "&nbsp;</b></p>";
   html += "<h2>" + analytics::escaped(analytics::studyTitle(study)) + "</h2>";
   html +=
-      "<p><b>" + analytics::escaped(registrationText(study)) + "</b></p>" + tableText(analytics::primaryTable(study));
+      "<p><b>" + analytics::escaped(analytics::registrationText(study)) + "</b></p>" + tableText(analytics::primaryTable(study));
   if (!analytics::forestsOf(study).empty()) html += std::string("<p><img src=\"") + forestAddress + "\"></p>";
   const analytics::ReportTable coverage = analytics::coverageTable(study);
   if (!study.coverage.empty())

@@ -8,7 +8,9 @@
 #include <QGuiApplication>
 #include <QPainter>
 #include <QPainterPath>
+#include <QPageRanges>
 #include <QPdfWriter>
+#include <utility>
 
 #include "gui/report/drawing_painter.h"
 #include "gui/report/text_document.h"
@@ -93,8 +95,11 @@ void paintReport(const analytics::ReportDocument& document, QPagedPaintDevice& d
   ReportTextDocument text(document, &device, page);
   const int pages = text.pageCount();
   QPainter painter(&device);
+  const QPageRanges wanted = device.pageRanges();
+  bool begun = false;
   for (int i = 0; i < pages; ++i) {
-    if (i > 0) device.newPage();
+    if (!wanted.isEmpty() && !wanted.contains(i + 1)) continue;
+    if (std::exchange(begun, true)) device.newPage();
     if (document.synthetic) paintMark(painter, whole, font);
     const QRectF seen(0.0, i * page.height(), page.width(), page.height());
     painter.save();

@@ -20,7 +20,8 @@ namespace {
 
 using analytics::Paragraph;
 
-constexpr int drawnObject = QTextFormat::UserObject + 1, objectNumber = QTextFormat::UserProperty + 1;
+constexpr int drawnObject = QTextFormat::UserObject + 1, objectNumber = QTextFormat::UserProperty + 1,
+              keptWithNext = QTextFormat::UserProperty + 2;
 constexpr double textPoints = 8.5, tablePoints = 7.5, headingPoints = 11.0, titlePoints = 15.0;
 constexpr double figureMillimetres = 84.0;  // of a figure as wide as a box plot: two stand side by side
 constexpr double usualWidth = 320.0;        // in the drawing's units
@@ -89,6 +90,7 @@ struct ReportTextDocument::Writer {
 
   void operator()(const analytics::Heading& heading) {
     QTextBlockFormat format = block(5.0, 1.5);
+    format.setProperty(keptWithNext, true);
     if (heading.newPage) format.setPageBreakPolicy(QTextFormat::PageBreak_AlwaysBefore);
     line(heading.text, format, letters(headingPoints, true));
   }
@@ -228,6 +230,53 @@ ReportTextDocument::ReportTextDocument(const analytics::ReportDocument& report, 
   if (report.synthetic) writer.banner();
   writer.cursor.endEditBlock();
   setPageSize(page);
+  keepTogether();
+}
+
+ReportTextDocument::Extent ReportTextDocument::extentOf(const QTextBlock& block, int lines) const {
+  const double top = documentLayout()->blockBoundingRect(block).top();
+  const QTextLayout& layout = *block.layout();
+  if (layout.lineCount() == 0) return {top, top};
+  const QTextLine first = layout.lineAt(0), last = layout.lineAt(std::min(lines, layout.lineCount()) - 1);
+  return {top + first.y(), top + last.y() + last.height()};
+}
+
+int ReportTextDocument::pageOf(double place) const { return static_cast<int>(std::floor(place / page_.height())); }
+
+bool ReportTextDocument::isHeading(const QTextBlock& block) { return block.blockFormat().boolProperty(keptWithNext); }
+
+namespace {
+
+/// Last block of a row of a table.
+QTextBlock endOfRow(const QTextTable& table, int row) {
+  return table.cellAt(row, table.columns() - 1).lastCursorPosition().block();
+}
+
+}  // namespace
+
+/// Qt divides a document into pages line by line and knows nothing of what belongs together.
+void ReportTextDocument::keepTogether() {
+  constexpr int firstRows = 3, firstLines = 2;
+  constexpr double undividedTable = 0.5;  // of a page
+  const auto startPage = [this](const QTextBlock& block) {
+    QTextCursor cursor(block);
+    QTextBlockFormat format = block.blockFormat();
+    format.setPageBreakPolicy(QTextFormat::PageBreak_AlwaysBefore);
+    cursor.setBlockFormat(format);
+  };
+  for (QTextBlock block = begin(); block.isValid(); block = block.next()) {
+    if (!isHeading(block)) continue;
+    const QTextBlock next = block.next();
+    if (!next.isValid()) break;
+    const double top = extentOf(block).top;
+    double bottom = extentOf(next, firstLines).bottom;
+    if (const QTextTable* const table = QTextCursor(next).currentTable(); table != nullptr) {
+      const double whole = extentOf(endOfRow(*table, table->rows() - 1)).bottom;
+      const bool divided = whole - top > undividedTable * page_.height();
+      bottom = divided ? extentOf(endOfRow(*table, std::min(firstRows, table->rows() - 1))).bottom : whole;
+    }
+    if (pageOf(top) != pageOf(bottom - 1.0)) startPage(block);
+  }
 }
 
 QSizeF ReportTextDocument::intrinsicSize(QTextDocument*, int, const QTextFormat& format) {

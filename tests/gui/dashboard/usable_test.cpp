@@ -31,6 +31,7 @@
 #include "gui/dashboard/attempt_page.h"
 #include "gui/dashboard/dashboard_window.h"
 #include "gui/dashboard/dialogs.h"
+#include "gui/dashboard/norm_dialog.h"
 #include "tests/gui/dashboard/support/cohort.h"
 #include "tests/gui/dashboard/support/recorded.h"
 
