@@ -19,7 +19,7 @@ namespace calot::gui {
 namespace {
 
 constexpr int dotsPerInch = 600;
-constexpr double marginMillimetres = 15.0, footMillimetres = 8.0, footPoints = 7.0, markPoints = 90.0;
+constexpr double marginMillimetres = 15.0, footPoints = 7.0, markPoints = 90.0;
 
 void paintMark(QPainter& painter, const QSizeF& page, QFont font) {
   painter.save();
@@ -90,8 +90,7 @@ std::string pdfOf(const QString& title, const std::string& maker, int dots, doub
 void paintReport(const analytics::ReportDocument& document, QPagedPaintDevice& device) {
   const QString title = titleOf(document);
   const QFont font = reportFont();
-  const double footHeight = footMillimetres * device.logicalDpiX() / 25.4;
-  const QSizeF whole(device.width(), device.height()), page(whole.width(), whole.height() - footHeight);
+  const QSizeF whole(device.width(), device.height()), page = textPageOf(device);
   ReportTextDocument text(document, &device, page);
   const int pages = text.pageCount();
   QPainter painter(&device);
@@ -110,7 +109,7 @@ void paintReport(const analytics::ReportDocument& document, QPagedPaintDevice& d
     context.palette.setColor(QPalette::Text, Qt::black);
     text.documentLayout()->draw(&painter, context);
     painter.restore();
-    paintFoot(painter, QRectF(0.0, page.height(), whole.width(), footHeight), font, title, i + 1, pages);
+    paintFoot(painter, QRectF(0.0, page.height(), whole.width(), whole.height() - page.height()), font, title, i + 1, pages);
   }
 }
 

@@ -214,6 +214,12 @@ struct ReportTextDocument::Writer {
   }
 };
 
+QSizeF textPageOf(const QPagedPaintDevice& device) {
+  constexpr double footMillimetres = 8.0;
+  // Whole dots: Qt lays out in parts of a dot, and pages would drift apart from what is painted.
+  return QSizeF(device.width(), std::floor(device.height() - footMillimetres * device.logicalDpiX() / 25.4));
+}
+
 ReportTextDocument::ReportTextDocument(const analytics::ReportDocument& report, QPagedPaintDevice* device,
                                        const QSizeF& page)
     : device_(device), page_(page) {
@@ -245,14 +251,14 @@ int ReportTextDocument::pageOf(double place) const { return static_cast<int>(std
 
 bool ReportTextDocument::isHeading(const QTextBlock& block) { return block.blockFormat().boolProperty(keptWithNext); }
 
-namespace {
-
-/// Last block of a row of a table.
-QTextBlock endOfRow(const QTextTable& table, int row) {
-  return table.cellAt(row, table.columns() - 1).lastCursorPosition().block();
+ReportTextDocument::Extent ReportTextDocument::extentOf(const QTextTable& table, int row) const {
+  Extent all{std::numeric_limits<double>::max(), 0.0};
+  for (int column = 0; column < table.columns(); ++column) {
+    const Extent cell = extentOf(table.cellAt(row, column).firstCursorPosition().block());
+    all = {std::min(all.top, cell.top), std::max(all.bottom, cell.bottom)};
+  }
+  return all;
 }
-
-}  // namespace
 
 /// Qt divides a document into pages line by line and knows nothing of what belongs together.
 void ReportTextDocument::keepTogether() {
@@ -270,12 +276,19 @@ void ReportTextDocument::keepTogether() {
     if (!next.isValid()) break;
     const double top = extentOf(block).top;
     double bottom = extentOf(next, firstLines).bottom;
-    if (const QTextTable* const table = QTextCursor(next).currentTable(); table != nullptr) {
-      const double whole = extentOf(endOfRow(*table, table->rows() - 1)).bottom;
+    const QTextTable* const table = QTextCursor(next).currentTable();
+    if (table != nullptr) {
+      const double whole = extentOf(*table, table->rows() - 1).bottom;
       const bool divided = whole - top > undividedTable * page_.height();
-      bottom = divided ? extentOf(endOfRow(*table, std::min(firstRows, table->rows() - 1))).bottom : whole;
+      bottom = divided ? extentOf(*table, std::min(firstRows, table->rows() - 1)).bottom : whole;
     }
     if (pageOf(top) != pageOf(bottom - 1.0)) startPage(block);
+    if (table == nullptr) continue;
+    for (int row = 1; row < table->rows(); ++row) {
+      if (const Extent lines = extentOf(*table, row); pageOf(lines.top) == pageOf(lines.bottom - 1.0)) continue;
+      for (int column = 0; column < table->columns(); ++column)
+        startPage(table->cellAt(row, column).firstCursorPosition().block());
+    }
   }
 }
 

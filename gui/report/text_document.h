@@ -12,7 +12,12 @@
 
 #include "analytics/report/report_document.h"
 
+class QTextTable;
+
 namespace calot::gui {
+
+/// The part of a device's page that text may fill, in its dots: the rest is the foot.
+QSizeF textPageOf(const QPagedPaintDevice& device);
 
 /// A report as Qt lays it out: headings, paragraphs with links, lists, tables whose heads are repeated, figures,
 /// pictures, boxes to write in. A heading is on the page of what follows it: of a table that fits into half a page with
@@ -33,6 +38,7 @@ class ReportTextDocument : public QTextDocument, public QTextObjectInterface {
     double top = 0.0, bottom = 0.0;
   };
   [[nodiscard]] Extent extentOf(const QTextBlock& block, int lines = std::numeric_limits<int>::max()) const;
+  [[nodiscard]] Extent extentOf(const QTextTable& table, int row) const;  ///< of the text of its cells
   /// Page of a place, from 0.
   [[nodiscard]] int pageOf(double place) const;
   [[nodiscard]] static bool isHeading(const QTextBlock& block);
