@@ -66,7 +66,6 @@ Study studyOf(const Size& size) {
   }
   std::sort(options.family.begin(), options.family.end());
   options.family.erase(std::unique(options.family.begin(), options.family.end()), options.family.end());
-  if 
   return analytics::makeStudy(database, options);
 }
 
