@@ -31,8 +31,9 @@ bool isNamed(const std::vector<std::string>& named, const std::string& checkpoin
 constexpr const char* criticalMark = "one fails an attempt, whatever its other figures";
 
 /// The mark of one figure, without its place in the rule.
-void findMark(NormCheckpoint& mark, const Norm& norm, std::size_t position, const std::map<std::string, double>& ratings,
-              const std::optional<BorderlineMark>& borderline, std::size_t resamples) {
+void findMark(NormCheckpoint& mark, const Norm& norm, std::size_t position,
+              const std::map<std::string, double>& ratings, const std::optional<BorderlineMark>& borderline,
+              std::size_t resamples) {
   std::vector<double> competent, others, rated, all;
   bool positive = true;
   for (const NormMember& m : norm.members) {
@@ -81,9 +82,8 @@ bool isCandidate(const std::string& checkpoint, const std::string& subject, cons
 /// Before any mark is made: a rule that asks for more figures than there can be in it.
 void checkCount(const Norm& norm, const NormRequest& request, const std::string& name) {
   const auto candidates = static_cast<std::size_t>(
-      std::count_if(norm.checkpoints.begin(), norm.checkpoints.end(), [&](const NormCheckpoint& mark) {
-        return isCandidate(mark.checkpoint, mark.subject, request);
-      }));
+      std::count_if(norm.checkpoints.begin(), norm.checkpoints.end(),
+                    [&](const NormCheckpoint& mark) { return isCandidate(mark.checkpoint, mark.subject, request); }));
   if (candidates > 0 && request.leastPassed > candidates)  // of none, declareRule() says which names are unknown
     throw Error(ErrorKind::refused, Where{name},
                 fmt::format("the rule asks for {} figures, {}", request.leastPassed,

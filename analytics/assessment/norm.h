@@ -89,7 +89,7 @@ struct NormRequest {
   std::vector<FixedCut> fixed;    ///< in the rule, too, by marks of a person
   std::uint32_t leastPassed = 0;  ///< of them; 0: all
   std::uint64_t seed = 1;         ///< of the bootstrap
-  /// What `by` decided of single attempts in place of the groups: competent or not; none: not a member.
+  /// Decisions of `by` on single attempts in place of the groups: competent or not; none: not a member.
   std::map<std::string, std::optional<bool>> decided;
 };
 

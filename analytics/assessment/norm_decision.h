@@ -52,10 +52,10 @@ struct NormDecisions {
 NormDecisions decisionsOf(const Norm& norm, const std::vector<AttemptRow>& attempts,
                           const std::vector<AttemptValue>& values, const std::vector<Rating>& ratings);
 
-/// What a norm would be and do, before it is made.
+/// A norm and whom it would let through, before it is made.
 struct NormTrial {
-  Norm norm;                 ///< without intervals; a figure counts as far as it has a mark
-  std::vector<bool> passed;  ///< by Norm::members
+  Norm norm;                                    ///< without intervals; a figure counts as far as it has a mark
+  std::vector<bool> passed;                     ///< by Norm::members
   std::vector<std::optional<double>> computed;  ///< marks that the members give, by Norm::checkpoints
   /// Members who pass, first of the competent, then of the others: by these marks, and each by marks made without
   /// that member (leave one out); marks that a person set stay.

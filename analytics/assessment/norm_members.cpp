@@ -168,8 +168,17 @@ Norm gatherNorm(const std::vector<AttemptRow>& attempts, const std::vector<Attem
       throw Error(ErrorKind::refused, Where{name}, fmt::format("{}: {}", row.checkpoint, sampling->refusal));
   }
   for (const NormFigure& figure : figures)
-    norm.checkpoints.push_back({figure.definition->name, figure.subject, figure.definition->version,
-                                figure.definition->direction, false, false, {}, {}, {}, "", figure.metric});
+    norm.checkpoints.push_back({figure.definition->name,
+                                figure.subject,
+                                figure.definition->version,
+                                figure.definition->direction,
+                                false,
+                                false,
+                                {},
+                                {},
+                                {},
+                                "",
+                                figure.metric});
   return norm;
 }
 

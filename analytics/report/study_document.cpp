@@ -107,7 +107,8 @@ std::string simulationText(const Study& study) {
 /// Notes that the second page has space for, and how many there are beside them.
 void addLimits(ReportDocument& document, const Study& study, std::vector<std::string> missing, double space) {
   std::vector<std::string> notes;
-  if (study.synthetic) notes.emplace_back("Performers, which are programs, made these attempts: no statement on people.");
+  if (study.synthetic)
+    notes.emplace_back("Performers, which are programs, made these attempts: no statement on people.");
   if (std::string text = simulationText(study); !text.empty()) notes.push_back(std::move(text));
   const std::vector<std::string> all = primaryNotes(study);
   notes.insert(notes.end(), all.begin() + 1, all.end());  // the legend stands below its table

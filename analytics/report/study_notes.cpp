@@ -241,10 +241,9 @@ std::string registrationText(const Study& study) {
   const StudyProtocol& p = *study.protocol;
   const std::string protocol = fmt::format("protocol {} version {}", p.name, p.version);
   const std::string registered =
-      p.whyExploratory.empty()
-          ? fmt::format("Confirmatory: {} was registered on {}, before the first attempt ({}).", protocol,
-                        p.registeredUtc, p.firstAttemptUtc)
-          : fmt::format("Exploratory, by {}: {}.", protocol, p.whyExploratory);
+      p.whyExploratory.empty() ? fmt::format("Confirmatory: {} was registered on {}, before the first attempt ({}).",
+                                             protocol, p.registeredUtc, p.firstAttemptUtc)
+                               : fmt::format("Exploratory, by {}: {}.", protocol, p.whyExploratory);
   return registered + " " + lockText(p);
 }
 

@@ -36,10 +36,11 @@ ValueTree rowTree(const Study& study, const StudyRow& row);  ///< one of its "ro
 /// @throws Error (invalid) when a file is there already, Error (failure) when writing fails.
 void writeStudyCsv(const Study& study, const std::string& folder, bool force);
 
-/// First: two pages of A4 whatever the study's size. The first has question and groups, flow, participants and the first
-/// result, the second its forest plots, box plots of the figures that lead, methods, and limits in short; what has no
-/// space on them is counted there. All: from the third page on an appendix, which has what the two pages shortened, all
-/// other tables, a box plot with all points for each row, and the spread of each completed form's scores.
+/// First: two pages of A4 whatever the study's size. The first has question and groups, flow, participants and the
+/// first result, the second its forest plots, box plots of the figures that lead, methods, and limits in short; what
+/// has no space on them is counted there. All: from the third page on an appendix, which has what the two pages
+/// shortened, all other tables, a box plot with all points for each row, and the spread of each completed form's
+/// scores.
 ReportDocument studyDocument(const Study& study, StudyDetail detail = StudyDetail::all);
 
 std::string studyTitle(const Study& study);  ///< "Study (exploratory): expert against novice"

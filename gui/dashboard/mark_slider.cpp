@@ -3,19 +3,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <QLocale>
 #include <QMouseEvent>
 #include <QPainter>
 #include <QSignalBlocker>
 #include <QWheelEvent>
 
 #include "analytics/report/plots.h"
-#include "gui/attempt/figure_text.h"
 #include "gui/attempt/widget_parts.h"
 
 namespace calot::gui {
 namespace {
 
-constexpr double margin = 0.08;      // of the range, on both sides of the values
+constexpr double margin = 0.08;  // of the range, on both sides of the values
 constexpr double leastSteps = 100.0;
 constexpr double dotRadius = 3.2, handle = 5.0;  // pixels, for letters of the usual size
 constexpr int pages = 10;                        // of Page Up from end to end
@@ -106,7 +106,7 @@ void MarkSlider::mouseMoveEvent(QMouseEvent* event) {
 
 void MarkSlider::mouseReleaseEvent(QMouseEvent*) { setSliderDown(false); }
 
-// What is scrolled past must not change.
+// Scrolling past a slider must not change it.
 void MarkSlider::wheelEvent(QWheelEvent* event) { event->ignore(); }
 
 void MarkSlider::paintEvent(QPaintEvent*) {
@@ -120,8 +120,8 @@ void MarkSlider::paintEvent(QPaintEvent*) {
     QColor ground = theme::first();
     ground.setAlphaF(0.14F);
     const double at = placeOf(*mark);
-    painter.fillRect(view_.lowerIsBetter ? QRectF(left(), 0.0, at - left(), bottom) : QRectF(at, 0.0, right() - at, bottom),
-                     ground);
+    painter.fillRect(
+        view_.lowerIsBetter ? QRectF(left(), 0.0, at - left(), bottom) : QRectF(at, 0.0, right() - at, bottom), ground);
   }
   painter.setPen(theme::muted());
   for (int i = 0; i < 2; ++i)
@@ -129,7 +129,7 @@ void MarkSlider::paintEvent(QPaintEvent*) {
   painter.drawLine(QPointF(left(), bottom), QPointF(right(), bottom));
   double free = left() - 20.0;  // labels do not touch each other
   for (const double tick : analytics::roundTicks(low, high)) {
-    const QString text = numberText(tick);
+    const QString text = QLocale().toString(tick, 'g', 6);
     const double x = placeOf(tick), half = 0.5 * fontMetrics().horizontalAdvance(text);
     painter.drawLine(QPointF(x, bottom), QPointF(x, bottom + 3.0));
     if (x - half < free || x + half > width()) continue;
@@ -156,8 +156,7 @@ void MarkSlider::paintEvent(QPaintEvent*) {
     painter.setPen(Qt::NoPen);
     painter.setBrush(mark ? theme::text() : theme::muted());
     const double h = handle * scale;
-    if (isEnabled())
-      painter.drawPolygon(QPolygonF({{at - h, 0.0}, {at + h, 0.0}, {at, 1.5 * h}}));
+    if (isEnabled()) painter.drawPolygon(QPolygonF({{at - h, 0.0}, {at + h, 0.0}, {at, 1.5 * h}}));
   }
   if (!hasFocus()) return;
   painter.setBrush(Qt::NoBrush);

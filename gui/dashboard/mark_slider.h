@@ -26,9 +26,9 @@ class MarkScale {
   int steps_ = 1;
 };
 
-/// Members' values of a figure as dots, competent ones above the others, and its pass mark as a line that is moved like a
-/// slider: by the mouse, and by arrows, Page Up and Down, Home and End. Emits valueChanged() only where a person moves
-/// it.
+/// Members' values of a figure as dots, competent ones above the others, and its pass mark as a line that is moved like
+/// a slider: by the mouse, and by arrows, Page Up and Down, Home and End. Emits valueChanged() only where a person
+/// moves it.
 class MarkSlider : public QSlider {
   Q_OBJECT
  public:

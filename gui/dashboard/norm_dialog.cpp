@@ -16,7 +16,7 @@ namespace calot::gui {
 namespace {
 
 enum MemberColumn { memberColumn, competentColumn, passesColumn, memberColumns };
-constexpr int byRaters = -1;              // data of a choice of groups: its form has role formRole
+constexpr int byRaters = -1;  // data of a choice of groups: its form has role formRole
 constexpr int formRole = Qt::UserRole + 1;
 
 /// A line below a field: what is wrong with it, or what follows from it.
@@ -30,6 +30,9 @@ void note(QLabel* label, const QString& fault, const QString& hint = {}) {
 QString rateText(const analytics::PassRate& rate, const char* who) {
   return QString("%1 of %2 %3").arg(rate.passed).arg(rate.members).arg(who);
 }
+
+/// The word says what a tick says: styles draw empty boxes faintly on dark grounds.
+const char* sideText(bool competent) { return competent ? "competent" : "other"; }
 
 QTableWidgetItem* tick(const QString& text, bool on) {
   auto* const item = new QTableWidgetItem(text);
@@ -67,7 +70,7 @@ NormDialog::NormDialog(std::shared_ptr<const CohortDocument> document, std::vect
               parts::named("norm-synthetic", new QCheckBox("&Synthetic attempts, too")),
               parts::named("norm-practice", new QCheckBox("&Practice attempts, too"))},
       attempts_(parts::choice("norm-attempts", 10)),
-      rule_(parts::choice("norm-rule", 18)),
+      rule_(parts::choice("norm-rule", 30)),
       least_(parts::named("norm-least", new QSpinBox)),
       first_(parts::named("norm-first", new QCheckBox("Of several attempts the &first counts"))),
       all_(parts::named("norm-all-figures", new QCheckBox("All fig&ures"))),
@@ -88,7 +91,7 @@ NormDialog::NormDialog(std::shared_ptr<const CohortDocument> document, std::vect
   result->setFocusPolicy(Qt::NoFocus);
   result->hide();
   resultArea_ = result;
-  undo_->hide();
+  undo_->setEnabled(false);
   auto* const buttons = new QDialogButtonBox;
   buttons->addButton(undo_, QDialogButtonBox::ActionRole);
   buttons->addButton(make_, QDialogButtonBox::ActionRole);
@@ -124,7 +127,7 @@ QLayout* NormDialog::buildFields() {
 }
 
 QWidget* NormDialog::buildMembers() {
-  setWidths(*members_, {190, 90});
+  setWidths(*members_, {150, 105});
   members_->setToolTip("Space changes a tick");
   return parts::boxed(parts::column({{members_, 1}, membersNote_}));
 }
@@ -172,9 +175,10 @@ void NormDialog::connectFields() {
   });
   connect(least_, &QSpinBox::valueChanged, this, [this] { tryMarks(); });
   connect(members_, &QTableWidget::itemChanged, this, [this](const QTableWidgetItem* item) {
+    const QSignalBlocker quiet(members_);
+    QTableWidgetItem* const competent = members_->item(item->row(), competentColumn);
+    competent->setText(sideText(competent->checkState() == Qt::Checked));
     if (item->column() == memberColumn) {
-      const QSignalBlocker quiet(members_);
-      QTableWidgetItem* const competent = members_->item(item->row(), competentColumn);
       const Qt::ItemFlags flags = competent->flags();
       competent->setFlags(item->checkState() == Qt::Checked ? flags | Qt::ItemIsEnabled : flags & ~Qt::ItemIsEnabled);
     }
@@ -187,7 +191,7 @@ void NormDialog::connectFields() {
   connect(&work_, &LongWork::done, this, [this](const QString& text) {
     newest_[made_->name] = made_->version;
     end(text);
-    undo_->show();
+    undo_->setEnabled(true);
     emit made(*made_);
   });
   connect(&work_, &LongWork::failed, this, [this](const QString& reason) {
@@ -274,10 +278,9 @@ void NormDialog::fillMembers() {
     members_->item(row, memberColumn)->setData(Qt::UserRole, QString::fromStdString(member.attempt));
     if (attempt != nullptr)
       members_->item(row, memberColumn)
-          ->setToolTip(QString("%1, attempt %2").arg(startText(attempt->startUtc), QString::fromStdString(member.attempt).left(8)));
-    members_->setItem(row, competentColumn, tick("", member.competent));
-    members_->item(row, competentColumn)
-        ->setData(Qt::AccessibleTextRole, who + (member.competent ? " is competent" : " is one of the others"));
+          ->setToolTip(QString("%1, attempt %2")
+                           .arg(startText(attempt->startUtc), QString::fromStdString(member.attempt).left(8)));
+    members_->setItem(row, competentColumn, tick(sideText(member.competent), member.competent));
     members_->setItem(row, passesColumn, new QTableWidgetItem);
   }
   if (members_->rowCount() > 0) members_->setCurrentCell(0, competentColumn);
@@ -321,11 +324,13 @@ void NormDialog::take(analytics::NormTrial trial) {
 void NormDialog::sayFaults() {
   const QString name = name_->text().trimmed();
   const auto known = newest_.find(name.toStdString());
-  const QString nameFault = name.isEmpty()                                 ? "A norm needs a name."
-                            : !analytics::isNormName(name.toStdString())   ? "Only letters, digits, points, hyphens and underscores."
-                                                                           : QString();
-  note(nameNote_, nameFault,
-       known == newest_.end() ? QString() : QString("It is there: this will be its version %1.").arg(known->second + 1));
+  const QString nameFault = name.isEmpty() ? "A norm needs a name."
+                            : !analytics::isNormName(name.toStdString())
+                                ? "Only letters, digits, points, hyphens and underscores."
+                                : QString();
+  note(
+      nameNote_, nameFault,
+      known == newest_.end() ? QString() : QString("It is there: this will be its version %1.").arg(known->second + 1));
   const QString byFault = by_->text().trimmed().isEmpty() ? "Somebody makes it: your pseudonym is missing." : QString();
   note(byNote_, byFault);
   note(groupsNote_, groupsFault_);
@@ -341,10 +346,14 @@ void NormDialog::sayFaults() {
     if (counting == 0) figuresFault = "No figure counts: tick one, or move its line.";
     if (counting > 0 && rule_->currentIndex() == 1 && static_cast<std::size_t>(least_->value()) > counting)
       ruleFault = QString("Only %1 figures count.").arg(counting);
-    outcome_->setText("Would pass: " + rateText(trial_->rates.first, "competent, ") +
-                      rateText(trial_->rates.second, "others. With marks made without each of them: ") +
-                      rateText(trial_->withoutSelf.first, "and ") +
-                      QString("%1 of %2.").arg(trial_->withoutSelf.second.passed).arg(trial_->withoutSelf.second.members));
+    if (counting == 0)
+      outcome_->setText("Who would pass is known when a figure counts.");
+    else
+      outcome_->setText(
+          "Would pass: " + rateText(trial_->rates.first, "competent, ") +
+          rateText(trial_->rates.second, "others. With marks made without each of them: ") +
+          rateText(trial_->withoutSelf.first, "and ") +
+          QString("%1 of %2.").arg(trial_->withoutSelf.second.passed).arg(trial_->withoutSelf.second.members));
   } else if (!groupsFault_.isEmpty()) {
     outcome_->setText("Nobody is in it yet.");
   }
@@ -361,7 +370,7 @@ void NormDialog::make() {
   const std::vector<std::string> only = attempts_->currentIndex() == 1 ? selected_ : std::vector<std::string>();
   settings::setPerson(QString::fromStdString(wanted.by));
   make_->setEnabled(false);
-  undo_->hide();
+  undo_->setEnabled(false);
   resultArea_->hide();
   strip_->begin("Making the norm");
   const auto stored = std::make_shared<analytics::Norm>();
@@ -383,7 +392,7 @@ void NormDialog::end(const QString& text) {
 }
 
 void NormDialog::undo() {
-  undo_->hide();
+  undo_->setEnabled(false);
   if (made_->version > 1)
     newest_[made_->name] = made_->version - 1;
   else

@@ -18,9 +18,9 @@ namespace calot::gui {
 
 class NormMarks;
 
-/// Makes a norm: who is in it and who of them is competent, as a list with ticks; each figure's values and its pass mark,
-/// which can be moved; and who would pass, with marks made without each member. What is missing is said beside the field
-/// that it is missing in. The norm is made as `calot norm create` makes it.
+/// Makes a norm: who is in it and who of them is competent, as a list with ticks; each figure's values and its pass
+/// mark, which can be moved; and who would pass, with marks made without each member. What is missing is said beside
+/// the field that it is missing in. The norm is made as `calot norm create` makes it.
 class NormDialog : public QDialog {
   Q_OBJECT
  public:
@@ -31,10 +31,10 @@ class NormDialog : public QDialog {
   [[nodiscard]] bool settled() const { return settled_; }
 
  signals:
-  void tried();                             ///< the members, or their marks, were worked out, or why they can't be
-  void made(const analytics::Norm& norm);   ///< it is stored
-  void refused();                           ///< and why stands in the dialog
-  void undoWanted();                        ///< of the norm that was just made
+  void tried();                            ///< the members, or their marks, were worked out, or why they can't be
+  void made(const analytics::Norm& norm);  ///< it is stored
+  void refused();                          ///< and why stands in the dialog
+  void undoWanted();                       ///< of the norm that was just made
 
  private:
   QLayout* buildFields();
@@ -44,7 +44,7 @@ class NormDialog : public QDialog {
   void connectFields();
   void offerRaters();
   [[nodiscard]] analytics::NormRequest request() const;
-  void gather();   ///< members anew: another choice of groups or attempts
+  void gather();  ///< members again: another choice of groups or attempts
   void fillMembers();
   void tryMarks();  ///< of the same members: another tick or mark
   void take(analytics::NormTrial trial);

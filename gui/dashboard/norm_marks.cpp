@@ -63,8 +63,7 @@ NormMark::NormMark(const analytics::NormCheckpoint& mark, const std::string& fig
     box->setEnabled(!always_);
   }
   slider_->setEnabled(!always_);
-  auto* const column =
-      parts::column({parts::row({{name, 1}, value_, counting_, veto_}), slider_, reason_});
+  auto* const column = parts::column({parts::row({{name, 1}, value_, counting_, veto_}), slider_, reason_});
   column->setContentsMargins(0, 0, 0, theme::inType(6));
   column->setSpacing(2);
   setLayout(column);
@@ -135,11 +134,11 @@ void NormMark::describe() {
   if (fixed_) text += ", set by hand";
   value_->setText(text);
   slider_->setAccessibleDescription(text);
-  parts::say(reason_, always_                ? "One fails an attempt, whatever its other figures."
-                      : view.mark            ? QString()
-                      : isWanted()           ? "Does not count: " + QString::fromStdString(mark_.reason) +
-                                               ". Move the line to set a mark by hand."
-                                             : "The members give no mark: " + QString::fromStdString(mark_.reason) + '.');
+  parts::say(reason_, always_      ? "One fails an attempt, whatever its other figures."
+                      : view.mark  ? QString()
+                      : isWanted() ? "Does not count: " + QString::fromStdString(mark_.reason) +
+                                         ". Move the line to set a mark by hand."
+                                   : "The members give no mark: " + QString::fromStdString(mark_.reason) + '.');
   const QSignalBlocker quietCounting(counting_), quietVeto(veto_);
   if (always_) return;
   counting_->setChecked(isWanted() && hasMark_);

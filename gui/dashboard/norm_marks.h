@@ -18,8 +18,8 @@ namespace calot::gui {
 
 class MarkSlider;
 
-/// One figure of a norm: its members' values with the mark, whether it counts, and whether its mark is a person's, which
-/// is a veto. Critical errors are always one, and are shown only.
+/// One figure of a norm: its members' values with the mark, whether it counts, and whether its mark is a person's,
+/// which is a veto. Critical errors are always one, and are shown only.
 class NormMark : public QWidget {
   Q_OBJECT
  public:

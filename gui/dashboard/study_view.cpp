@@ -106,8 +106,8 @@ std::string studyText(const analytics::Study& study) {
     html += "<p style=\"background-color:#f0e442; color:#000000\"><b>&nbsp;" +
             analytics::escaped(analytics::watermarkText) + "&nbsp;</b></p>";
   html += "<h2>" + analytics::escaped(analytics::studyTitle(study)) + "</h2>";
-  html +=
-      "<p><b>" + analytics::escaped(analytics::registrationText(study)) + "</b></p>" + tableText(analytics::primaryTable(study));
+  html += "<p><b>" + analytics::escaped(analytics::registrationText(study)) + "</b></p>" +
+          tableText(analytics::primaryTable(study));
   if (!analytics::forestsOf(study).empty()) html += std::string("<p><img src=\"") + forestAddress + "\"></p>";
   const analytics::ReportTable coverage = analytics::coverageTable(study);
   if (!study.coverage.empty())

@@ -6,9 +6,9 @@
 #include <QBuffer>
 #include <QFont>
 #include <QGuiApplication>
+#include <QPageRanges>
 #include <QPainter>
 #include <QPainterPath>
-#include <QPageRanges>
 #include <QPdfWriter>
 #include <utility>
 
@@ -109,7 +109,8 @@ void paintReport(const analytics::ReportDocument& document, QPagedPaintDevice& d
     context.palette.setColor(QPalette::Text, Qt::black);
     text.documentLayout()->draw(&painter, context);
     painter.restore();
-    paintFoot(painter, QRectF(0.0, page.height(), whole.width(), whole.height() - page.height()), font, title, i + 1, pages);
+    paintFoot(painter, QRectF(0.0, page.height(), whole.width(), whole.height() - page.height()), font, title, i + 1,
+              pages);
   }
 }
 

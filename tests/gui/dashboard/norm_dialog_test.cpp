@@ -59,7 +59,9 @@ class NormDialogs : public ::testing::Test {
     dialog_->show();
     settle();
   }
-  void settle() { ASSERT_TRUE(QTest::qWaitFor([&] { return dialog_->settled(); }, normPatience)); }
+  void settle() {
+    ASSERT_TRUE(QTest::qWaitFor([&] { return dialog_->settled(); }, normPatience));
+  }
   template <class T>
   T* part(const char* name) {
     T* const found = dialog_->findChild<T*>(name);
