@@ -307,11 +307,10 @@ TEST_F(Usable, TheWindowOfANormFitsASmallScreenAndIsReachedByKeys) {
       for (const auto& [text, ground] : textColours(*widget))
         EXPECT_GE(theme::contrast(text, ground), theme::leastContrast) << widget->objectName().toStdString();
       const bool control = qobject_cast<QAbstractButton*>(widget) != nullptr ||
-                           qobject_cast<QLineEdit*>(widget) != nullptr ||
-                           qobject_cast<QSlider*>(widget) != nullptr ||
+                           qobject_cast<QLineEdit*>(widget) != nullptr || qobject_cast<QSlider*>(widget) != nullptr ||
                            (qobject_cast<QComboBox*>(widget) != nullptr);
-      const bool inner = widget->objectName() == "qt_spinbox_lineedit" ||
-                         qobject_cast<QTableView*>(widget->parentWidget()) != nullptr;
+      const bool inner =
+          widget->objectName() == "qt_spinbox_lineedit" || qobject_cast<QTableView*>(widget->parentWidget()) != nullptr;
       if (!control || inner || !widget->isEnabled()) continue;
       ++controls;
       EXPECT_TRUE(reached.count(widget) > 0) << widget->objectName().toStdString();
