@@ -273,13 +273,16 @@ void NormDialog::fillMembers() {
   for (int row = 0; row < members_->rowCount(); ++row) {
     const analytics::NormMember& member = members[static_cast<std::size_t>(row)];
     const analytics::AttemptRow* const attempt = document_->attempt(member.attempt);
-    const QString who = attempt == nullptr ? QString::fromStdString(member.attempt).left(8) : operatorText(*attempt);
+    const QString number = QString::fromStdString(member.attempt).left(8);
+    // Performers are several attempts of one name.
+    const QString who = attempt == nullptr             ? number
+                        : attempt->participant.empty() ? operatorText(*attempt) + ", " + number
+                                                       : operatorText(*attempt);
     members_->setItem(row, memberColumn, tick(who, true));
     members_->item(row, memberColumn)->setData(Qt::UserRole, QString::fromStdString(member.attempt));
     if (attempt != nullptr)
       members_->item(row, memberColumn)
-          ->setToolTip(QString("%1, attempt %2")
-                           .arg(startText(attempt->startUtc), QString::fromStdString(member.attempt).left(8)));
+          ->setToolTip(QString("%1, attempt %2").arg(startText(attempt->startUtc), number));
     members_->setItem(row, competentColumn, tick(sideText(member.competent), member.competent));
     members_->setItem(row, passesColumn, new QTableWidgetItem);
   }
