@@ -89,7 +89,15 @@ struct NormRequest {
   std::vector<FixedCut> fixed;    ///< in the rule, too, by marks of a person
   std::uint32_t leastPassed = 0;  ///< of them; 0: all
   std::uint64_t seed = 1;         ///< of the bootstrap
+  /// Decisions of `by` on single attempts in place of the groups: competent or not; none: not a member.
+  std::map<std::string, std::optional<bool>> decided;
 };
+
+/// Definition of the figure that a mark is of; null: this program does not know it.
+const CheckpointDefinition* definitionOf(const NormCheckpoint& mark);
+
+/// True if a norm may be called so: 1 to 64 letters, digits, points, hyphens and underscores.
+bool isNormName(const std::string& name);
 
 /// Name of the form and its item by which raters judge competence.
 inline constexpr const char* competenceItem = "competent";
@@ -107,6 +115,21 @@ inline constexpr std::size_t minNormMembers = 3;
 Norm makeNorm(const std::vector<AttemptRow>& attempts, const std::vector<AttemptValue>& values,
               const std::vector<Rating>& ratings, const NormRequest& request, const std::string& name);
 
+/// The first part of makeNorm(): members by the groups or by raters, however few, and the figures that judge with their
+/// values; no marks, no rule. @throws Error as makeNorm() where there are no two groups of comparable attempts
+Norm gatherNorm(const std::vector<AttemptRow>& attempts, const std::vector<AttemptValue>& values,
+                const std::vector<Rating>& ratings, const NormRequest& request, const std::string& name);
+/// Applies NormRequest::decided, and says so in Norm::judgedBy. Attempts that are no members are passed over.
+void decideMembers(Norm& norm, const NormRequest& request);
+/// Every figure's mark by the norm's members; without one, why. @param resamples of the bootstrap, at least 99
+void findMarks(Norm& norm, const std::vector<Rating>& ratings, const std::optional<BorderlineMark>& borderline,
+               std::size_t resamples);
+/// Sets the marks that a person fixed, and which figures count: of those that the request names, or by default, all
+/// with a mark. Refuses nothing. @throws Error as setFixedCuts()
+void applyRule(Norm& norm, const NormRequest& request);
+/// Competent members and others.
+std::pair<std::size_t, std::size_t> sidesOf(const Norm& norm);
+
 /// True if a value is on the passing side of a mark; a value at the cut passes. @pre there is a cut.
 bool passes(const NormCheckpoint& mark, double value);
 
@@ -116,6 +139,8 @@ struct PassRate {
 };
 /// First of the competent, then of the others. A member without a value of a figure has not passed it.
 std::pair<PassRate, PassRate> passRates(const Norm& norm);
+/// True if a member of the norm passes by its rule.
+bool isPassedBy(const Norm& norm, const NormMember& member);
 
 /// Warning where competent members of the norm would fail by its own rule, with their number; or empty.
 std::string ownFailureWarning(const Norm& norm);
@@ -156,6 +181,16 @@ Expected<RegressionCut> borderlineCut(const std::vector<double>& ratings, const 
 /// How far it is, from 0 to 1, and what is being done. The last call comes before anything is stored; what it throws
 /// ends the making, and nothing is stored.
 using NormProgress = std::function<void(double share, const char* doing)>;
+
+/// All that a norm may be made of.
+struct NormSource {
+  std::vector<AttemptRow> attempts;
+  std::vector<AttemptValue> values;
+  std::vector<Rating> ratings;
+};
+/// @param only uuids of the attempts that it may be made of; empty: all
+NormSource readNormSource(const CohortDatabase& cohort, const std::vector<std::string>& only = {},
+                          const NormProgress& progress = {});
 
 /// Makes a norm of a cohort's attempts, after the whole cohort was checked, and stores it as the next version of its
 /// name. A protocol gets the participants' recorded experience.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "analytics/assessment/verdict.h"
 #include "analytics/statistics/distributions.h"
@@ -93,24 +94,19 @@ Norm without(const Norm& norm, std::size_t left, const std::map<std::string, dou
   return result;
 }
 
-/// False passes and failures, each member judged by marks made without them.
-void crossValidate(const Norm& norm, const std::vector<Judged>& judged, const std::vector<Rating>& ratings,
-                   NormDecisions& decisions) {
+/// First of the competent, then of the others: each member is judged by marks made without them.
+/// @param judge of a norm and a member: does the member pass?
+template <class Judge>
+std::pair<PassRate, PassRate> ratesWithoutSelf(const Norm& norm, const std::vector<Rating>& ratings, Judge judge) {
   const BorderlineMark borderline = borderlineOf(norm).value_or(BorderlineMark{});
   const std::map<std::string, double> rating = meanRatings(ratings, borderline.form);
-  std::map<std::string, double> criticalErrors;
-  for (const Judged& j : judged) criticalErrors[j.attempt->uuid] = j.criticalErrors;
-  std::uint64_t falsePass = 0, falseFail = 0, others = 0, competent = 0;
+  std::pair<PassRate, PassRate> rates;
   for (std::size_t m = 0; m < norm.members.size(); ++m) {
-    const NormMember& member = norm.members[m];
-    const bool passed =
-        isPassed(without(norm, m, rating, borderline.mark), member.values, criticalErrors[member.attempt]);
-    ++(member.competent ? competent : others);
-    if (passed && !member.competent) ++falsePass;
-    if (!passed && member.competent) ++falseFail;
+    PassRate& rate = norm.members[m].competent ? rates.first : rates.second;
+    ++rate.members;
+    rate.passed += judge(without(norm, m, rating, borderline.mark), norm.members[m]) ? 1 : 0;
   }
-  decisions.falsePass = shareOf(falsePass, others);
-  decisions.falseFail = shareOf(falseFail, competent);
+  return rates;
 }
 
 }  // namespace
@@ -150,7 +146,13 @@ NormDecisions decisionsOf(const Norm& norm, const std::vector<AttemptRow>& attem
   NormDecisions decisions;
   const std::vector<std::optional<MarkError>> errors = markErrors(norm, attempts, values);
   const std::vector<Judged> judged = judgeable(norm, attempts, values);
-  crossValidate(norm, judged, ratings, decisions);
+  std::map<std::string, double> criticalErrors;
+  for (const Judged& j : judged) criticalErrors[j.attempt->uuid] = j.criticalErrors;
+  const auto [competent, others] = ratesWithoutSelf(norm, ratings, [&](const Norm& by, const NormMember& member) {
+    return isPassed(by, member.values, criticalErrors[member.attempt]);
+  });
+  decisions.falsePass = shareOf(others.passed, others.members);
+  decisions.falseFail = shareOf(competent.members - competent.passed, competent.members);
   std::map<std::string, std::vector<bool>> byPerson;
   for (const Judged& j : judged) {
     const auto grade = [&](std::optional<bool> otherwise) {
@@ -177,6 +179,19 @@ NormDecisions decisionsOf(const Norm& norm, const std::vector<AttemptRow>& attem
   decisions.kappa = chance < 1.0 ? Expected<double>((agreed - chance) / (1.0 - chance))
                                  : NoResult{"all were graded alike, which chance would do, too"};
   return decisions;
+}
+
+NormTrial tryNorm(Norm gathered, const std::vector<Rating>& ratings, const NormRequest& request) {
+  constexpr std::size_t fewResamples = 99;  // no interval is read
+  NormTrial trial{std::move(gathered), {}, {}, {}, {}};
+  decideMembers(trial.norm, request);
+  findMarks(trial.norm, ratings, request.borderline, fewResamples);
+  for (const NormCheckpoint& mark : trial.norm.checkpoints) trial.computed.push_back(mark.cut);
+  applyRule(trial.norm, request);
+  for (const NormMember& member : trial.norm.members) trial.passed.push_back(isPassedBy(trial.norm, member));
+  trial.rates = passRates(trial.norm);
+  trial.withoutSelf = ratesWithoutSelf(trial.norm, ratings, isPassedBy);
+  return trial;
 }
 
 }  // namespace calot::analytics

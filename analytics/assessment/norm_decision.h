@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "analytics/assessment/norm.h"
@@ -50,5 +51,19 @@ struct NormDecisions {
 /// @param ratings that a norm by borderline regression was made of
 NormDecisions decisionsOf(const Norm& norm, const std::vector<AttemptRow>& attempts,
                           const std::vector<AttemptValue>& values, const std::vector<Rating>& ratings);
+
+/// A norm and whom it would let through, before it is made.
+struct NormTrial {
+  Norm norm;                                    ///< without intervals; a figure counts as far as it has a mark
+  std::vector<bool> passed;                     ///< by Norm::members
+  std::vector<std::optional<double>> computed;  ///< marks that the members give, by Norm::checkpoints
+  /// Members who pass, first of the competent, then of the others: by these marks, and each by marks made without
+  /// that member (leave one out); marks that a person set stay.
+  std::pair<PassRate, PassRate> rates, withoutSelf;
+};
+
+/// Applies decisions, marks and rule of a request to gathered members (gatherNorm()), and refuses nothing: too few
+/// members have no marks, and without a figure that counts everybody passes who made no critical error.
+NormTrial tryNorm(Norm gathered, const std::vector<Rating>& ratings, const NormRequest& request);
 
 }  // namespace calot::analytics

@@ -70,7 +70,7 @@ void setFixedCuts(Norm& norm, const std::vector<FixedCut>& fixed) {
       if (cut.atLeast != (mark.direction == Direction::higher))
         throw Error(ErrorKind::invalid, fmt::format("norm: fixed mark of {}: of it {} is better",
                                                     recorder::shown(cut.figure), cut.atLeast ? "less" : "more"));
-      const CheckpointDefinition* definition = mark.metric ? &mark.metric->definition : findCheckpoint(mark.checkpoint);
+      const CheckpointDefinition* definition = definitionOf(mark);
       mark.cut = definition == nullptr ? cut.value : cut.value / definition->displayFactor;
       mark.lower.reset();
       mark.upper.reset();
@@ -141,6 +141,28 @@ AngoffJudgement readAngoff(const CsvTable& table) {
   return result;
 }
 
+NormSource readNormSource(const CohortDatabase& cohort, const std::vector<std::string>& only,
+                          const NormProgress& progress) {
+  NormSource source{cohort.listAttempts(), {}, cohort.ratings()};
+  const std::set<std::string> wanted(only.begin(), only.end());
+  if (!only.empty()) std::erase_if(source.attempts, [&](const AttemptRow& a) { return wanted.count(a.uuid) == 0; });
+  std::string attempt;
+  std::size_t read = 0;
+  cohort.eachValue({}, [&](const AttemptValue& value) {
+    if (attempt != value.attempt) {
+      attempt = value.attempt;
+      if (progress)
+        progress(std::min(1.0, static_cast<double>(++read) / static_cast<double>(source.attempts.size() + 1)),
+                 "reading values");
+    }
+    if (only.empty() || wanted.count(value.attempt) > 0) source.values.push_back(value);
+  });
+  // Those of external metrics come behind all others.
+  std::stable_sort(source.values.begin(), source.values.end(),
+                   [](const AttemptValue& x, const AttemptValue& y) { return x.attempt < y.attempt; });
+  return source;
+}
+
 Norm createNorm(const std::string& database, NormRequest request, const std::vector<std::string>& only,
                 const NormProgress& progress) {
   const auto tell = [&](double share, const char* doing) {
@@ -152,25 +174,10 @@ Norm createNorm(const std::string& database, NormRequest request, const std::vec
   if (request.who.protocol) {
     for (const Participant& p : cohort.participants()) request.who.protocol->experience[p.pseudonym] = p.experience;
   }
-  std::vector<AttemptRow> attempts = cohort.listAttempts();
-  const std::set<std::string> wanted(only.begin(), only.end());
-  if (!only.empty()) std::erase_if(attempts, [&](const AttemptRow& a) { return wanted.count(a.uuid) == 0; });
-  std::vector<AttemptValue> values;
-  std::string attempt;
-  std::size_t read = 0;
-  cohort.eachValue({}, [&](const AttemptValue& value) {
-    if (attempt != value.attempt) {
-      attempt = value.attempt;
-      tell(0.5 * std::min(1.0, static_cast<double>(++read) / static_cast<double>(attempts.size() + 1)),
-           "reading values");
-    }
-    if (only.empty() || wanted.count(value.attempt) > 0) values.push_back(value);
-  });
-  // Those of external metrics come behind all others.
-  std::stable_sort(values.begin(), values.end(),
-                   [](const AttemptValue& x, const AttemptValue& y) { return x.attempt < y.attempt; });
+  const NormSource source =
+      readNormSource(cohort, only, [&](double share, const char* doing) { tell(0.5 * share, doing); });
   tell(0.5, "finding pass marks");
-  const Norm norm = makeNorm(attempts, values, cohort.ratings(), request, database);
+  const Norm norm = makeNorm(source.attempts, source.values, source.ratings, request, database);
   tell(1.0, "storing");
   return cohort.norm(norm.name, cohort.storeNorm(norm));
 }

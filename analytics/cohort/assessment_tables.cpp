@@ -229,6 +229,24 @@ std::uint32_t CohortDatabase::storeNorm(const Norm& norm) {
   });
 }
 
+void CohortDatabase::removeNorm(const std::string& name, std::uint32_t version, const std::string& by) {
+  if (by.empty()) throw Error(ErrorKind::invalid, "norm: name who removes it");
+  connection_->change([&](SQLite::Database& db) {
+    const std::int64_t newest = firstNumber(db, "SELECT max(version) FROM norm WHERE name = ?", {name});
+    const std::int64_t id = firstNumber(db, "SELECT id FROM norm WHERE name = ? AND version = ?", {name, version});
+    const auto refuse = [&](const char* why) {
+      throw Error(ErrorKind::refused, Where{path()},
+                  fmt::format("norm \"{}\" version {} {}", recorder::shown(name), version, why));
+    };
+    if (id < 0) refuse("is not there");
+    if (newest != version) refuse("has a newer version");
+    if (firstNumber(db, "SELECT count(*) FROM norm_evidence WHERE norm = ?", {id}) > 0)
+      refuse("has evidence of its validity, and stays");
+    execute(db, "DELETE FROM norm WHERE id = ?", {id});
+    audit(db, "norm-remove", fmt::format("{} {}", name, version), fmt::format("(by {})", by));
+  });
+}
+
 std::vector<Norm> CohortDatabase::norms() const {
   return connection_->read([](SQLite::Database& db) {
     std::vector<Norm> norms = selectRows(db, normTable, "ORDER BY name, version");

@@ -335,6 +335,10 @@ class CohortDatabase {
   /// @throws Error (refused) where a member's attempt is not there; Error (invalid) for a malformed name, or where
   /// nobody makes it.
   std::uint32_t storeNorm(const Norm& norm);
+  /// Takes the newest version of a norm out again, audited. Its number is given again to the next version.
+  /// @throws Error (refused) where there is no such norm, it is not the newest version, or it has evidence; Error
+  /// (invalid) without name of who removes it
+  void removeNorm(const std::string& name, std::uint32_t version, const std::string& by);
   [[nodiscard]] std::vector<Norm> norms() const;  ///< by name, version; whole
   /// The newest version unless one is given. @throws Error (refused) where there is none.
   [[nodiscard]] Norm norm(const std::string& name, std::uint32_t version = 0) const;

@@ -143,7 +143,8 @@ th { border-bottom: 2px solid #57606a; } .right { text-align: right; }
 .watermark { background: #b00020; color: #fff; font-weight: bold; padding: .5em 1em; }
 .behind { position: fixed; inset: 0; display: flex; align-items: center; justify-content: center; pointer-events: none;
   font: bold 14vw sans-serif; color: #b00020; opacity: .07; transform: rotate(-30deg); }
-@media print { .page { break-before: page; } body { max-width: none; } figure, svg { break-inside: avoid; } }
+@media print { .page { break-before: page; } h2 { break-after: avoid; } body { max-width: none; }
+  figure, svg, tr { break-inside: avoid; } thead { display: table-header-group; } }
 )";
 
 std::string cells(const std::vector<std::string>& row, const ReportTable& table, const char* tag) {

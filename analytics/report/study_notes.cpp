@@ -235,6 +235,18 @@ std::string lockText(const StudyProtocol& protocol) {
                      changed.empty() ? "nothing has changed since" : "changed since: " + changed);
 }
 
+std::string registrationText(const Study& study) {
+  if (!study.protocol)
+    return "Exploratory, without a protocol: groups and figures may have been chosen after the data were seen.";
+  const StudyProtocol& p = *study.protocol;
+  const std::string protocol = fmt::format("protocol {} version {}", p.name, p.version);
+  const std::string registered =
+      p.whyExploratory.empty() ? fmt::format("Confirmatory: {} was registered on {}, before the first attempt ({}).",
+                                             protocol, p.registeredUtc, p.firstAttemptUtc)
+                               : fmt::format("Exploratory, by {}: {}.", protocol, p.whyExploratory);
+  return registered + " " + lockText(p);
+}
+
 std::vector<std::string> protocolLines(const Study& study) {
   if (!study.protocol) return {};
   const StudyProtocol& p = *study.protocol;

@@ -3,6 +3,7 @@
 // document; JSON and CSV. Numbers are written with a point, whatever the locale.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <ostream>
@@ -19,7 +20,7 @@ namespace calot::analytics {
 
 enum class StudyDetail : std::uint8_t {
   first,  ///< heading, flow, participants, the first result and its notes: a screen, two pages
-  all     ///< the appendix and the methods as well
+  all     ///< the appendix as well
 };
 
 /// For a terminal of 120 columns.
@@ -35,9 +36,11 @@ ValueTree rowTree(const Study& study, const StudyRow& row);  ///< one of its "ro
 /// @throws Error (invalid) when a file is there already, Error (failure) when writing fails.
 void writeStudyCsv(const Study& study, const std::string& folder, bool force);
 
-/// First: heading, flow, participants, the first result with its notes, its forest plots, methods. All: as an appendix
-/// all other tables, a box plot with all points for each row, and of each form that was filled in how its scores are
-/// spread.
+/// First: two pages of A4 whatever the study's size. The first has question and groups, flow, participants and the
+/// first result, the second its forest plots, box plots of the figures that lead, methods, and limits in short; what
+/// has no space on them is counted there. All: from the third page on an appendix, which has what the two pages
+/// shortened, all other tables, a box plot with all points for each row, and the spread of each completed form's
+/// scores.
 ReportDocument studyDocument(const Study& study, StudyDetail detail = StudyDetail::all);
 
 std::string studyTitle(const Study& study);  ///< "Study (exploratory): expert against novice"
@@ -49,6 +52,8 @@ bool hasNoValue(const StudyRow& row);          ///< nobody of either group has o
 std::vector<std::string> protocolLines(const Study& study);
 /// States whether the protocol's analysis is locked, by whom, and what has changed since: one sentence.
 std::string lockText(const StudyProtocol& protocol);
+/// States in one line whether a protocol was registered before the first attempt, and whether the analysis is locked.
+std::string registrationText(const Study& study);
 /// Under the title: the protocol, task, device and versions in words, dates, and the unit of analysis.
 std::vector<std::string> studyHead(const Study& study);
 /// Methods paragraph for a paper: states only what was done.
@@ -60,8 +65,8 @@ ReportTable primaryTable(const Study& study);
 /// The same of the secondary hypotheses; without rows where there are none.
 ReportTable secondaryTable(const Study& study);
 /// A of the first result's rows with intervals, one below the other: of those with a hypothesis, then of those without
-/// a direction. Empty without such figures.
-std::vector<Drawing> forestsOf(const Study& study);
+/// a direction. Empty without such figures. @param most rows of all drawings
+std::vector<Drawing> forestsOf(const Study& study, std::size_t most = std::string::npos);
 /// A row's values in both groups; marks are participants. None where it has no values.
 std::optional<Drawing> boxPlotOf(const Study& study, const StudyRow& row, const PlotFrame& frame = {});
 /// Notes to the first result: its columns, whether the groups can reach the level at all, warnings, remarks,

@@ -345,7 +345,7 @@ std::vector<std::string> primaryNotes(const Study& study) {
   return notes;
 }
 
-std::vector<Drawing> forestsOf(const Study& study) {
+std::vector<Drawing> forestsOf(const Study& study, std::size_t most) {
   const std::string title = resultTitle(study) + ": A with its 95 % interval";
   const std::string& worse = study.groups[study.better == study.groups[0] ? 1 : 0];
   ForestPlot directed{title, worse + " better", study.better + " better", {}, study.synthetic};
@@ -354,8 +354,10 @@ std::vector<Drawing> forestsOf(const Study& study) {
     directed.above = "as the hypothesis says";
   }
   ForestPlot other{title, study.groups[1] + " larger", study.groups[0] + " larger", {}, study.synthetic};
+  std::size_t left = most;
   for (const StudyRow& row : study.rows) {
     if (!row.leading || !row.area) continue;
+    if (left-- == 0) break;
     (row.hypothesis ? directed : other)
         .rows.push_back({rowName(row), row.area->value.a, row.area->a.lower, row.area->a.upper});
   }

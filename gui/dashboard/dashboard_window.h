@@ -66,6 +66,8 @@ class DashboardWindow : public QMainWindow {
   void tagSelected(const QString& tag, bool add, const QString& by);
   /// Gives a participant another group. Can be undone.
   void changeGroup(const QString& participant, const QString& group);
+  /// Shows a norm that was just stored. Its making can be undone.
+  void keepNorm(const analytics::Norm& norm);
   /// Writes the list of attempts as it is shown, as CSV.
   void exportList(const QString& file);
   /// Simulates the selected attempts' recordings again; progress as of an import.

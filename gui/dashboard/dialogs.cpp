@@ -19,7 +19,7 @@
 #include <QStandardPaths>
 #include <utility>
 
-#include "analytics/assessment/norm.h"
+#include "gui/dashboard/page_parts.h"
 
 namespace calot::gui {
 
@@ -63,11 +63,6 @@ void showKeys(const KeyList& keys, QWidget* parent) {
 
 namespace {
 
-constexpr const char* explanation =
-    "A norm is what later attempts are graded against. These figures count: time, path lengths, critical view, clip "
-    "errors, perforations and burns, as far as they have a pass mark. Other figures, raters' judgements and marks that "
-    "a person sets: calot norm create.";
-
 constexpr int maxFolders = 20;
 constexpr int maxRecent = 9;
 constexpr const char* recentKey = "cohorts/recent";
@@ -89,112 +84,6 @@ void addRow(QFormLayout& form, const char* text, QWidget* buddy, QLayout* row) {
 QSettings store() { return {QSettings::IniFormat, QSettings::UserScope, "calot", "dashboard"}; }
 
 }  // namespace
-
-NormDialog::NormDialog(std::shared_ptr<const CohortDocument> document, std::vector<std::string> selected,
-                       QWidget* parent)
-    : QDialog(parent),
-      document_(std::move(document)),
-      selected_(std::move(selected)),
-      name_(parts::named("norm-name", new QLineEdit)),
-      by_(parts::named("norm-by", new QLineEdit(settings::person()))),
-      fields_{parts::named("norm-group-by", new QComboBox),
-              parts::named("norm-competent", new QComboBox),
-              parts::named("norm-others", new QComboBox),
-              parts::choice("norm-key", 20),
-              parts::named("norm-synthetic", new QCheckBox("&Synthetic attempts, too (the norm is marked)")),
-              parts::named("norm-practice", new QCheckBox("&Practice attempts, too"))},
-      attempts_(parts::named("norm-attempts", new QComboBox)),
-      rule_(parts::named("norm-rule", new QComboBox)),
-      least_(parts::named("norm-least", new QSpinBox)),
-      first_(parts::named("norm-first", new QCheckBox("Of a participant's several attempts the &first counts"))),
-      result_(parts::selectableLabel("norm-result")),
-      make_(parts::named("norm-make", new QPushButton("&Make the norm"))),
-      strip_(new WorkStrip(work_)) {
-  setWindowTitle("Make a norm");
-  resize(theme::inType(620), theme::inType(460));
-  auto* purpose = new QLabel(explanation);
-  purpose->setWordWrap(true);
-  auto* buttons = new QDialogButtonBox;
-  buttons->addButton(make_, QDialogButtonBox::ActionRole);
-  buttons->addButton("&Close", QDialogButtonBox::RejectRole);
-  setLayout(parts::column({purpose, buildForm(), {result_, 1}, strip_, buttons}));
-  make_->setDefault(true);
-  connect(buttons, &QDialogButtonBox::rejected, this, &QDialog::accept);
-  connect(make_, &QPushButton::clicked, this, &NormDialog::make);
-  const auto end = [this](const QString& text) {
-    allow(true);
-    result_->setText(text);
-  };
-  connect(&work_, &LongWork::done, this, [this, end](const QString& text) {
-    end(text);
-    emit made();
-  });
-  connect(&work_, &LongWork::failed, this, [this, end](const QString& reason) {
-    end("No norm was made: " + reason);
-    emit refused();
-  });
-  connect(&work_, &LongWork::cancelled, this, [end] { end("Cancelled: no norm was made."); });
-}
-
-QFormLayout* NormDialog::buildForm() {
-  name_->setPlaceholderText("letters, digits, points, hyphens; the same name again is its next version");
-  by_->setPlaceholderText("your pseudonym");
-  for (QLineEdit* line : {name_, by_}) {
-    line->setMaxLength(64);
-    connect(line, &QLineEdit::textChanged, this, [this] { allow(true); });
-  }
-  attempts_->addItem("all of the cohort");
-  if (selected_.size() > 1) {
-    attempts_->addItem(QString("only the %1 that are selected").arg(selected_.size()));
-    attempts_->setCurrentIndex(1);
-  }
-  fields_.offer(document_->attempts());
-  connect(fields_.by, &QComboBox::currentIndexChanged, this, [this] { fields_.offerGroups(document_->attempts()); });
-  rule_->addItems({"all figures that count are passed", "at least this many of them are passed"});
-  least_->setRange(1, 1000);
-  least_->setEnabled(false);
-  connect(rule_, &QComboBox::currentIndexChanged, least_, [this](int index) { least_->setEnabled(index == 1); });
-  first_->setChecked(true);
-  auto* form = new QFormLayout;
-  form->addRow("&Name", name_);
-  form->addRow("Made &by", by_);
-  form->addRow("A&ttempts", attempts_);
-  form->addRow("&Groups by", fields_.by);
-  form->addRow("Comp&etent are", fields_.first);
-  form->addRow("&Others are", fields_.second);
-  form->addRow("Comparable &within", fields_.key);
-  addRow(*form, "&Rule", rule_, parts::row({{rule_, 1}, least_}));
-  for (QCheckBox* box : {first_, fields_.practice, fields_.synthetic}) form->addRow(QString(), box);
-  allow(true);
-  return form;
-}
-
-void NormDialog::allow(bool ready) {
-  make_->setEnabled(ready && !name_->text().trimmed().isEmpty() && !by_->text().trimmed().isEmpty());
-}
-
-void NormDialog::make() {
-  analytics::NormRequest request;
-  request.name = name_->text().trimmed().toStdString();
-  request.by = by_->text().trimmed().toStdString();
-  request.leastPassed = rule_->currentIndex() == 1 ? static_cast<std::uint32_t>(least_->value()) : 0;
-  request.who = fields_.options();
-  request.who.better = request.who.groups.front();
-  if (first_->isChecked()) request.who.attemptRule = analytics::AttemptRule::first;
-  const std::vector<std::string> only = attempts_->currentIndex() == 1 ? selected_ : std::vector<std::string>();
-  settings::setPerson(QString::fromStdString(request.by));
-  allow(false);
-  result_->clear();
-  strip_->begin("Making the norm");
-  work_.start([request, only, database = document_->path()](LongWork::Control& control) {
-    const analytics::Norm norm = analytics::createNorm(database, request, only, [&](double share, const char* doing) {
-      control.progress(share, QString("Making the norm: ") + doing);
-    });
-    QStringList lines = textsOf(analytics::normSummary(norm)) + textsOf(analytics::normWarnings(norm));
-    if (norm.synthetic) lines.prepend("SYNTHETIC: made of performers' attempts, of no person's.");
-    return lines.join("\n\n");
-  });
-}
 
 SettingsDialog::SettingsDialog(QWidget* parent)
     : QDialog(parent),

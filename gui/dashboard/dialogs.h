@@ -8,11 +8,8 @@
 #include <QStringList>
 #include <vector>
 
-#include "gui/attempt/long_work.h"
 #include "gui/attempt/widget_parts.h"
-#include "gui/dashboard/page_parts.h"
 
-class QFormLayout;
 class QListWidget;
 class QMenuBar;
 class QSpinBox;
@@ -25,37 +22,6 @@ using KeyList = std::vector<std::pair<QString, QString>>;  ///< key, what it doe
 
 /// Shows the keys in a dialog, until it is closed.
 void showKeys(const KeyList& keys, QWidget* parent);
-
-/// Makes a norm of two groups, as `calot norm create` does, and says what that says of it: whom its rule lets through,
-/// what it may be used for, and every warning.
-class NormDialog : public QDialog {
-  Q_OBJECT
- public:
-  /// @param selected uuids of the attempts that are selected on the page
-  NormDialog(std::shared_ptr<const CohortDocument> document, std::vector<std::string> selected,
-             QWidget* parent = nullptr);
-
- signals:
-  void made();     ///< a norm was stored
-  void refused();  ///< and why stands in the dialog
-
- private:
-  QFormLayout* buildForm();
-  void make();
-  void allow(bool ready);
-
-  std::shared_ptr<const CohortDocument> document_;
-  std::vector<std::string> selected_;
-  LongWork work_;
-  QLineEdit *name_, *by_;
-  GroupFields fields_;  ///< first: the competent
-  QComboBox *attempts_, *rule_;
-  QSpinBox* least_;
-  QCheckBox* first_;
-  QLabel* result_;
-  QPushButton* make_;
-  WorkStrip* strip_;
-};
 
 /// Folders of recordings, the program that imports them and its number of threads, the person at the desk,
 /// and how the dashboard looks.

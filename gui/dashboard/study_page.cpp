@@ -324,7 +324,7 @@ void StudyPage::write(const QString& target, bool html) {
 
 bool StudyPage::makeDocument(const Taker& take) {
   if (!study_) return false;
-  take(analytics::studyDocument(*study_, analytics::StudyDetail::first));
+  take(analytics::studyDocument(*study_));
   return true;
 }
 

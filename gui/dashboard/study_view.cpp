@@ -100,26 +100,14 @@ std::vector<std::string> groupsOf(const std::vector<analytics::AttemptRow>& atte
   return {names.begin(), names.end()};
 }
 
-std::string registrationText(const analytics::Study& study) {
-  if (!study.protocol)
-    return "No protocol: the choices on this page were made after the data, so that the study is exploratory.";
-  const analytics::StudyProtocol& p = *study.protocol;
-  const std::string protocol = "protocol " + p.name + " version " + std::to_string(p.version);
-  const std::string registered = p.whyExploratory.empty()
-                                     ? "Confirmatory: " + protocol + " was registered on " + p.registeredUtc +
-                                           ", before the first attempt (" + p.firstAttemptUtc + ")."
-                                     : "Exploratory, by " + protocol + ": " + p.whyExploratory + ".";
-  return registered + " " + analytics::lockText(p);
-}
-
 std::string studyText(const analytics::Study& study) {
   std::string html;
   if (study.synthetic)
     html += "<p style=\"background-color:#f0e442; color:#000000\"><b>&nbsp;" +
             analytics::escaped(analytics::watermarkText) + "&nbsp;</b></p>";
   html += "<h2>" + analytics::escaped(analytics::studyTitle(study)) + "</h2>";
-  html +=
-      "<p><b>" + analytics::escaped(registrationText(study)) + "</b></p>" + tableText(analytics::primaryTable(study));
+  html += "<p><b>" + analytics::escaped(analytics::registrationText(study)) + "</b></p>" +
+          tableText(analytics::primaryTable(study));
   if (!analytics::forestsOf(study).empty()) html += std::string("<p><img src=\"") + forestAddress + "\"></p>";
   const analytics::ReportTable coverage = analytics::coverageTable(study);
   if (!study.coverage.empty())

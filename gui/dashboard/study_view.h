@@ -29,9 +29,6 @@ std::vector<std::string> groupsOf(const std::vector<analytics::AttemptRow>& atte
 /// Address under which a page shows the forest plot of studyText().
 inline constexpr const char* forestAddress = "study:forest";
 
-/// States in one line whether a protocol was registered before the first attempt.
-std::string registrationText(const analytics::Study& study);
-
 /// Title, registration, first result with its forest plot (forestAddress, where there is one), coverage by group, then
 /// notes, flow, methods and all other tables, as HTML for a text widget; every text is escaped.
 std::string studyText(const analytics::Study& study);

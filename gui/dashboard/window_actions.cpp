@@ -23,6 +23,7 @@
 #include <QUndoStack>
 #include <QUrl>
 #include <system_error>
+#include <utility>
 
 #include "gui/attempt/replay_player.h"
 #include "gui/dashboard/attempt_page.h"
@@ -32,6 +33,7 @@
 #include "gui/dashboard/figure_panel.h"
 #include "gui/dashboard/figures_page.h"
 #include "gui/dashboard/import_queue.h"
+#include "gui/dashboard/norm_dialog.h"
 #include "gui/dashboard/pair_page.h"
 #include "gui/dashboard/ratings_page.h"
 #include "gui/dashboard/study_page.h"
@@ -53,13 +55,18 @@ class DecisionCommand : public QUndoCommand {
  public:
   using Change = CohortWriter::Change;
   /// @param writer outlives this
-  DecisionCommand(CohortWriter& writer, std::string database, const QString& text, Change redo, Change undo)
+  /// @param done it was carried out already
+  DecisionCommand(CohortWriter& writer, std::string database, const QString& text, Change redo, Change undo,
+                  bool done = false)
       : QUndoCommand(text),
         writer_(writer),
         database_(std::move(database)),
         redo_(std::move(redo)),
-        undo_(std::move(undo)) {}
-  void redo() override { write(redo_); }
+        undo_(std::move(undo)),
+        done_(done) {}
+  void redo() override {
+    if (!std::exchange(done_, false)) write(redo_);
+  }
   void undo() override { write(undo_); }
 
  private:
@@ -77,6 +84,7 @@ class DecisionCommand : public QUndoCommand {
   CohortWriter& writer_;
   std::string database_;
   Change redo_, undo_;
+  bool done_;
   std::shared_ptr<std::atomic<bool>> failed_ = std::make_shared<std::atomic<bool>>(false);  ///< by the writer's thread
 };
 
@@ -201,7 +209,9 @@ void DashboardWindow::print() {
   const auto take = [this](const analytics::ReportDocument& document) {
     QPrinter printer(QPrinter::HighResolution);
     printer.setDocName(QString::fromStdString(document.title));
-    if (QPrintDialog(&printer, this).exec() == QDialog::Accepted) tryTo([&] { paintReport(document, printer); });
+    QPrintDialog dialog(&printer, this);
+    dialog.setOption(QAbstractPrintDialog::PrintPageRange);  // a study's first two pages stand alone
+    if (dialog.exec() == QDialog::Accepted) tryTo([&] { paintReport(document, printer); });
   };
   if (!document_ || !static_cast<CohortPage*>(tabs_->currentWidget())->makeDocument(take))
     showProblem("There is nothing to print here: the pages Attempts, Attempt and Study are printed.");
@@ -338,8 +348,18 @@ void DashboardWindow::askForNorm() {
   std::vector<std::string> selected;
   for (const analytics::AttemptRow& attempt : attempts_->selectedAll()) selected.push_back(attempt.uuid);
   NormDialog dialog(document_, selected, this);
-  connect(&dialog, &NormDialog::made, this, &DashboardWindow::reload);
+  connect(&dialog, &NormDialog::made, this, &DashboardWindow::keepNorm);
+  connect(&dialog, &NormDialog::undoWanted, undo_, &QUndoStack::undo);
   dialog.exec();
+}
+
+void DashboardWindow::keepNorm(const analytics::Norm& norm) {
+  const auto version = std::make_shared<std::uint32_t>(norm.version);  // the writer's thread alone reads and sets it
+  undo_->push(new DecisionCommand(
+      writer_, document_->path(), "norm " + QString::fromStdString(norm.name),
+      [norm, version](analytics::CohortDatabase& cohort) { *version = cohort.storeNorm(norm); },
+      [norm, version](analytics::CohortDatabase& cohort) { cohort.removeNorm(norm.name, *version, norm.by); }, true));
+  reload();
 }
 
 void DashboardWindow::savePictures(const QString& folder) {
@@ -378,6 +398,7 @@ void DashboardWindow::savePictures(const QString& folder) {
     dialog.hide();
   };
   NormDialog norm(document_, {}, this);
+  waitFor([&] { return norm.settled(); });
   saveDialog(norm, "norm.png");
   SettingsDialog settings(this);
   saveDialog(settings, "settings.png");

@@ -6,9 +6,11 @@
 #include <QBuffer>
 #include <QFont>
 #include <QGuiApplication>
+#include <QPageRanges>
 #include <QPainter>
 #include <QPainterPath>
 #include <QPdfWriter>
+#include <utility>
 
 #include "gui/report/drawing_painter.h"
 #include "gui/report/text_document.h"
@@ -17,7 +19,7 @@ namespace calot::gui {
 namespace {
 
 constexpr int dotsPerInch = 600;
-constexpr double marginMillimetres = 15.0, footMillimetres = 8.0, footPoints = 7.0, markPoints = 90.0;
+constexpr double marginMillimetres = 15.0, footPoints = 7.0, markPoints = 90.0;
 
 void paintMark(QPainter& painter, const QSizeF& page, QFont font) {
   painter.save();
@@ -88,13 +90,15 @@ std::string pdfOf(const QString& title, const std::string& maker, int dots, doub
 void paintReport(const analytics::ReportDocument& document, QPagedPaintDevice& device) {
   const QString title = titleOf(document);
   const QFont font = reportFont();
-  const double footHeight = footMillimetres * device.logicalDpiX() / 25.4;
-  const QSizeF whole(device.width(), device.height()), page(whole.width(), whole.height() - footHeight);
+  const QSizeF whole(device.width(), device.height()), page = textPageOf(device);
   ReportTextDocument text(document, &device, page);
   const int pages = text.pageCount();
   QPainter painter(&device);
+  const QPageRanges wanted = device.pageRanges();
+  bool begun = false;
   for (int i = 0; i < pages; ++i) {
-    if (i > 0) device.newPage();
+    if (!wanted.isEmpty() && !wanted.contains(i + 1)) continue;
+    if (std::exchange(begun, true)) device.newPage();
     if (document.synthetic) paintMark(painter, whole, font);
     const QRectF seen(0.0, i * page.height(), page.width(), page.height());
     painter.save();
@@ -105,7 +109,8 @@ void paintReport(const analytics::ReportDocument& document, QPagedPaintDevice& d
     context.palette.setColor(QPalette::Text, Qt::black);
     text.documentLayout()->draw(&painter, context);
     painter.restore();
-    paintFoot(painter, QRectF(0.0, page.height(), whole.width(), footHeight), font, title, i + 1, pages);
+    paintFoot(painter, QRectF(0.0, page.height(), whole.width(), whole.height() - page.height()), font, title, i + 1,
+              pages);
   }
 }
 

@@ -16,7 +16,8 @@ class QPagedPaintDevice;
 namespace calot::gui {
 
 /// Paints the report on pages of a device, a printer or a PDF's writer, within its margins: title and page number at
-/// the foot of each, the watermark behind a synthetic report. @throws Error (failure) where no font is installed
+/// the foot of each, the watermark behind a synthetic report. Only the pages that the device is set to, if it is set to
+/// any (QPagedPaintDevice::setPageRanges()). @throws Error (failure) where no font is installed
 void paintReport(const analytics::ReportDocument& document, QPagedPaintDevice& device);
 
 /// The report as a PDF file's bytes: A4, title and page number at the foot of each page, heads of tables repeated on

@@ -20,7 +20,8 @@ namespace {
 
 using analytics::Paragraph;
 
-constexpr int drawnObject = QTextFormat::UserObject + 1, objectNumber = QTextFormat::UserProperty + 1;
+constexpr int drawnObject = QTextFormat::UserObject + 1, objectNumber = QTextFormat::UserProperty + 1,
+              keptWithNext = QTextFormat::UserProperty + 2;
 constexpr double textPoints = 8.5, tablePoints = 7.5, headingPoints = 11.0, titlePoints = 15.0;
 constexpr double figureMillimetres = 84.0;  // of a figure as wide as a box plot: two stand side by side
 constexpr double usualWidth = 320.0;        // in the drawing's units
@@ -89,6 +90,7 @@ struct ReportTextDocument::Writer {
 
   void operator()(const analytics::Heading& heading) {
     QTextBlockFormat format = block(5.0, 1.5);
+    format.setProperty(keptWithNext, true);
     if (heading.newPage) format.setPageBreakPolicy(QTextFormat::PageBreak_AlwaysBefore);
     line(heading.text, format, letters(headingPoints, true));
   }
@@ -212,6 +214,12 @@ struct ReportTextDocument::Writer {
   }
 };
 
+QSizeF textPageOf(const QPagedPaintDevice& device) {
+  constexpr double footMillimetres = 8.0;
+  // Whole dots: Qt lays out in parts of a dot, and pages would drift apart from what is painted.
+  return QSizeF(device.width(), std::floor(device.height() - footMillimetres * device.logicalDpiX() / 25.4));
+}
+
 ReportTextDocument::ReportTextDocument(const analytics::ReportDocument& report, QPagedPaintDevice* device,
                                        const QSizeF& page)
     : device_(device), page_(page) {
@@ -228,6 +236,60 @@ ReportTextDocument::ReportTextDocument(const analytics::ReportDocument& report, 
   if (report.synthetic) writer.banner();
   writer.cursor.endEditBlock();
   setPageSize(page);
+  keepTogether();
+}
+
+ReportTextDocument::Extent ReportTextDocument::extentOf(const QTextBlock& block, int lines) const {
+  const double top = documentLayout()->blockBoundingRect(block).top();
+  const QTextLayout& layout = *block.layout();
+  if (layout.lineCount() == 0) return {top, top};
+  const QTextLine first = layout.lineAt(0), last = layout.lineAt(std::min(lines, layout.lineCount()) - 1);
+  return {top + first.y(), top + last.y() + last.height()};
+}
+
+int ReportTextDocument::pageOf(double place) const { return static_cast<int>(std::floor(place / page_.height())); }
+
+bool ReportTextDocument::isHeading(const QTextBlock& block) { return block.blockFormat().boolProperty(keptWithNext); }
+
+ReportTextDocument::Extent ReportTextDocument::extentOf(const QTextTable& table, int row) const {
+  Extent all{std::numeric_limits<double>::max(), 0.0};
+  for (int column = 0; column < table.columns(); ++column) {
+    const Extent cell = extentOf(table.cellAt(row, column).firstCursorPosition().block());
+    all = {std::min(all.top, cell.top), std::max(all.bottom, cell.bottom)};
+  }
+  return all;
+}
+
+/// Qt divides a document into pages line by line and knows nothing of what belongs together.
+void ReportTextDocument::keepTogether() {
+  constexpr int firstRows = 3, firstLines = 2;
+  constexpr double undividedTable = 0.5;  // of a page
+  const auto startPage = [this](const QTextBlock& block) {
+    QTextCursor cursor(block);
+    QTextBlockFormat format = block.blockFormat();
+    format.setPageBreakPolicy(QTextFormat::PageBreak_AlwaysBefore);
+    cursor.setBlockFormat(format);
+  };
+  for (QTextBlock block = begin(); block.isValid(); block = block.next()) {
+    if (!isHeading(block)) continue;
+    const QTextBlock next = block.next();
+    if (!next.isValid()) break;
+    const double top = extentOf(block).top;
+    double bottom = extentOf(next, firstLines).bottom;
+    const QTextTable* const table = QTextCursor(next).currentTable();
+    if (table != nullptr) {
+      const double whole = extentOf(*table, table->rows() - 1).bottom;
+      const bool divided = whole - top > undividedTable * page_.height();
+      bottom = divided ? extentOf(*table, std::min(firstRows, table->rows() - 1)).bottom : whole;
+    }
+    if (pageOf(top) != pageOf(bottom - 1.0)) startPage(block);
+    if (table == nullptr) continue;
+    for (int row = 1; row < table->rows(); ++row) {
+      if (const Extent lines = extentOf(*table, row); pageOf(lines.top) == pageOf(lines.bottom - 1.0)) continue;
+      for (int column = 0; column < table->columns(); ++column)
+        startPage(table->cellAt(row, column).firstCursorPosition().block());
+    }
+  }
 }
 
 QSizeF ReportTextDocument::intrinsicSize(QTextDocument*, int, const QTextFormat& format) {

@@ -4,7 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "analytics/assessment/grade.h"
 #include "tests/analytics/cohort/support/cohort_support.h"
@@ -81,6 +83,72 @@ TEST_F(Decisions, aMemberIsJudgedByMarksMadeWithoutThem) {
   const auto [competent, others] = passRates(norm);
   EXPECT_EQ(others.passed, 0U);
   EXPECT_EQ(decided(norm).falsePass.hits, 54.0 <= without ? 1U : 0U);
+}
+
+TEST_F(Decisions, aTrialSaysWhoWouldPassBeforeTheNormIsMade) {
+  fill(1.0);
+  cohort_.addParticipant({"N99", "novice", "", "", {}, {}});
+  add(40, "N99", 54.0);
+  const auto gathered = [this] {
+    return gatherNorm(cohort_.listAttempts(), cohort_.allValues(), {}, request_, "c.db");
+  };
+  const Norm members = gathered();
+  EXPECT_EQ(sidesOf(members), std::pair(std::size_t{6}, std::size_t{7}));
+  EXPECT_FALSE(members.checkpoints[0].cut) << "no mark yet";
+  const NormTrial trial = tryNorm(members, {}, request_);
+  EXPECT_DOUBLE_EQ(*trial.norm.checkpoints[0].cut, *made().checkpoints[0].cut);
+  EXPECT_EQ(trial.rates.first.passed, 6U);
+  EXPECT_EQ(trial.rates.second.passed, 0U);
+  // Without N99 the groups have one spread, and the mark is between their means: (45 + 65) / 2 = 55 m, above its 54.
+  EXPECT_EQ(trial.withoutSelf.second.passed, 1U);
+  EXPECT_EQ(trial.withoutSelf.second.members, 7U);
+  EXPECT_EQ(trial.withoutSelf.first.passed, 6U);
+  // 40, 42 and 44 m of six experts pass a person's mark, which stays whoever is left out.
+  request_.fixed = {{"path-length left", false, 44000.0}};
+  const NormTrial byHand = tryNorm(members, {}, request_);
+  EXPECT_EQ(byHand.rates.first.passed, 3U);
+  EXPECT_EQ(byHand.withoutSelf.first.passed, 3U);
+  EXPECT_EQ(byHand.computed, trial.computed);
+  EXPECT_EQ(std::count(byHand.passed.begin(), byHand.passed.end(), true), 3);
+  // Nothing counts: nobody fails.
+  request_.fixed.clear();
+  request_.checkpoints = {"elapsed-time"};
+  EXPECT_EQ(tryNorm(members, {}, request_).rates.second.passed, 7U);
+}
+
+TEST_F(Decisions, membersAreWhoAPersonDecidesTheyAre) {
+  fill(1.0);
+  const Norm byGroups = made();
+  request_.decided = {{uuidOf(0), std::nullopt}, {uuidOf(2), false}, {uuidOf(4), true}, {"nobody", false}};
+  const Norm norm = made();
+  EXPECT_EQ(sidesOf(norm), std::pair(std::size_t{4}, std::size_t{7}));
+  EXPECT_EQ(norm.members.size(), 11U);
+  EXPECT_EQ(norm.membersMade, 11U);
+  expectHolds(norm.judgedBy, {byGroups.judgedBy, "2 of 12", request_.by});
+  // The path of 42 m is one of the others' now: the mark is stricter.
+  EXPECT_NE(*norm.checkpoints[0].cut, *byGroups.checkpoints[0].cut);
+  for (unsigned n : {6U, 8U}) request_.decided[uuidOf(n)] = false;
+  EXPECT_THROW(made(), Error) << "two are no side";
+}
+
+TEST_F(Decisions, aNormIsTakenOutAgainUnlessItHasANewerVersionOrEvidence) {
+  fill(1.0);
+  const Norm norm = made();
+  const auto refused = [&](const std::string& name, std::uint32_t version) {
+    EXPECT_THROW(cohort_.removeNorm(name, version, "me"), Error) << name << ' ' << version;
+  };
+  EXPECT_EQ(cohort_.storeNorm(norm), 1U);
+  EXPECT_EQ(cohort_.storeNorm(norm), 2U);
+  refused("clinic", 1);
+  refused("clinic", 3);
+  refused("other", 1);
+  EXPECT_THROW(cohort_.removeNorm("clinic", 2, ""), Error);
+  cohort_.removeNorm("clinic", 2, "me");
+  EXPECT_EQ(cohort_.norms().size(), 1U);
+  EXPECT_EQ(cohort_.storeNorm(norm), 2U) << "the number is given again";
+  cohort_.attachEvidence(cohort_.norm("clinic"), {"it predicts", "r.pdf", std::string(64, 'a'), "me", ""});
+  refused("clinic", 2);
+  EXPECT_EQ(cohort_.norm("clinic").members.size(), norm.members.size());
 }
 
 TEST_F(Decisions, theErrorOfMeasurementIsThatOfRepeatedAttempts) {

@@ -365,7 +365,8 @@ TEST(Study, pageIsWatermarkedWhereItIsSynthetic) {
   std::size_t figures = 0, marks = 0;
   for (std::size_t at = 0; (at = page.find("<svg", at)) != std::string::npos; ++at) ++figures;
   for (std::size_t at = 0; (at = page.find("class=\"mark\"", at)) != std::string::npos; ++at) ++marks;
-  EXPECT_EQ(figures, 3U) << "the forest plot, and a figure for each row with values";
+  EXPECT_EQ(figures, 5U)
+      << "the forest plot, and on its second page and in the appendix a figure for each row with values";
   EXPECT_EQ(marks, figures);
 }
 

@@ -31,6 +31,7 @@
 #include "gui/dashboard/attempt_page.h"
 #include "gui/dashboard/dashboard_window.h"
 #include "gui/dashboard/dialogs.h"
+#include "gui/dashboard/norm_dialog.h"
 #include "tests/gui/dashboard/support/cohort.h"
 #include "tests/gui/dashboard/support/recorded.h"
 
@@ -285,6 +286,39 @@ TEST_F(Usable, TheKeyboardReachesEverything) {
           << page << ": " << widget->metaObject()->className() << ' ' << widget->objectName().toStdString();
     }
   });
+}
+
+TEST_F(Usable, TheWindowOfANormFitsASmallScreenAndIsReachedByKeys) {
+  for (const theme::Choice choice : {theme::Choice::light, theme::Choice::dark}) {
+    theme::apply(choice, 150);
+    NormDialog norm(std::make_shared<const CohortDocument>(path()), {});
+    const QSize size(1366, 768);
+    EXPECT_LE(norm.minimumSizeHint().width(), size.width());
+    EXPECT_LE(norm.minimumSizeHint().height(), size.height());
+    norm.show();
+    norm.resize(size);
+    norm.activateWindow();
+    ASSERT_TRUE(QTest::qWaitFor([&] { return norm.settled() && norm.isActiveWindow(); }, 20000));
+    std::set<QWidget*> reached;
+    for (int i = 0; i < 200 && reached.insert(QApplication::focusWidget()).second; ++i)
+      QTest::keyClick(QApplication::focusWidget(), Qt::Key_Tab);
+    int controls = 0;
+    for (QWidget* widget : shown(norm)) {
+      for (const auto& [text, ground] : textColours(*widget))
+        EXPECT_GE(theme::contrast(text, ground), theme::leastContrast) << widget->objectName().toStdString();
+      const bool control = qobject_cast<QAbstractButton*>(widget) != nullptr ||
+                           qobject_cast<QLineEdit*>(widget) != nullptr || qobject_cast<QSlider*>(widget) != nullptr ||
+                           (qobject_cast<QComboBox*>(widget) != nullptr);
+      const bool inner =
+          widget->objectName() == "qt_spinbox_lineedit" || qobject_cast<QTableView*>(widget->parentWidget()) != nullptr;
+      if (!control || inner || !widget->isEnabled()) continue;
+      ++controls;
+      EXPECT_TRUE(reached.count(widget) > 0) << widget->objectName().toStdString();
+      EXPECT_FALSE(qobject_cast<QSlider*>(widget) != nullptr && widget->accessibleName().isEmpty());
+    }
+    EXPECT_GT(controls, 15);
+    EXPECT_TRUE(reached.count(norm.findChild<QTableView*>("norm-members")) > 0);
+  }
 }
 
 TEST_F(Usable, TheHelpMenuNamesEveryKeyOfTheMenus) {
