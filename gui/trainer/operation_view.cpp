@@ -180,7 +180,8 @@ void OperationView::putPointerBack() {
   const QPoint there = mapToGlobal(middle);
   QCursor::setPos(there);
   // Some window systems let no program move the pointer; there it stops at the screen's edge.
-  if (QCursor::pos() == there) pointer_.put(middle);
+  bounded_ = QCursor::pos() != there;
+  if (!bounded_) pointer_.put(middle);
 }
 
 void OperationView::releaseAll() {

@@ -82,6 +82,8 @@ class OperationView : public ScenePictureWidget {
   void setActive(bool active);
   /// Does the picture hold the pointer?
   [[nodiscard]] bool holdsPointer() const { return holds_; }
+  /// It drives a hand, and the window system did not let it be put back to the middle.
+  [[nodiscard]] bool isPointerBounded() const { return bounded_; }
   [[nodiscard]] PictureOverlay& over() { return *over_; }
 
   [[nodiscard]] QSize sizeHint() const override { return {1280, 720}; }
@@ -116,7 +118,7 @@ class OperationView : public ScenePictureWidget {
 
   std::shared_ptr<recorder::MouseInput> mouse_;
   std::shared_ptr<recorder::ScopeInput> scope_;
-  bool active_ = false, holds_ = false;
+  bool active_ = false, holds_ = false, bounded_ = false;
   PointerTrack pointer_;
   PictureOverlay* over_;
 };

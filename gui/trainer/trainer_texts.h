@@ -34,6 +34,7 @@ struct PanelText {
 enum class Pointer {
   elsewhere,   ///< another device drives, or nothing runs
   held,        ///< the picture holds it
+  bounded,     ///< it drives, and stops at the screen's edge: the window system lets no program move it
   free,        ///< it runs and the picture does not hold it
   windowLeft,  ///< likewise, and the window has lost the keyboard
 };

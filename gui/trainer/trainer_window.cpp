@@ -281,7 +281,7 @@ std::optional<Hand> TrainerWindow::driven() const {
 Pointer TrainerWindow::pointer(const TrainingStatus& status) const {
   const bool drives = status.stage == Stage::running || status.stage == Stage::ready;
   if (!driven() || (!drives && !windowLeft_)) return Pointer::elsewhere;
-  if (view_->holdsPointer()) return Pointer::held;
+  if (view_->holdsPointer()) return view_->isPointerBounded() ? Pointer::bounded : Pointer::held;
   return windowLeft_ ? Pointer::windowLeft : Pointer::free;
 }
 

@@ -245,6 +245,7 @@ TEST_F(Texts, WhoHasTheMouseAndWhatChangesIt) {
   EXPECT_EQ(say(recorder::Mode::practice, Pointer::elsewhere), "");
   EXPECT_TRUE(say(recorder::Mode::practice, Pointer::held).contains("Escape pauses and frees it"));
   EXPECT_TRUE(say(recorder::Mode::assessment, Pointer::held).contains("Escape frees it"));
+  EXPECT_TRUE(say(recorder::Mode::assessment, Pointer::bounded).contains("Ctrl"));
   EXPECT_TRUE(say(recorder::Mode::assessment, Pointer::free).contains("Click the picture"));
   EXPECT_TRUE(say(recorder::Mode::assessment, Pointer::windowLeft).contains("the clock runs on"));
   status.stage = Stage::paused;
