@@ -8,6 +8,7 @@
 
 #include "gui/attempt/long_work.h"
 #include "gui/dashboard/cohort_document.h"
+#include "gui/dashboard/decisions.h"
 #include "gui/dashboard/import_queue.h"
 
 class QAction;
@@ -17,7 +18,6 @@ class QMenu;
 class QStackedWidget;
 class QTabWidget;
 class QTimer;
-class QUndoStack;
 
 namespace calot::gui {
 
@@ -31,7 +31,7 @@ class StudyPage;
 class TraineePage;
 
 /// The dashboard: pages over one cohort database. It only puts pages together; what they show is decided by models that
-/// know no window. The database is written by imports, ratings, exclusions, tags and norms alone.
+/// know no window. The database is written by imports, norms and decisions alone, and decisions can be undone.
 class DashboardWindow : public QMainWindow {
   Q_OBJECT
  public:
@@ -104,6 +104,7 @@ class DashboardWindow : public QMainWindow {
   void askForTag(bool add);
   void askForNorm();
   void askForList();
+  void decide(const Decision& decision);
   void print();  ///< what the page shows
   void showManual();
   void fillRecent();
@@ -122,16 +123,16 @@ class DashboardWindow : public QMainWindow {
   TraineePage* trainee_;
   PairPage* pair_;
   RatingPage* rating_;
-  QUndoStack* undo_;
+  Decisions* decisions_;  ///< what Ctrl+Z takes back
   QAction* exclude_ = nullptr;
   QMenu* recent_ = nullptr;
   std::vector<std::filesystem::path> assetFolders_;
   QDockWidget* importDock_ = nullptr;
   QTimer* refresh_ = nullptr;  ///< while an import runs
   ImportQueue imports_;
-  CohortWriter writer_;
   Background loader_;  ///< reads again what is open
   Background opener_;  ///< opens another
+  Background finder_;  ///< looks for recordings
 };
 
 }  // namespace calot::gui

@@ -108,7 +108,7 @@ void setType(int percent);
 [[nodiscard]] QStringList hiddenColumns();
 void setHiddenColumns(const QStringList& titles);
 
-/// The person who rates, excludes and includes: a pseudonym, or empty.
+/// The person who excludes, includes, tags and makes norms: a pseudonym, or empty.
 [[nodiscard]] QString person();
 void setPerson(const QString& name);
 

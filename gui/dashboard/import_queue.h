@@ -23,8 +23,6 @@ struct AssessProgram {
   std::function<QStringList(const QString& file, const QString& database, int threads)> arguments;
   /// True if an exit code blames the recording: damaged, or in conflict with the cohort.
   std::function<bool(int exitCode)> refused;
-  /// Command line that assesses a recording into this database.
-  std::function<QString(const QString& database)> typed;
 };
 
 /// Result for one recording.
@@ -114,7 +112,7 @@ class ImportPanel : public QWidget {
 class GreetingPage : public QWidget {
   Q_OBJECT
  public:
-  explicit GreetingPage(AssessProgram program);
+  GreetingPage();
   void explainNoDatabase();
   void explainEmptyDatabase(const QString& fileName);
 
@@ -124,7 +122,6 @@ class GreetingPage : public QWidget {
   void importRequested();
 
  private:
-  AssessProgram program_;
   QLabel* title_;
   QLabel* text_;
   QPushButton* import_;

@@ -34,10 +34,12 @@ class RecordingView : public QWidget {
   explicit RecordingView(Parts with);
   ~RecordingView() override;
 
-  /// Finds the attempt's recording beside the cohort or in a folder that is known, and opens it.
-  /// @return false where it was not found, which is then said
-  bool open(const analytics::AttemptRow& attempt, const CohortDocument& document, const Figures& figures = {});
+  /// Looks for the attempt's recording beside the cohort and in the folders that are known, on another thread, and opens
+  /// it; else missing() follows, and the view says so.
+  void open(const analytics::AttemptRow& attempt, const CohortDocument& document, const Figures& figures = {});
   void openFile(const std::filesystem::path& file, const std::string& attempt, const Figures& figures = {});
+  /// Faults name no file, which may name a person.
+  void setBlinded(bool blinded) { blinded_ = blinded; }
   /// Shows texts instead of a recording.
   void close(const QString& text, const QString& timelineText = {});
 
@@ -51,7 +53,10 @@ class RecordingView : public QWidget {
   [[nodiscard]] bool settled() const;
 
  signals:
+  void missing();  ///< the recording was not found
   void opened();
+  /// A picture of the replay came on the screen. @param time since the attempt's start (s)
+  void pictureShown(double time);
   void trackRead(const calot::gui::AttemptTrack& track);
   void momentsFound(const std::vector<calot::analytics::FigureMoments>& moments);
   void failed();  ///< to open, or to be read: why stands in the view
@@ -68,6 +73,7 @@ class RecordingView : public QWidget {
   Figures figures_;
   std::optional<AttemptTrack> track_;
   bool reads_;
+  bool blinded_ = false;
   bool busy_ = false;  ///< something is still to come of the recording
   ScenePictureWidget* picture_;
   FreeView* free_;  ///< beside the endoscope's, where it is asked for
@@ -76,6 +82,7 @@ class RecordingView : public QWidget {
   std::unique_ptr<Replay> replay_;
   std::function<void()> take_;  ///< what work_ reads
   LongWork work_;
+  Background finder_;
 };
 
 }  // namespace calot::gui

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Actions on the selected attempts, and pictures of the dashboard's pages for its documentation.
 #include <algorithm>
-#include <atomic>
 #include <filesystem>
-#include <map>
 #include <QCoreApplication>
 #include <QDesktopServices>
 #include <QElapsedTimer>
@@ -17,8 +15,6 @@
 #include <QStackedWidget>
 #include <QStatusBar>
 #include <QTabWidget>
-#include <QUndoCommand>
-#include <QUndoStack>
 #include <QUrl>
 #include <system_error>
 
@@ -44,85 +40,6 @@ namespace {
 QString personWhoDecides(QWidget* window) {
   const QString known = settings::person();
   return known.isEmpty() ? QInputDialog::getText(window, "Who decides", "Your pseudonym:").trimmed() : known;
-}
-
-/// Decisions of a person about attempts, and their reversal; the database notes both.
-class DecisionCommand : public QUndoCommand {
- public:
-  using Change = CohortWriter::Change;
-  /// @param writer outlives this
-  DecisionCommand(CohortWriter& writer, std::string database, const QString& text, Change redo, Change undo)
-      : QUndoCommand(text),
-        writer_(writer),
-        database_(std::move(database)),
-        redo_(std::move(redo)),
-        undo_(std::move(undo)) {}
-  void redo() override { write(redo_); }
-  void undo() override { write(undo_); }
-
- private:
-  void write(const Change& change) {
-    if (*failed_) {
-      setObsolete(true);  // what could not be done leaves nothing to undo
-      return;
-    }
-    const auto apply = [failed = failed_, change](analytics::CohortDatabase& cohort) {
-      if (!*failed) change(cohort);
-    };
-    writer_.write(database_, apply, [failed = failed_] { *failed = true; });
-  }
-
-  CohortWriter& writer_;
-  std::string database_;
-  Change redo_, undo_;
-  std::shared_ptr<std::atomic<bool>> failed_ = std::make_shared<std::atomic<bool>>(false);  ///< by the writer's thread
-};
-
-/// The person who decides, the attempts and their database.
-struct Decision {
-  std::string database, by;
-  std::vector<analytics::AttemptRow> attempts;
-};
-
-/// Keeps the attempts out of studies, or takes that back.
-DecisionCommand* exclusionCommand(CohortWriter& writer, const Decision& decision, bool exclude,
-                                  const std::string& reason) {
-  std::vector<std::string> uuids;
-  for (const analytics::AttemptRow& attempt : decision.attempts) uuids.push_back(attempt.uuid);
-  const std::string by = decision.by;
-  if (exclude) {
-    return new DecisionCommand(
-        writer, decision.database, "exclusion",
-        [=](analytics::CohortDatabase& cohort) { cohort.excludeAttempts(uuids, reason, by); },
-        [=](analytics::CohortDatabase& cohort) { cohort.includeAttempts(uuids, "undone: " + reason, by); });
-  }
-  std::map<std::string, std::vector<std::string>> former;  // reason -> attempts
-  for (const analytics::AttemptRow& attempt : decision.attempts)
-    former[attempt.exclusionReason].push_back(attempt.uuid);
-  return new DecisionCommand(
-      writer, decision.database, "inclusion",
-      [=](analytics::CohortDatabase& cohort) { cohort.includeAttempts(uuids, reason, by); },
-      [=](analytics::CohortDatabase& cohort) {
-        for (const auto& [why, attempts] : former) cohort.excludeAttempts(attempts, why, by);
-      });
-}
-
-/// Puts a tag on those attempts that do not have it, or takes it off those that do.
-DecisionCommand* tagCommand(CohortWriter& writer, const Decision& decision, bool add, const std::string& tag) {
-  std::vector<std::string> uuids;
-  for (const analytics::AttemptRow& attempt : decision.attempts) {
-    const bool has = std::find(attempt.tags.begin(), attempt.tags.end(), tag) != attempt.tags.end();
-    if (has != add) uuids.push_back(attempt.uuid);
-  }
-  const auto change = [uuids, tag, by = decision.by](bool put) -> DecisionCommand::Change {
-    return [=](analytics::CohortDatabase& cohort) {
-      if (put)
-        cohort.tagAttempts(uuids, tag, by);
-      else
-        cohort.untagAttempts(uuids, tag, by);
-    };
-  };
-  return new DecisionCommand(writer, decision.database, add ? "tag" : "removal of a tag", change(add), change(!add));
 }
 
 constexpr qint64 maxWaiting = 120000;  // ms for a page to have read what it shows
@@ -151,36 +68,23 @@ std::vector<analytics::AttemptRow> DashboardWindow::chosenAttempts() const {
 }
 
 void DashboardWindow::excludeOrInclude(const QString& reason, const QString& by) {
-  const analytics::AttemptRow* current = attempts_->selected();
-  if (current == nullptr) return;
-  const bool exclude = !current->excluded;
-  Decision decision{document_->path(), by.toStdString(), chosenAttempts()};
-  // Those that are so already stay as they are.
-  std::erase_if(decision.attempts,
-                [&](const analytics::AttemptRow& a) { return a.withdrawn || a.excluded == exclude; });
-  undo_->push(exclusionCommand(writer_, decision, exclude, reason.toStdString()));
+  if (const analytics::AttemptRow* current = attempts_->selected())
+    decide(exclusionDecision(chosenAttempts(), !current->excluded, reason.toStdString(), by.toStdString()));
 }
 
 void DashboardWindow::tagSelected(const QString& tag, bool add, const QString& by) {
-  if (attempts_->selected() == nullptr) return;
-  const Decision decision{document_->path(), by.toStdString(), chosenAttempts()};
-  undo_->push(tagCommand(writer_, decision, add, tag.toStdString()));
+  if (attempts_->selected() != nullptr)
+    decide(tagDecision(chosenAttempts(), add, tag.toStdString(), by.toStdString()));
 }
 
 void DashboardWindow::changeGroup(const QString& participant, const QString& group) {
   const auto current =
       std::ranges::find(document_->attempts(), participant.toStdString(), &analytics::AttemptRow::participant);
-  if (current == document_->attempts().end()) return;
-  const auto change = [name = participant.toStdString()](const std::string& to) -> DecisionCommand::Change {
-    return [name, to](analytics::CohortDatabase& cohort) {
-      analytics::ParticipantChange made;
-      made.group = to;
-      cohort.setParticipant(name, made);
-    };
-  };
-  undo_->push(new DecisionCommand(writer_, document_->path(), "change of group", change(group.toStdString()),
-                                  change(current->group)));
+  if (current != document_->attempts().end())
+    decide(groupDecision(participant.toStdString(), group.toStdString(), current->group));
 }
+
+void DashboardWindow::decide(const Decision& decision) { decisions_->take(document_->path(), decision); }
 
 void DashboardWindow::exportList(const QString& file) {
   std::string text;
@@ -229,14 +133,21 @@ void DashboardWindow::showManual() {
 
 void DashboardWindow::verifySelected() {
   if (!document_) return;
-  QStringList files, missing;
-  for (const analytics::AttemptRow& attempt : attempts_->selectedAll()) {
-    const std::filesystem::path file = findRecording(attempt, document_->path(), settings::recordingPlaces());
-    (file.empty() ? missing : files) += QString::fromStdString(file.empty() ? attempt.fileName : file.string());
-  }
-  if (!missing.isEmpty())
-    showProblem("Not found, so not verified: " + missing.join(", ") + ". Settings name the folders with recordings.");
-  if (!files.isEmpty()) importRecordings(files);
+  finder_.run(
+      [this, attempts = attempts_->selectedAll(), database = document_->path(), places = settings::recordingPlaces()] {
+        QStringList files, missing;
+        for (const analytics::AttemptRow& attempt : attempts) {
+          const std::filesystem::path file = findRecording(attempt, database, places);
+          (file.empty() ? missing : files) += QString::fromStdString(file.empty() ? attempt.fileName : file.string());
+        }
+        return [this, files, missing] {
+          if (!missing.isEmpty())
+            showProblem("Not found, so not verified: " + missing.join(", ") +
+                        ". Settings name the folders with recordings.");
+          if (!files.isEmpty()) importRecordings(files);
+        };
+      },
+      [this](const QString& reason) { showProblem(reason); });
 }
 
 void DashboardWindow::pairSelected() {
@@ -268,7 +179,7 @@ void DashboardWindow::askForRecordings() {
     return;
   }
   const QStringList files =
-      QFileDialog::getOpenFileNames(this, "Import recordings", {}, "Recordings (*.h5);;All files (*)");
+      QFileDialog::getOpenFileNames(this, "Import recordings (this cannot be undone)", {}, "Recordings (*.h5);;All files (*)");
   if (!files.isEmpty()) importRecordings(files);
 }
 
@@ -278,7 +189,7 @@ void DashboardWindow::askForExclusion() {
   const QString by = personWhoDecides(this);
   if (by.isEmpty()) return;
   const QString what = attempt->excluded ? "Include in studies again" : "Exclude from studies";
-  const QString reason = QInputDialog::getText(this, what, "Reason, for the record:").trimmed();
+  const QString reason = QInputDialog::getText(this, what, "Reason, for the record (Ctrl+Z undoes it):").trimmed();
   if (reason.isEmpty()) return;
   settings::setPerson(by);
   excludeOrInclude(reason, by);
@@ -304,7 +215,7 @@ void DashboardWindow::askForTag(bool add) {
   bool agreed = false;
   const QString what = chosen.size() == 1 ? "this attempt" : QString("%1 attempts").arg(chosen.size());
   const QString tag = QInputDialog::getItem(this, add ? "Add a tag" : "Remove a tag",
-                                            add ? "One word, to put on " + what + ':' : "To take off " + what + ':',
+                                            (add ? "One word, to put on " : "To take off ") + what + " (Ctrl+Z undoes it):",
                                             words, 0, add, &agreed)
                           .trimmed();
   if (!agreed || tag.isEmpty()) return;
@@ -315,9 +226,7 @@ void DashboardWindow::askForTag(bool add) {
 
 void DashboardWindow::askForNorm() {
   if (!document_) return;
-  std::vector<std::string> selected;
-  for (const analytics::AttemptRow& attempt : attempts_->selectedAll()) selected.push_back(attempt.uuid);
-  NormDialog dialog(document_, selected, this);
+  NormDialog dialog(document_, attempts_->selectedUuids(), this);
   connect(&dialog, &NormDialog::made, this, &DashboardWindow::reload);
   dialog.exec();
 }
