@@ -20,6 +20,7 @@
 #include "gui/attempt/replay_player.h"
 #include "gui/dashboard/attempt_page.h"
 #include "gui/dashboard/attempts_page.h"
+#include "gui/dashboard/course_page.h"
 #include "gui/dashboard/dialogs.h"
 #include "gui/dashboard/figure_panel.h"
 #include "gui/dashboard/figures_page.h"
@@ -71,6 +72,7 @@ DashboardWindow::DashboardWindow(const AssessProgram& program, const std::vector
       trainee_(new TraineePage),
       pair_(new PairPage),
       rating_(new RatingPage),
+      course_(new CoursePage),
       decisions_(new Decisions(this)),
       assetFolders_(assetFolders),
       imports_(program) {
@@ -85,7 +87,8 @@ DashboardWindow::DashboardWindow(const AssessProgram& program, const std::vector
                                                                                               {study_, "Study"},
                                                                                               {trainee_, "Trainee"},
                                                                                               {pair_, "Side by side"},
-                                                                                              {rating_, "Ratings"}}) {
+                                                                                              {rating_, "Ratings"},
+                                                                                              {course_, "Course"}}) {
     tabs_->addTab(page, title);
     connect(page, &CohortPage::problem, this, &DashboardWindow::showProblem);
     connect(page, &CohortPage::attemptActivated, this, &DashboardWindow::openAttempt);
@@ -96,6 +99,7 @@ DashboardWindow::DashboardWindow(const AssessProgram& program, const std::vector
   centre->setLayout(parts::column({problem_, {stack_, 1}}));
   setCentralWidget(centre);
   rating_->readForms(assetFolders);
+  course_->readCourses(assetFolders);
   buildImport();
   buildMenus();
   connectPages();
@@ -179,6 +183,7 @@ void DashboardWindow::connectPages() {
     rating_->setDocument(document_);  // shows what is stored
     showProblem(reason);
   });
+  connect(course_, &CoursePage::courseChosen, trainee_, &TraineePage::readCourse);
   connect(rating_, &RatingPage::decided, this, &DashboardWindow::decide);
   connect(greeting_, &GreetingPage::openRequested, this, &DashboardWindow::askForDatabase);
   connect(greeting_, &GreetingPage::newRequested, this, &DashboardWindow::askForNewDatabase);
@@ -226,7 +231,7 @@ void DashboardWindow::setDocument(std::shared_ptr<const CohortDocument> document
   settings::rememberCohort(QString::fromStdString(document_->path()));
   fillRecent();
   // The list is last: its selection goes to the others.
-  for (CohortPage* page : std::initializer_list<CohortPage*>{study_, trainee_, pair_, rating_, compare_, attempts_})
+  for (CohortPage* page : std::initializer_list<CohortPage*>{study_, trainee_, pair_, rating_, course_, compare_, attempts_})
     page->setDocument(document_);
   if (document_->attempts().empty()) {
     greeting_->explainEmptyDatabase(name);

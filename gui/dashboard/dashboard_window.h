@@ -24,6 +24,7 @@ namespace calot::gui {
 class AttemptPage;
 class AttemptsPage;
 class ComparePage;
+class CoursePage;
 class GreetingPage;
 class PairPage;
 class RatingPage;
@@ -36,7 +37,7 @@ class DashboardWindow : public QMainWindow {
   Q_OBJECT
  public:
   /// @param program what imports recordings
-  /// @param assetFolders that may hold forms (recorder::ProgramFiles)
+  /// @param assetFolders that may hold forms and courses (recorder::ProgramFiles)
   explicit DashboardWindow(const AssessProgram& program, const std::vector<std::filesystem::path>& assetFolders = {});
   ~DashboardWindow() override;
 
@@ -72,7 +73,7 @@ class DashboardWindow : public QMainWindow {
 
   [[nodiscard]] ImportQueue& imports() { return imports_; }
   /// Writes a PNG of each page into a folder that exists, after what it shows has been read: attempts.png, attempt.png,
-  /// compare.png, study.png, trainee.png, pair.png, ratings.png, norm.png and settings.png (or greeting.png).
+  /// compare.png, study.png, trainee.png, pair.png, ratings.png, course.png, norm.png and settings.png (or greeting.png).
   /// @throws calot::Error (failure) if one cannot be written.
   void savePictures(const QString& folder);
 
@@ -123,6 +124,7 @@ class DashboardWindow : public QMainWindow {
   TraineePage* trainee_;
   PairPage* pair_;
   RatingPage* rating_;
+  CoursePage* course_;
   Decisions* decisions_;  ///< what Ctrl+Z takes back
   QAction* exclude_ = nullptr;
   QMenu* recent_ = nullptr;

@@ -76,6 +76,7 @@ constexpr const char* foldersKey = "recordings/folders";
 constexpr const char* programKey = "import/program";
 constexpr const char* threadsKey = "import/threads";
 constexpr const char* personKey = "person";
+constexpr const char* courseKey = "course";
 constexpr const char* coloursKey = "look/colours";
 constexpr const char* typeKey = "look/type";
 constexpr const char* columnsKey = "attempts/hidden-columns";
@@ -318,6 +319,9 @@ void setType(int percent) { store().setValue(typeKey, std::clamp(percent, theme:
 
 QStringList hiddenColumns() { return store().value(columnsKey).toStringList(); }
 void setHiddenColumns(const QStringList& titles) { store().setValue(columnsKey, titles); }
+
+QString course() { return store().value(courseKey).toString(); }
+void setCourse(const QString& file) { store().setValue(courseKey, file); }
 
 QString person() { return store().value(personKey).toString(); }
 void setPerson(const QString& name) { store().setValue(personKey, name); }

@@ -108,6 +108,10 @@ void setType(int percent);
 [[nodiscard]] QStringList hiddenColumns();
 void setHiddenColumns(const QStringList& titles);
 
+/// File of the course that was chosen last, or empty.
+[[nodiscard]] QString course();
+void setCourse(const QString& file);
+
 /// The person who excludes, includes, tags and makes norms: a pseudonym, or empty.
 [[nodiscard]] QString person();
 void setPerson(const QString& name);

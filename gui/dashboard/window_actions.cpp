@@ -21,6 +21,7 @@
 #include "gui/attempt/replay_player.h"
 #include "gui/dashboard/attempt_page.h"
 #include "gui/dashboard/attempts_page.h"
+#include "gui/dashboard/course_page.h"
 #include "gui/dashboard/dashboard_window.h"
 #include "gui/dashboard/dialogs.h"
 #include "gui/dashboard/figure_panel.h"
@@ -106,7 +107,7 @@ void DashboardWindow::print() {
     if (QPrintDialog(&printer, this).exec() == QDialog::Accepted) tryTo([&] { paintReport(document, printer); });
   };
   if (!document_ || !static_cast<CohortPage*>(tabs_->currentWidget())->makeDocument(take))
-    showProblem("There is nothing to print here: the pages Attempts, Attempt and Study are printed.");
+    showProblem("There is nothing to print here: the pages Attempts, Attempt, Study and Course are printed.");
 }
 
 void DashboardWindow::fillRecent() {
@@ -260,6 +261,7 @@ void DashboardWindow::savePictures(const QString& folder) {
   save(pair_, "pair.png", [this] { return pair_->settled(); });
   rating_->chooseForm("goals");
   save(rating_, "ratings.png", [this] { return rating_->settled(); });
+  save(course_, "course.png", [this] { return course_->ready(); });
   const auto saveDialog = [&](QDialog& dialog, const char* name) {
     dialog.show();
     waitFor(atOnce);
