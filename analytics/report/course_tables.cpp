@@ -55,7 +55,7 @@ std::string nextMissing(const CoursePerson& person) {
 std::vector<const CoursePerson*> behindFirst(const CourseProgress& progress) {
   std::vector<const CoursePerson*> people;
   for (const CoursePerson& person : progress.people) people.push_back(&person);
-  std::ranges::stable_partition(people, [](const CoursePerson* person) { return isBehind(*person); });
+  std::stable_partition(people.begin(), people.end(), [](const CoursePerson* person) { return isBehind(*person); });
   return people;
 }
 

@@ -67,7 +67,11 @@ CoursePage::CoursePage()
   begin_ = people_;
   connect(course_, &QComboBox::activated, this, [this] { choose(); });
   connect(another_, &QPushButton::clicked, this, &CoursePage::askForCourse);
-  connect(synthetic_, &QCheckBox::toggled, this, [this] { outdate(); });
+  synthetic_->setChecked(settings::courseSynthetic());
+  connect(synthetic_, &QCheckBox::toggled, this, [this](bool counts) {
+    settings::setCourseSynthetic(counts);
+    choose();
+  });
   connect(people_, &QTableWidget::currentItemChanged, this, [this] { showPerson(); });
   connect(attempts_, &QTableWidget::itemActivated, this, [this](const QTableWidgetItem* item) {
     emit attemptActivated(attempts_->item(item->row(), 0)->data(Qt::UserRole).toString());

@@ -76,7 +76,8 @@ constexpr const char* foldersKey = "recordings/folders";
 constexpr const char* programKey = "import/program";
 constexpr const char* threadsKey = "import/threads";
 constexpr const char* personKey = "person";
-constexpr const char* courseKey = "course";
+constexpr const char* courseKey = "course/file";
+constexpr const char* courseSyntheticKey = "course/synthetic";
 constexpr const char* coloursKey = "look/colours";
 constexpr const char* typeKey = "look/type";
 constexpr const char* columnsKey = "attempts/hidden-columns";
@@ -322,6 +323,8 @@ void setHiddenColumns(const QStringList& titles) { store().setValue(columnsKey, 
 
 QString course() { return store().value(courseKey).toString(); }
 void setCourse(const QString& file) { store().setValue(courseKey, file); }
+bool courseSynthetic() { return store().value(courseSyntheticKey, false).toBool(); }
+void setCourseSynthetic(bool counts) { store().setValue(courseSyntheticKey, counts); }
 
 QString person() { return store().value(personKey).toString(); }
 void setPerson(const QString& name) { store().setValue(personKey, name); }

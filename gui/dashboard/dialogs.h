@@ -111,6 +111,8 @@ void setHiddenColumns(const QStringList& titles);
 /// File of the course that was chosen last, or empty.
 [[nodiscard]] QString course();
 void setCourse(const QString& file);
+[[nodiscard]] bool courseSynthetic();  ///< performers' attempts count in it, too
+void setCourseSynthetic(bool counts);
 
 /// The person who excludes, includes, tags and makes norms: a pseudonym, or empty.
 [[nodiscard]] QString person();

@@ -171,10 +171,9 @@ void TraineePage::readCourse() {
   showCourse();
   const QString file = settings::course();
   if (!document_ || file.isEmpty()) return;
-  // Performers' attempts under a pseudonym show the page without people.
   courseReader_.run(
-      [this, database = document_->path(), file = file.toStdString()] {
-        return [this, progress = readCourseProgress(database, file, true)] {
+      [this, database = document_->path(), file = file.toStdString(), synthetic = settings::courseSynthetic()] {
+        return [this, progress = readCourseProgress(database, file, synthetic)] {
           course_ = progress;
           showCourse();
         };

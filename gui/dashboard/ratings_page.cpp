@@ -140,9 +140,10 @@ void RatingPage::read() {
 
 /// Answers that are in the cohort now are no draft any more.
 void RatingPage::dropStored() {
-  for (const auto& [about, rating] : waiting_) {
+  for (const auto& entry : waiting_) {
+    const RatingSubject& about = entry.first;
     const auto there = std::ranges::find_if(ratings_, [&](const analytics::Rating& r) { return isOf(r, about); });
-    if (there != ratings_.end() && there->answers == rating.answers) drafts::dropAnswers(about);
+    if (there != ratings_.end() && there->answers == entry.second.answers) drafts::dropAnswers(about);
   }
   waiting_.clear();
 }

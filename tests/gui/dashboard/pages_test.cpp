@@ -33,6 +33,7 @@
 #include "gui/dashboard/attempts_page.h"
 #include "gui/dashboard/dashboard_window.h"
 #include "gui/dashboard/dialogs.h"
+#include "gui/dashboard/family_tree_model.h"
 #include "gui/dashboard/figure_panel.h"
 #include "gui/dashboard/pair_page.h"
 #include "gui/dashboard/study_page.h"
