@@ -45,7 +45,7 @@ RatingFormView::RatingFormView() {
   setWidgetResizable(true);
 }
 
-void RatingFormView::show(const analytics::RatingForm* form) {
+void RatingFormView::setForm(const analytics::RatingForm* form) {
   items_.clear();
   answers_.clear();
   auto* content = new QWidget;

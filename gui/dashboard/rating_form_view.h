@@ -21,7 +21,7 @@ class RatingFormView : public QScrollArea {
  public:
   RatingFormView();
   /// Nothing is answered. @param form outlives what is shown; null: none
-  void show(const analytics::RatingForm* form);
+  void setForm(const analytics::RatingForm* form);
   void setAnswers(const FormAnswers& answers);  ///< scores of another scale are left out
   [[nodiscard]] const FormAnswers& answers() const { return answers_; }
   [[nodiscard]] bool complete() const { return !items_.empty() && answers_.size() == items_.size(); }

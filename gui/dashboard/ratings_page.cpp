@@ -87,6 +87,10 @@ void RatingPage::connectParts() {
   connect(reveal_, &QCheckBox::toggled, this, [this](bool shown) {
     film_->setBlinded(!shown);
     showSubject();
+    if (shown && !film_->isOpen()) {
+      shown_.clear();  // to say why it cannot be shown
+      openFilm();
+    }
   });
   connect(list_->selectionModel(), &QItemSelectionModel::currentRowChanged, this, [this](const QModelIndex& at) {
     if (!at.isValid()) return;
@@ -204,7 +208,7 @@ void RatingPage::setRater() {
 
 void RatingPage::showForm() {
   const analytics::RatingForm* shown = form();
-  view_->show(shown);
+  view_->setForm(shown);
   source_->setText(shown != nullptr ? QString("Version %1. %2").arg(shown->version).arg(
                                           QString::fromStdString(shown->source))
                    : fault_.isEmpty() ? "No forms were found: Calot is not installed completely."

@@ -30,6 +30,7 @@ class RatingPage : public CohortPage {
   RatingPage();
   /// True if the replay stands where it was sent to, or there is none.
   [[nodiscard]] bool settled() const { return film_->settled(); }
+  [[nodiscard]] const SeenFilm& seenFilm() const { return seen_; }  ///< by the rater, of the film that is shown
   /// Offers the forms in `forms/` of these folders, best first (recorder::ProgramFiles).
   void readForms(const std::vector<std::filesystem::path>& folders);
   void chooseForm(const QString& name);

@@ -47,7 +47,7 @@ RecordingView::RecordingView(Parts with)
   });
   connect(replay_.get(), &Replay::positionChanged, this, [this] { timeline_->setPosition(replay_->position().time); });
   connect(replay_.get(), &Replay::failed, this, [this](const QString& reason) {
-    picture_->showText(blinded_ ? "This film cannot be shown." : reason);
+    say(blinded_ ? "This film cannot be shown." : reason);
     fail("No timeline: the recording cannot be shown.");
   });
   connect(picture_, &ScenePictureWidget::pictureShown, this,
@@ -97,7 +97,7 @@ void RecordingView::close(const QString& text, const QString& timelineText) {
   busy_ = false;
   file_.clear();
   track_.reset();
-  picture_->showText(text);
+  say(text);
   free_->forget({});
   timeline_->setText(timelineText);
 }
@@ -113,6 +113,11 @@ void RecordingView::toggleFreeView() { toggle_->toggle(); }
 void RecordingView::hideEvent(QHideEvent* event) {
   QWidget::hideEvent(event);
   replay_->pause();
+}
+
+void RecordingView::say(const QString& text) {
+  text_ = text;
+  picture_->showText(text);
 }
 
 void RecordingView::fail(const QString& timelineText) {

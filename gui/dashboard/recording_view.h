@@ -47,6 +47,7 @@ class RecordingView : public QWidget {
   void toggleFreeView();
   [[nodiscard]] bool isOpen() const { return replay_->isOpen(); }
   [[nodiscard]] TimelineBar& timeline() const { return *timeline_; }
+  [[nodiscard]] const QString& text() const { return text_; }  ///< that stood last in place of a picture
   [[nodiscard]] const std::filesystem::path& file() const { return file_; }          ///< that was opened last, or empty
   [[nodiscard]] const std::optional<AttemptTrack>& track() const { return track_; }  ///< once it was read
   /// True if everything readable was read and the replay is at its target, or there is no recording.
@@ -68,7 +69,9 @@ class RecordingView : public QWidget {
   void startTrack();
   void startMoments();
   void fail(const QString& timelineText);
+  void say(const QString& text);
 
+  QString text_;
   std::filesystem::path file_;
   Figures figures_;
   std::optional<AttemptTrack> track_;
