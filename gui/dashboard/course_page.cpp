@@ -120,18 +120,18 @@ void CoursePage::askForCourse() {
 void CoursePage::read() {
   ready_ = false;
   if (chosen().empty()) {
-    show(nullptr, "No course was found; open one from a file.");
+    showProgress(nullptr, "No course was found; open one from a file.");
     return;
   }
   summary_->setText("Reading the course's attempts …");
   background_.run(
       [this, database = document_->path(), course = chosen(), synthetic = synthetic_->isChecked()] {
-        return [this, progress = readCourseProgress(database, course, synthetic)] { show(progress, {}); };
+        return [this, progress = readCourseProgress(database, course, synthetic)] { showProgress(progress, {}); };
       },
-      [this](const QString& fault) { show(nullptr, fault); });
+      [this](const QString& fault) { showProgress(nullptr, fault); });
 }
 
-void CoursePage::show(std::shared_ptr<const CourseProgress> progress, const QString& fault) {
+void CoursePage::showProgress(std::shared_ptr<const CourseProgress> progress, const QString& fault) {
   const QString before =
       people_->currentRow() < 0 ? QString() : people_->item(people_->currentRow(), 0)->data(Qt::UserRole).toString();
   progress_ = std::move(progress);

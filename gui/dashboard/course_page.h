@@ -39,7 +39,7 @@ class CoursePage : public CohortPage {
   void addCourse(const std::filesystem::path& file);
   void choose();
   void askForCourse();
-  void show(std::shared_ptr<const analytics::CourseProgress> progress, const QString& fault);
+  void showProgress(std::shared_ptr<const analytics::CourseProgress> progress, const QString& fault);
   void showPerson();
   [[nodiscard]] std::filesystem::path chosen() const;
 

@@ -38,7 +38,7 @@ class CoursePages : public testing::Test {
     settings::setCourse({});
     settings::setCourseSynthetic(false);
     analytics::CohortDatabase cohort(path(), analytics::CohortDatabase::Access::create);
-    const auto add = [&, number = 0](const std::string& who, const std::string& group, double seconds) mutable {
+    auto add = [&, number = 0](const std::string& who, const std::string& group, double seconds) mutable {
       analytics::AttemptRecord a = test::attemptNumber(number++);
       a.operatorKind = recorder::OperatorKind::human;
       a.profile.clear();
