@@ -174,7 +174,7 @@ struct Rating {
   std::string rater;        ///< pseudonym, with an attempt
   std::string participant;  ///< pseudonym, without one
   std::map<std::string, int> answers;
-  std::string ratedUtc = {};                 ///< set by the database
+  std::string ratedUtc = {};            ///< set by the database
   std::optional<double> filmSeen = {};  ///< share of the film that ran before the rater, for the audit; not read back
 };
 

@@ -77,8 +77,7 @@ ReportTable courseTable(const CourseProgress& progress, const std::vector<const 
 std::vector<std::string> courseNotes(const CourseProgress& progress) {
   std::vector<std::string> notes;
   addWho(
-      progress, "Behind", [](const TaskStanding& s) { return s.behind ? "due on " + s.dueDay : std::string(); },
-      notes);
+      progress, "Behind", [](const TaskStanding& s) { return s.behind ? "due on " + s.dueDay : std::string(); }, notes);
   addWho(
       progress, "Retention test",
       [](const TaskStanding& s) {
@@ -131,8 +130,8 @@ std::vector<std::string> personNotes(const CourseProgress& progress, const Cours
     if (!s.missing.empty()) notes.push_back(s.missing + ".");
     if (s.behind) notes.push_back(fmt::format("{}: behind, due on {}.", title, s.dueDay));
     if (s.early > 0)
-      notes.push_back(fmt::format("{}: {} before the task was open; {}.", title,
-                                  recorder::counted(s.early, "attempt"), s.early == 1 ? "it counts" : "they count"));
+      notes.push_back(fmt::format("{}: {} before the task was open; {}.", title, recorder::counted(s.early, "attempt"),
+                                  s.early == 1 ? "it counts" : "they count"));
     for (const auto& [reason, count] : person.uncounted[t])
       notes.push_back(fmt::format("{}: {} not counted: {}.", title, recorder::counted(count, "attempt"), reason));
   }

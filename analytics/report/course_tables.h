@@ -18,7 +18,7 @@ std::string standingCell(const CourseTask& task, const TaskStanding& standing);
 bool isBehind(const CoursePerson& person);
 /// "1 of 2": tasks that the person is proficient in, of those with a criterion; "-" where none has one.
 std::string proficientOf(const Course& course, const CoursePerson& person);
-/// What is missing in the first task that still lacks something; empty: nothing is missing.
+/// The sentence on the first task that still lacks something; empty: nothing is missing.
 std::string nextMissing(const CoursePerson& person);
 
 /// People who are behind first, then by pseudonym.
@@ -36,7 +36,7 @@ std::size_t notCounted(const CourseProgress& progress);
 ReportTable courseAttempts(const CourseProgress& progress, const CoursePerson& person);
 /// The uuids of its rows.
 std::vector<std::string> courseAttemptIds(const CoursePerson& person);
-/// What is missing, since when the person is behind, which attempts came early, and which do not count.
+/// Sentences on all that is missing, since when the person is behind, which attempts came early or do not count.
 std::vector<std::string> personNotes(const CourseProgress& progress, const CoursePerson& person);
 
 /// Everybody, who is behind first, then what is missing.

@@ -75,8 +75,10 @@ Json progressJson(const CourseProgress& progress) {
     Json tasks = Json::array();
     for (std::size_t t = 0; t < person.tasks.size(); ++t)
       tasks.push_back(standingJson(progress.course.tasks[t], person.tasks[t], person.uncounted[t]));
-    people.push_back(
-        {{"participant", person.participant}, {"group", person.group}, {"behind", analytics::isBehind(person)}, {"tasks", tasks}});
+    people.push_back({{"participant", person.participant},
+                      {"group", person.group},
+                      {"behind", analytics::isBehind(person)},
+                      {"tasks", tasks}});
   }
   return {{"course", progress.course.name},  {"title", progress.course.title}, {"day", progress.today},
           {"synthetic", progress.synthetic}, {"tasks", tasksJson(progress)},   {"participants", people}};

@@ -231,7 +231,8 @@ void DashboardWindow::setDocument(std::shared_ptr<const CohortDocument> document
   settings::rememberCohort(QString::fromStdString(document_->path()));
   fillRecent();
   // The list is last: its selection goes to the others.
-  for (CohortPage* page : std::initializer_list<CohortPage*>{study_, trainee_, pair_, rating_, course_, compare_, attempts_})
+  for (CohortPage* page :
+       std::initializer_list<CohortPage*>{study_, trainee_, pair_, rating_, course_, compare_, attempts_})
     page->setDocument(document_);
   if (document_->attempts().empty()) {
     greeting_->explainEmptyDatabase(name);

@@ -73,7 +73,8 @@ class DashboardWindow : public QMainWindow {
 
   [[nodiscard]] ImportQueue& imports() { return imports_; }
   /// Writes a PNG of each page into a folder that exists, after what it shows has been read: attempts.png, attempt.png,
-  /// compare.png, study.png, trainee.png, pair.png, ratings.png, course.png, norm.png and settings.png (or greeting.png).
+  /// compare.png, study.png, trainee.png, pair.png, ratings.png, course.png, norm.png and settings.png (or
+  /// greeting.png).
   /// @throws calot::Error (failure) if one cannot be written.
   void savePictures(const QString& folder);
 

@@ -18,10 +18,7 @@ class DecisionCommand : public QUndoCommand {
  public:
   /// @param writer outlives this
   DecisionCommand(CohortWriter& writer, std::string database, Decision decision)
-      : QUndoCommand(decision.text),
-        writer_(writer),
-        database_(std::move(database)),
-        decision_(std::move(decision)) {}
+      : QUndoCommand(decision.text), writer_(writer), database_(std::move(database)), decision_(std::move(decision)) {}
   void redo() override { write(decision_.make); }
   void undo() override {
     write(decision_.undo);
@@ -69,7 +66,7 @@ QAction* actionOf(QUndoStack& stack, const char* word, QKeySequence::StandardKey
 }  // namespace
 
 Decision exclusionDecision(const std::vector<analytics::AttemptRow>& attempts, bool exclude, const std::string& reason,
-                     const std::string& by) {
+                           const std::string& by) {
   std::vector<std::string> uuids;
   std::map<std::string, std::vector<std::string>> former;  // reason -> attempts
   for (const analytics::AttemptRow& attempt : attempts) {
@@ -90,7 +87,7 @@ Decision exclusionDecision(const std::vector<analytics::AttemptRow>& attempts, b
 }
 
 Decision tagDecision(const std::vector<analytics::AttemptRow>& attempts, bool add, const std::string& tag,
-               const std::string& by) {
+                     const std::string& by) {
   std::vector<std::string> uuids;
   for (const analytics::AttemptRow& attempt : attempts) {
     const bool has = std::find(attempt.tags.begin(), attempt.tags.end(), tag) != attempt.tags.end();
@@ -120,7 +117,7 @@ Decision groupDecision(const std::string& participant, const std::string& group,
 }
 
 Decision ratingDecision(const analytics::StoredDocument& form, const analytics::Rating& rating,
-                  const std::optional<analytics::Rating>& before, const QString& name) {
+                        const std::optional<analytics::Rating>& before, const QString& name) {
   const auto store = [form](const analytics::Rating& what, bool replace) -> Decision::Change {
     return [=](analytics::CohortDatabase& cohort) { cohort.storeRating(form, what, replace); };
   };

@@ -210,8 +210,7 @@ void ImportPanel::addResult(const ImportResult& result) {
 }
 
 GreetingPage::GreetingPage()
-    : title_(parts::plainLabel("greeting-title", false)),
-      text_(parts::selectableLabel("greeting")) {
+    : title_(parts::plainLabel("greeting-title", false)), text_(parts::selectableLabel("greeting")) {
   parts::enlarge(title_, 1.8);
   for (QLabel* const label : {title_, text_}) label->setAlignment(Qt::AlignHCenter);
   const auto button = [&](const char* name, const char* text, auto wish) {
@@ -230,7 +229,8 @@ GreetingPage::GreetingPage()
 
 void GreetingPage::explainNoDatabase() {
   title_->setText("Welcome to Calot");
-  text_->setText("A cohort database holds attempts and their checkpoints.\nOpen one, make a new one, or drop one here.");
+  text_->setText(
+      "A cohort database holds attempts and their checkpoints.\nOpen one, make a new one, or drop one here.");
   import_->hide();
 }
 

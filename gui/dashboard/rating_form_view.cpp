@@ -86,8 +86,7 @@ void RatingFormView::addItem(QVBoxLayout& layout, const analytics::FormItem& ite
   };
   for (int score = form.least; score <= form.most; ++score) {
     const auto at = static_cast<std::size_t>(score - form.least);
-    add(score, scoreText(form, score),
-        at < item.anchors.size() ? QString::fromStdString(item.anchors[at]) : QString());
+    add(score, scoreText(form, score), at < item.anchors.size() ? QString::fromStdString(item.anchors[at]) : QString());
   }
   add(blank, "left blank", {});
   buttons->button(blank)->setToolTip("Nothing can be said");

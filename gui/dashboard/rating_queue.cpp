@@ -118,13 +118,9 @@ void keepAnswers(const RatingSubject& subject, const FormAnswers& answers) {
     drafts.setValue(QString::fromStdString(item), QString::fromStdString(textOf(score)));
 }
 
-SeenFilm seen(const RatingSubject& subject) {
-  return SeenFilm(store().value(filmKey(subject)).toString());
-}
+SeenFilm seen(const RatingSubject& subject) { return SeenFilm(store().value(filmKey(subject)).toString()); }
 
-void keepSeen(const RatingSubject& subject, const SeenFilm& film) {
-  store().setValue(filmKey(subject), film.kept());
-}
+void keepSeen(const RatingSubject& subject, const SeenFilm& film) { store().setValue(filmKey(subject), film.kept()); }
 
 QString rater() { return store().value(raterKey).toString(); }
 void keepRater(const QString& name) { store().setValue(raterKey, name); }

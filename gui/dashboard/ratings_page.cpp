@@ -50,8 +50,8 @@ RatingPage::RatingPage()
   banner_->makeNarrow();
   left_ = parts::boxed(parts::column({progress_, {list_, 1}}));
   middle_ = parts::boxed(parts::column({banner_, {film_, 1}}));
-  QWidget* const right = parts::boxed(
-      parts::column({source_, {view_, 1}, state_, parts::row({parts::spring(), store_, next_})}));
+  QWidget* const right =
+      parts::boxed(parts::column({source_, {view_, 1}, state_, parts::row({parts::spring(), store_, next_})}));
   QSplitter* const all = makeSplitter(Qt::Horizontal, {{left_, 0}, {middle_, 3}, {right, 2}});
   all->setSizes({theme::inType(110), 780, 460});
   setLayout(parts::column({buildHead(), {all, 1}}));
@@ -199,7 +199,7 @@ void RatingPage::setRater() {
   drafts::keepRater(name);
   shown_.clear();  // each rater sees the films
   if (first && form() != nullptr && drafts::seen(subject()).kept().isEmpty()) {
-    // Who watched before they said who they are saw it all the same.
+    // A film that was watched before the name was typed was seen all the same.
     drafts::keepSeen(subject(), before);
     shown_ = current_;
   }
@@ -209,8 +209,8 @@ void RatingPage::setRater() {
 void RatingPage::showForm() {
   const analytics::RatingForm* shown = form();
   view_->setForm(shown);
-  source_->setText(shown != nullptr ? QString("Version %1. %2").arg(shown->version).arg(
-                                          QString::fromStdString(shown->source))
+  source_->setText(shown != nullptr
+                       ? QString("Version %1. %2").arg(shown->version).arg(QString::fromStdString(shown->source))
                    : fault_.isEmpty() ? "No forms were found: Calot is not installed completely."
                                       : fault_);
   showSubject();
@@ -223,9 +223,9 @@ void RatingPage::fillQueue() {
     return;
   }
   const bool some = which_->currentIndex() == 1;
-  queue_ = some && selected_.empty() ? std::vector<std::string>()
-                                     : filmQueue(document_->attempts(), name_.toStdString(),
-                                                 some ? selected_ : std::vector<std::string>());
+  queue_ = some && selected_.empty()
+               ? std::vector<std::string>()
+               : filmQueue(document_->attempts(), name_.toStdString(), some ? selected_ : std::vector<std::string>());
   rated_.clear();
   for (const analytics::Rating& r : ratings_) {
     RatingSubject about = subject();
@@ -312,8 +312,8 @@ void RatingPage::hideEvent(QHideEvent* event) {
 
 void RatingPage::showSubject() {
   const bool films = ofFilms();
-  for (QWidget* widget : std::initializer_list<QWidget*>{rater_, raterLabel_, which_, whichLabel_, reveal_, left_,
-                                                         middle_})
+  for (QWidget* widget :
+       std::initializer_list<QWidget*>{rater_, raterLabel_, which_, whichLabel_, reveal_, left_, middle_})
     widget->setVisible(films);
   for (QWidget* widget : std::initializer_list<QWidget*>{participant_, participantLabel_}) widget->setVisible(!films);
   const analytics::AttemptRow* const attempt = document_ ? document_->attempt(current_) : nullptr;
@@ -349,7 +349,8 @@ void RatingPage::showState() {
   store_->setText(replaces ? "Replace what was &stored" : "&Store");
   QStringList text;
   if (!queue_.empty() && rated_.size() >= queue_.size() && ofFilms()) text += "Every film is rated.";
-  if (view_->items() > 0) text += QString("%1 of %2 items are answered.").arg(view_->answers().size()).arg(view_->items());
+  if (view_->items() > 0)
+    text += QString("%1 of %2 items are answered.").arg(view_->answers().size()).arg(view_->items());
   if (ofFilms() && number() > 0)
     text += QString("%1 % of the film seen%2.")
                 .arg(percent(seen_.share()))
@@ -369,7 +370,7 @@ void RatingPage::store(bool goOn) {
     Decision decision = ratingDecision(
         {with.name, with.version, with.sha256, with.text}, rating, before,
         with.ofAttempts ? QString("film %1").arg(number()) : "by " + QString::fromStdString(about.participant));
-    // What is taken back can be changed and stored again.
+    // Answers that are taken back can be changed and stored again.
     decision.takenBack = [page = QPointer(this), about, answers = view_->answers()] {
       if (!page) return;
       std::erase_if(page->waiting_, [&](const auto& entry) { return isOf(entry.second, about); });

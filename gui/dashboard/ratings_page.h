@@ -62,15 +62,15 @@ class RatingPage : public CohortPage {
   void showState();
   void store(bool goOn);
   void dropStored();
-  [[nodiscard]] const analytics::RatingForm* form() const;      ///< or null
-  [[nodiscard]] RatingSubject subject() const;                  ///< @pre form() is not null
+  [[nodiscard]] const analytics::RatingForm* form() const;        ///< or null
+  [[nodiscard]] RatingSubject subject() const;                    ///< @pre form() is not null
   [[nodiscard]] std::optional<analytics::Rating> stored() const;  ///< of the subject @pre form() is not null
   [[nodiscard]] bool ofFilms() const { return form() == nullptr || form()->ofAttempts; }
   [[nodiscard]] int number() const;  ///< of the film in the queue, from 1; 0: it is not there
 
   std::vector<analytics::RatingForm> forms_;
-  QString fault_;                            ///< why one of the forms cannot be read
-  std::vector<analytics::Rating> ratings_;   ///< of the cohort, and what was decided since
+  QString fault_;                                                     ///< why one of the forms cannot be read
+  std::vector<analytics::Rating> ratings_;                            ///< of the cohort, and what was decided since
   std::vector<std::pair<RatingSubject, analytics::Rating>> waiting_;  ///< decided and not read back yet
   std::vector<std::string> selected_, queue_;
   std::set<std::string> rated_;  ///< of the queue

@@ -61,8 +61,7 @@ RecordingView::RecordingView(Parts with)
 
 RecordingView::~RecordingView() { replay_.reset(); }  // its thread uses the picture
 
-void RecordingView::open(const analytics::AttemptRow& attempt, const CohortDocument& document,
-                         const Figures& figures) {
+void RecordingView::open(const analytics::AttemptRow& attempt, const CohortDocument& document, const Figures& figures) {
   close("Looking for the recording …", "Looking for the recording …");
   busy_ = true;
   const auto lost = [this] {

@@ -34,8 +34,8 @@ class RecordingView : public QWidget {
   explicit RecordingView(Parts with);
   ~RecordingView() override;
 
-  /// Looks for the attempt's recording beside the cohort and in the folders that are known, on another thread, and opens
-  /// it; else missing() follows, and the view says so.
+  /// Looks for the attempt's recording beside the cohort and in the folders that are known, on another thread, and
+  /// opens it; else missing() follows, and the view says so.
   void open(const analytics::AttemptRow& attempt, const CohortDocument& document, const Figures& figures = {});
   void openFile(const std::filesystem::path& file, const std::string& attempt, const Figures& figures = {});
   /// Faults name no file, which may name a person.
@@ -47,8 +47,8 @@ class RecordingView : public QWidget {
   void toggleFreeView();
   [[nodiscard]] bool isOpen() const { return replay_->isOpen(); }
   [[nodiscard]] TimelineBar& timeline() const { return *timeline_; }
-  [[nodiscard]] const QString& text() const { return text_; }  ///< that stood last in place of a picture
-  [[nodiscard]] const std::filesystem::path& file() const { return file_; }          ///< that was opened last, or empty
+  [[nodiscard]] const QString& text() const { return text_; }                ///< that stood last in place of a picture
+  [[nodiscard]] const std::filesystem::path& file() const { return file_; }  ///< that was opened last, or empty
   [[nodiscard]] const std::optional<AttemptTrack>& track() const { return track_; }  ///< once it was read
   /// True if everything readable was read and the replay is at its target, or there is no recording.
   [[nodiscard]] bool settled() const;

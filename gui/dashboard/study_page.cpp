@@ -331,8 +331,10 @@ bool StudyPage::makeDocument(const Taker& take) {
 void StudyPage::saveAs(bool html) {
   if (!study_) return;
   const QString target =
-      html ? QFileDialog::getSaveFileName(this, "Write the study as a page (the cohort notes it for good)", "study.html", "Pages (*.html)")
-           : QFileDialog::getExistingDirectory(this, "Write study.csv, values.csv and flow.csv into (the cohort notes it for good)");
+      html ? QFileDialog::getSaveFileName(this, "Write the study as a page (the cohort notes it for good)",
+                                          "study.html", "Pages (*.html)")
+           : QFileDialog::getExistingDirectory(
+                 this, "Write study.csv, values.csv and flow.csv into (the cohort notes it for good)");
   if (!target.isEmpty()) write(target, html);
 }
 

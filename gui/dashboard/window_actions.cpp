@@ -74,8 +74,7 @@ void DashboardWindow::excludeOrInclude(const QString& reason, const QString& by)
 }
 
 void DashboardWindow::tagSelected(const QString& tag, bool add, const QString& by) {
-  if (attempts_->selected() != nullptr)
-    decide(tagDecision(chosenAttempts(), add, tag.toStdString(), by.toStdString()));
+  if (attempts_->selected() != nullptr) decide(tagDecision(chosenAttempts(), add, tag.toStdString(), by.toStdString()));
 }
 
 void DashboardWindow::changeGroup(const QString& participant, const QString& group) {
@@ -179,8 +178,8 @@ void DashboardWindow::askForRecordings() {
     showProblem("Open a cohort database first, or make one: recordings are imported into it.");
     return;
   }
-  const QStringList files =
-      QFileDialog::getOpenFileNames(this, "Import recordings (this cannot be undone)", {}, "Recordings (*.h5);;All files (*)");
+  const QStringList files = QFileDialog::getOpenFileNames(this, "Import recordings (this cannot be undone)", {},
+                                                          "Recordings (*.h5);;All files (*)");
   if (!files.isEmpty()) importRecordings(files);
 }
 
@@ -215,10 +214,11 @@ void DashboardWindow::askForTag(bool add) {
   if (by.isEmpty()) return;
   bool agreed = false;
   const QString what = chosen.size() == 1 ? "this attempt" : QString("%1 attempts").arg(chosen.size());
-  const QString tag = QInputDialog::getItem(this, add ? "Add a tag" : "Remove a tag",
-                                            (add ? "One word, to put on " : "To take off ") + what + " (Ctrl+Z undoes it):",
-                                            words, 0, add, &agreed)
-                          .trimmed();
+  const QString tag =
+      QInputDialog::getItem(this, add ? "Add a tag" : "Remove a tag",
+                            (add ? "One word, to put on " : "To take off ") + what + " (Ctrl+Z undoes it):", words, 0,
+                            add, &agreed)
+          .trimmed();
   if (!agreed || tag.isEmpty()) return;
   if (!tryTo([&] { analytics::checkTag(tag.toStdString()); })) return;
   settings::setPerson(by);

@@ -47,11 +47,10 @@ class CoursePages : public testing::Test {
       a.mode = recorder::Mode::assessment;
       a.participant = who;
       a.comparabilityKey = "touch-liver/1 device=- calibration=- simulation=1 results=1 mode=assessment";
-      cohort.storeAttempt(
-          a, {analytics::makeValue(*analytics::findCheckpoint("elapsed-time"), "", analytics::Origin::resimulated,
-                                   seconds),
-              analytics::makeValue(*analytics::findCheckpoint("critical-errors"), "", analytics::Origin::resimulated,
-                                   0.0)});
+      cohort.storeAttempt(a, {analytics::makeValue(*analytics::findCheckpoint("elapsed-time"), "",
+                                                   analytics::Origin::resimulated, seconds),
+                              analytics::makeValue(*analytics::findCheckpoint("critical-errors"), "",
+                                                   analytics::Origin::resimulated, 0.0)});
       analytics::ParticipantChange change;
       change.group = group;
       cohort.setParticipant(who, change);
@@ -60,13 +59,13 @@ class CoursePages : public testing::Test {
       add("E" + std::to_string(i), "expert", 48.0 + i);
       add("N" + std::to_string(i), "novice", 88.0 + i);
     }
-    for (const double seconds : {50.0, 50.0}) add("A1", "trainee", seconds);
-    add("M1", "trainee", 50.0);
-    add("Z1", "trainee", 120.0);
     analytics::NormRequest request;
     request.name = "clinic";
     request.by = "A. Instructor";
     cohort.storeNorm(analytics::makeNorm(cohort.listAttempts(), cohort.allValues(), {}, request, "c.db"));
+    for (const double seconds : {50.0, 50.0}) add("A1", "trainee", seconds);
+    add("M1", "trainee", 50.0);
+    add("Z1", "trainee", 120.0);
     std::ofstream(course()) << R"({"format": "calot-course", "formatVersion": 1, "name": "first", "title": "First year",
         "groups": ["trainee"], "tasks": [
         {"scene": "touch-liver", "title": "Touch", "goal": "Touch.", "criterion": {"norm": "clinic", "passes": 2}},
@@ -82,8 +81,8 @@ class CoursePages : public testing::Test {
   [[nodiscard]] std::string path() const { return folder_.filePath("c.db").toStdString(); }
   [[nodiscard]] std::string course() const { return folder_.filePath("course.json").toStdString(); }
   std::unique_ptr<DashboardWindow> opened() const {
-    auto window = std::make_unique<DashboardWindow>(
-        apps::assessProgram(), std::vector<fs::path>{fs::path(CALOT_SOURCE_DIR) / "assets"});
+    auto window = std::make_unique<DashboardWindow>(apps::assessProgram(),
+                                                    std::vector<fs::path>{fs::path(CALOT_SOURCE_DIR) / "assets"});
     window->resize(1366, 768);
     window->show();
     EXPECT_TRUE(window->openDatabase(QString::fromStdString(path())));
@@ -117,7 +116,8 @@ TEST_F(CoursePages, ShowsWhoIsBehindFirstInTheWordsOfTheCommand) {
   EXPECT_EQ(cell(people, 1, 0), "Z1");
   EXPECT_EQ(cell(people, 2, 0), "A1") << "who is not behind comes last";
   for (int row = 0; row < 3; ++row) {
-    const auto& person = *std::ranges::find(progress->people, cell(people, row, 0), &analytics::CoursePerson::participant);
+    const auto& person =
+        *std::ranges::find(progress->people, cell(people, row, 0), &analytics::CoursePerson::participant);
     EXPECT_EQ(cell(people, row, 2), analytics::proficientOf(progress->course, person));
     for (int t = 0; t < 2; ++t) {
       const auto at = static_cast<std::size_t>(t);

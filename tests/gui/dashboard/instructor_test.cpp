@@ -58,9 +58,7 @@ using test::patience;
 
 class Instructor : public test::AssessedCohort {
  protected:
-  void SetUp() override {
-    test::AssessedCohort::SetUp();
-  }
+  void SetUp() override { test::AssessedCohort::SetUp(); }
   [[nodiscard]] std::unique_ptr<DashboardWindow> opened() const {
     auto window = std::make_unique<DashboardWindow>(apps::assessProgram(),
                                                     std::vector<fs::path>{fs::path(CALOT_SOURCE_DIR) / "assets"});

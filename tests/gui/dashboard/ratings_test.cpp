@@ -113,13 +113,20 @@ class Rater : public test::AssessedCohort {
     window->findChild<RatingPage*>()->chooseForm("goals");
     return window;
   }
-  /// Plays the film until enough of it was seen.
+  /// Plays the film, by key, until enough of it was seen: a busy machine may leave out a second at the first time.
   static bool watch(DashboardWindow& window) {
     auto& page = *window.findChild<RatingPage*>();
     auto& film = *page.findChild<RecordingView*>();
     if (!QTest::qWaitFor([&] { return film.isOpen(); }, patience)) return false;
-    QTest::keyClick(&page, Qt::Key_Space, Qt::ControlModifier);
-    return QTest::qWaitFor([&] { return page.seenFilm().suffices(); }, patience);
+    for (int time = 0; time < 20 && !page.seenFilm().suffices(); ++time) {
+      film.replay().seek(0.0);
+      if (!QTest::qWaitFor([&] { return page.settled(); }, patience)) return false;
+      QTest::keyClick(&page, Qt::Key_Space, Qt::ControlModifier);
+      const auto ended = [&] { return film.replay().position().step + 1 == film.replay().position().steps; };
+      if (!QTest::qWaitFor([&] { return page.seenFilm().suffices() || ended(); }, patience)) return false;
+      QTest::qWait(200);
+    }
+    return page.seenFilm().suffices();
   }
   static void answer(QWidget& window, int score) {
     for (const char* item : {"depth-perception", "bimanual-dexterity", "efficiency", "tissue-handling", "autonomy"})
@@ -164,8 +171,8 @@ TEST_F(Rater, StoresWhatWasSeenAndGoesOnByKey) {
   EXPECT_EQ(ratings()[0].rater, "R1");
   EXPECT_EQ(ratings()[0].answers.at("efficiency"), 4);
   expectHolds(child<QLabel>(page, "rating-progress")->text().toStdString(), {"1", "2"});
-  EXPECT_NE(textAt(*window, first), textAt(*window, row(*window)).replace(QString::number(row(*window) + 1),
-                                                                         QString::number(first + 1)))
+  EXPECT_NE(textAt(*window, first),
+            textAt(*window, row(*window)).replace(QString::number(row(*window) + 1), QString::number(first + 1)))
       << "the first is marked as rated";
   EXPECT_TRUE(settings::person().isEmpty()) << "the rater's name goes nowhere else";
 }
@@ -197,7 +204,7 @@ TEST_F(Rater, TakesTheLastRatingBackWithItsAnswers) {
   QTest::keyClick(window.get(), Qt::Key_Z, Qt::ControlModifier);
   ASSERT_TRUE(shown.wait(patience));
   EXPECT_EQ(ratings().at(0).answers.at("efficiency"), 3);
-  QTest::keyClick(window.get(), Qt::Key_Z, Qt::ControlModifier | Qt::ShiftModifier);
+  QTest::keySequence(window.get(), QKeySequence::Redo);
   ASSERT_TRUE(shown.wait(patience));
   EXPECT_EQ(ratings().at(0).answers.at("efficiency"), 1) << "done again";
 }
@@ -230,8 +237,8 @@ TEST_F(Rater, StaysBlindedUnlessAskedOtherwise) {
   const auto window = opened();
   RatingPage& page = *window->findChild<RatingPage*>();
   auto& film = *page.findChild<RecordingView*>();
-  QSignalSpy failed(&film, &RecordingView::failed);
-  ASSERT_TRUE(failed.count() > 0 || failed.wait(patience));
+  ASSERT_TRUE(QTest::qWaitFor([&] { return page.settled(); }, patience));
+  EXPECT_FALSE(film.isOpen());
   const auto namesAnybody = [&] {
     for (const QLabel* label : page.findChildren<QLabel*>()) {
       if (label->isVisible() && (label->text().contains("skilled") || label->text().contains(".h5"))) return true;
