@@ -5,6 +5,7 @@
 #include <cmath>
 #include <QCryptographicHash>
 #include <QSettings>
+#include <set>
 #include <utility>
 
 #include "recorder/base/errors.h"
@@ -27,10 +28,11 @@ std::string textOf(std::optional<int> score) { return score ? std::to_string(*sc
 
 std::vector<std::string> filmQueue(const std::vector<analytics::AttemptRow>& attempts, const std::string& rater,
                                    const std::vector<std::string>& only) {
+  const std::set<std::string> named(only.begin(), only.end());
   std::vector<std::pair<QByteArray, std::string>> films;
   for (const analytics::AttemptRow& a : attempts) {
     const bool consented = std::ranges::none_of(a.leftOut, [](const auto& out) { return out.rule == "consent"; });
-    const bool wanted = only.empty() || std::ranges::find(only, a.uuid) != only.end();
+    const bool wanted = named.empty() || named.contains(a.uuid);
     if (!a.excluded && consented && wanted) films.emplace_back(hashOf({rater, a.uuid}), a.uuid);
   }
   std::ranges::sort(films);

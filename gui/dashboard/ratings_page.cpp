@@ -227,8 +227,8 @@ void RatingPage::fillQueue() {
                ? std::vector<std::string>()
                : filmQueue(document_->attempts(), name_.toStdString(), some ? selected_ : std::vector<std::string>());
   rated_.clear();
+  RatingSubject about = subject();
   for (const analytics::Rating& r : ratings_) {
-    RatingSubject about = subject();
     about.attempt = r.attempt;
     if (!r.attempt.empty() && isOf(r, about)) rated_.insert(r.attempt);
   }
