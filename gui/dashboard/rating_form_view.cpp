@@ -30,6 +30,7 @@ class AnchorLabel : public QLabel {
   }
 
  protected:
+  void mousePressEvent(QMouseEvent* event) override { event->accept(); }
   void mouseReleaseEvent(QMouseEvent* event) override {
     if (event->button() == Qt::LeftButton && rect().contains(event->position().toPoint())) button_->click();
   }

@@ -95,6 +95,8 @@ QString filmKey(const RatingSubject& s) {
   return "films/" + QString::fromLatin1(hashOf({s.database, s.attempt, s.rater}).toHex());
 }
 
+QString lastKey(const RatingSubject& s) { return "last/" + QString::fromLatin1(hashOf({s.database, s.rater}).toHex()); }
+
 }  // namespace
 
 FormAnswers answers(const RatingSubject& subject) {
@@ -123,6 +125,11 @@ void keepAnswers(const RatingSubject& subject, const FormAnswers& answers) {
 SeenFilm seen(const RatingSubject& subject) { return SeenFilm(store().value(filmKey(subject)).toString()); }
 
 void keepSeen(const RatingSubject& subject, const SeenFilm& film) { store().setValue(filmKey(subject), film.kept()); }
+
+std::string film(const RatingSubject& subject) { return store().value(lastKey(subject)).toString().toStdString(); }
+void keepFilm(const RatingSubject& subject) {
+  store().setValue(lastKey(subject), QString::fromStdString(subject.attempt));
+}
 
 QString rater() { return store().value(raterKey).toString(); }
 void keepRater(const QString& name) { store().setValue(raterKey, name); }

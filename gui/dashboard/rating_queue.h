@@ -64,6 +64,9 @@ void keepAnswers(const RatingSubject& subject, const FormAnswers& answers);
 void dropAnswers(const RatingSubject& subject);
 SeenFilm seen(const RatingSubject& subject);
 void keepSeen(const RatingSubject& subject, const SeenFilm& film);
+/// Uuid of the film that the rater had before them last; or empty.
+std::string film(const RatingSubject& subject);
+void keepFilm(const RatingSubject& subject);
 QString rater();  ///< the last one's pseudonym, or empty
 void keepRater(const QString& name);
 

@@ -233,6 +233,7 @@ void RatingPage::fillQueue() {
     if (!r.attempt.empty() && isOf(r, about)) rated_.insert(r.attempt);
   }
   markRated();
+  if (number() == 0) current_ = drafts::film(subject());  // a rater goes on where they were
   if (number() > 0)
     goTo(current_);
   else if (const auto open = std::ranges::find_if(queue_, [&](const auto& uuid) { return !rated_.contains(uuid); });
@@ -259,6 +260,7 @@ void RatingPage::markRated() {
 void RatingPage::goTo(const std::string& uuid) {
   if (uuid != current_) keepSeen();
   current_ = uuid;
+  if (form() != nullptr && ofFilms() && !uuid.empty()) drafts::keepFilm(subject());
   if (const int row = number() - 1; row >= 0) list_->setCurrentIndex(films_.index(row));
   showSubject();
   showAnswers();
