@@ -57,6 +57,7 @@ CoursePage::CoursePage()
                               "Attempts of the chosen person")) {
   another_->setToolTip("A course from a file");
   people_->setSelectionMode(QAbstractItemView::SingleSelection);
+  for (QTableWidget* table : {people_, attempts_}) table->horizontalHeader()->setHighlightSections(false);
   people_->setToolTip("Choose a person to see their attempts below");
   attempts_->setToolTip("Double-click, or press Enter, to open an attempt");
   setWidths(*attempts_, {200, 150, 170, 80});
@@ -165,7 +166,10 @@ void CoursePage::showProgress(std::shared_ptr<const CourseProgress> progress, co
     }
     const bool grouped = std::ranges::any_of(table.rows, [](const auto& row) { return !row[1].empty(); });
     people_->setColumnHidden(1, !grouped);
-    people_->resizeColumnsToContents();
+    for (int column = 0; column + 1 < people_->columnCount(); ++column) {
+      people_->resizeColumnToContents(column);
+      people_->setColumnWidth(column, people_->columnWidth(column) + theme::inType(14));
+    }
     if (!rows_.empty()) people_->setCurrentCell(current, 0);
   }
   showPerson();

@@ -33,7 +33,8 @@ std::vector<std::string> filmQueue(const std::vector<analytics::AttemptRow>& att
   for (const analytics::AttemptRow& a : attempts) {
     const bool consented = std::ranges::none_of(a.leftOut, [](const auto& out) { return out.rule == "consent"; });
     const bool wanted = named.empty() || named.contains(a.uuid);
-    if (!a.excluded && consented && wanted) films.emplace_back(hashOf({rater, a.uuid}), a.uuid);
+    if (!a.excluded && !analytics::isMotion(a) && consented && wanted)
+      films.emplace_back(hashOf({rater, a.uuid}), a.uuid);
   }
   std::ranges::sort(films);
   std::vector<std::string> queue;

@@ -15,8 +15,8 @@
 namespace calot::gui {
 
 /// Uuids of the attempts that can be rated, in an order that depends on rater and uuid alone: neither time nor person
-/// shows in it. Left out are those that are excluded, and those of people without consent to research where the cohort
-/// records it, as in packs of films. @param only these; empty: all
+/// shows in it. Left out are imported motion, which has no film, attempts that are excluded, and those of people
+/// without consent to research where the cohort records it, as in packs of films. @param only these; empty: all
 std::vector<std::string> filmQueue(const std::vector<analytics::AttemptRow>& attempts, const std::string& rater,
                                    const std::vector<std::string>& only = {});
 
