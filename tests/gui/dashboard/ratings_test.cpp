@@ -120,8 +120,10 @@ class Rater : public test::AssessedCohort {
     auto& film = *page.findChild<RecordingView*>();
     if (!QTest::qWaitFor([&] { return film.isOpen(); }, patience)) return false;
     for (int time = 0; time < 20 && !page.seenFilm().suffices(); ++time) {
+      film.replay().pause();
       film.replay().seek(0.0);
-      if (!QTest::qWaitFor([&] { return page.settled(); }, patience)) return false;
+      const auto begins = [&] { return film.replay().position().step == 0 && !film.replay().position().playing; };
+      if (!QTest::qWaitFor([&] { return begins() && page.settled(); }, patience)) return false;
       QTest::keyClick(&page, Qt::Key_Space, Qt::ControlModifier);
       const auto ended = [&] { return film.replay().position().step + 1 == film.replay().position().steps; };
       if (!QTest::qWaitFor([&] { return page.seenFilm().suffices() || ended(); }, patience)) return false;
