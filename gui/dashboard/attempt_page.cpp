@@ -126,6 +126,7 @@ void AttemptPage::connectParts() {
   connect(replay, &Replay::positionChanged, force_, [this, replay] { force_->setPosition(replay->position().time); });
   connect(recording_, &RecordingView::opened, this, [this] { figures_->setMomentsText("looking …"); });
   connect(recording_, &RecordingView::momentsFound, figures_, &FigurePanel::setMoments);
+  connect(recording_, &RecordingView::missing, this, &AttemptPage::sayMissing);
   connect(recording_, &RecordingView::failed, this, [this] {
     figures_->setMomentsText({});
     find_->setVisible(!recording_->isOpen());
@@ -169,16 +170,19 @@ void AttemptPage::read() {
   goOn_->setEnabled(false);
   force_->clear();
   figures_->setAttempt(document_, *attempt_);
-  const bool found = recording_->open(*attempt_, *document_, judgedFigures(figures_->values()));
-  find_->setVisible(!found);
-  if (found) return;
+  find_->hide();
+  recording_->open(*attempt_, *document_, judgedFigures(figures_->values()));
+}
+
+void AttemptPage::sayMissing() {
+  find_->show();
   const QString name = QString::fromStdString(attempt_->fileName);
-  recording_->close(
-      (name.isEmpty()
-           ? QString("The database names no file for this attempt.")
-           : QString("%1 is not beside the database, nor in a folder where recordings were found before.").arg(name)) +
-          "\nThe checkpoints stand; replay and timeline need the recording.",
-      "No timeline without the recording.");
+  recording_->close((name.isEmpty() ? QString("The database names no file for this attempt.")
+                                    : QString("%1 is neither beside the database nor in a folder where recordings were "
+                                              "found before, or belongs to another attempt there.")
+                                          .arg(name)) +
+                        "\nThe checkpoints stand; replay and timeline need the recording.",
+                    "No timeline without the recording.");
 }
 
 void AttemptPage::askForRecording() {

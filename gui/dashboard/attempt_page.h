@@ -45,6 +45,7 @@ class AttemptPage : public CohortPage {
  private:
   void read() override;
   void connectParts();
+  void sayMissing();  ///< of the recording
   void askForSheet();
   void startSheet(const QString& what,
                   std::function<QString(const analytics::ReportDocument&, LongWork::Control&)> then);
