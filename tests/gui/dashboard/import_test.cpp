@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <fmt/format.h>
+
 #include <filesystem>
 #include <fstream>
 #include <QDir>
@@ -11,7 +13,11 @@
 #include <QTest>
 #include <vector>
 
+#include "analytics/checkpoints/collector.h"
 #include "apps/calot-dashboard/assess_program.h"
+#include "gui/attempt/stretch_figures.h"
+#include "gui/dashboard/cohort_document.h"
+#include "recorder/recording/reader.h"
 #include "tests/gui/dashboard/support/recorded.h"
 #include "tests/support/message.h"
 
@@ -143,6 +149,50 @@ TEST_F(Import, StoppingEndsAProgramThatHangsAndDropsTheRest) {
   ASSERT_EQ(results.size(), 1U);
   EXPECT_EQ(results[0].text, "stopped");
   EXPECT_EQ(queue.total(), 1);
+}
+
+TEST_F(Import, ABranchIsMadeByAPerformerThenAssessedAndComparedFromWhereItParts) {
+  const std::filesystem::path root = folder_.path().toStdString();
+  const std::string parent = test::recordPerformer(root / "one.h5", 1.0);
+  ImportQueue queue(apps::assessProgram());
+  std::vector<ImportResult> results;
+  bool done = false;
+  QObject::connect(&queue, &ImportQueue::fileDone, [&](const ImportResult& r) { results.push_back(r); });
+  QObject::connect(&queue, &ImportQueue::allDone, [&] { done = true; });
+  queue.configure(CALOT_PROGRAM, folder_.filePath("c.db"), 1);
+  const QString recording = folder_.filePath("one.h5");
+  const QString file = branchFile(recording, "skilled", 0.5);
+  EXPECT_EQ(file, folder_.filePath("one-skilled-from-0.5.h5"));
+  queue.addBranch({recording, 0.5, "skilled", 1, file});
+  queue.addBranch({folder_.filePath("gone.h5"), 0.5, "skilled", 1, folder_.filePath("none.h5")});
+  EXPECT_TRUE(queue.making());
+  ASSERT_TRUE(QTest::qWaitFor([&] { return done; }, 60000));
+  ASSERT_EQ(results.size(), 2U);
+  EXPECT_EQ(results[0].kind, Kind::stored) << results[0].text.toStdString();
+  EXPECT_EQ(results[1].kind, Kind::failed);
+  expectHolds(results[1].text.toStdString(), {"gone.h5"});
+  EXPECT_NE(branchFile(recording, "skilled", 0.5), file) << "that name is taken";
+
+  const CohortDocument document(folder_.filePath("c.db").toStdString());
+  ASSERT_EQ(document.attempts().size(), 1U);
+  EXPECT_EQ(document.attempts()[0].parent, parent);
+  EXPECT_TRUE(document.attempts()[0].synthetic);
+  recorder::Recording before(root / "one.h5"), branch(file.toStdString());
+  const AttemptTrack a = readTrack(before), b = readTrack(branch);
+  ASSERT_TRUE(partingTime(a, b));
+  EXPECT_NEAR(*partingTime(a, b), 0.5, 1e-9);
+  EXPECT_FALSE(partingTime(a, a)) << "an attempt does not part from itself";
+  // The whole path is the checkpoint's, which takes every sample.
+  int compared = 0;
+  for (const StretchFigure& figure : stretchFigures({&a, &a}, {0.0, 0.0}, a.seconds)) {
+    EXPECT_EQ(figure.text[0], figure.text[1]);
+    for (const analytics::CheckpointValue& value : analytics::valuesFromObservables(before)) {
+      if (value.name != "path-length" || figure.title != "path of the " + value.subject + " tip") continue;
+      EXPECT_EQ(figure.text[0], fmt::format("{:.0f} mm", 1e3 * *value.value));
+      ++compared;
+    }
+  }
+  EXPECT_EQ(compared, 2);
 }
 
 TEST_F(Import, FoldersStandForTheRecordingsInThem) {
