@@ -140,6 +140,17 @@ def figure_name(row):
     return f"{row['name']} {row['subject']}".strip()
 
 
+def reason(done):
+    """Why a command failed: the last line of its errors, or what its report says of the recording."""
+    lines = done.stderr.strip().splitlines()
+    if lines:
+        return lines[-1]
+    try:
+        return json.loads(done.stdout)["recordings"][0]["message"]
+    except (ValueError, KeyError, IndexError):
+        return "no reason was given"
+
+
 def attempt(study, discretisation, profile, seed, keep):
     """Records and assesses one attempt, and prints a line on it."""
     name = study.name(discretisation, profile, seed)
@@ -153,7 +164,7 @@ def attempt(study, discretisation, profile, seed, keep):
                           ("assess", ["assess", recording, "--cohort", cohort, "--threads", "1", "--json"])):
         done = subprocess.run([study.calot, *command], check=False, capture_output=True, text=True)
         if done.returncode != 0:
-            print(f"FAILED {name}: calot {word}: exit {done.returncode}: {(done.stderr.strip().splitlines() or ['no word'])[-1]}")
+            print(f"FAILED {name}: calot {word}: exit {done.returncode}: {reason(done)}")
             return
         said[word] = json.loads(done.stdout)
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
