@@ -7,6 +7,7 @@
 #include <cmath>
 #include <exception>
 
+#include "analytics/checkpoints/collector.h"
 #include "analytics/checkpoints/replay_words.h"
 #include "gui/moments/moments.h"
 #include "gui/view/thread_rank.h"
@@ -51,41 +52,52 @@ std::string withHand(std::string text, const Event& event) {
 /// Largest force and the way of each hand, bin by bin.
 class Tracer {
  public:
-  Tracer(AttemptTrack& track, std::uint64_t stepsPerBin, double stepSeconds)
-      : track_(track), stepsPerBin_(stepsPerBin), stepSeconds_(stepSeconds) {}
+  Tracer(AttemptTrack& track, const recorder::AttemptHeader& header, std::uint64_t stepsPerBin, double stepSeconds)
+      : track_(track),
+        stepsPerBin_(stepsPerBin),
+        stepSeconds_(stepSeconds),
+        motion_{analytics::trackFor(header), analytics::trackFor(header)} {}
 
   void add(const recorder::RecordedStep& step) {
-    for (std::size_t h = 0; h < handCount; ++h) {
-      for (const recorder::TickOutcome& tick : step.ticks) force_[h] = std::max(force_[h], tick.hand[h].force.norm());
-      const Vec3& tip = step.result.hand[h].tipReal;
-      const InstrumentKind now = step.result.hand[h].instrument;
-      // Another instrument, or one that was not there, is no movement.
-      if (any_ && now != InstrumentKind::none && now == instrument_[h]) way_[h] += (tip - tip_[h]).norm();
-      tip_[h] = tip;
-      instrument_[h] = now;
+    for (const recorder::TickOutcome& tick : step.ticks) {
+      for (std::size_t h = 0; h < handCount; ++h) force_[h] = std::max(force_[h], tick.hand[h].force.norm());
     }
-    any_ = true;
+    for (const TickSamples& tick : step.samples) {
+      for (std::size_t h = 0; h < handCount; ++h) motion_[h].add(tick.hand[h]);
+    }
     if (++steps_ == stepsPerBin_) finishBin();
   }
   void finishBin() {
     if (steps_ == 0) return;
-    for (std::size_t h = 0; h < handCount; ++h) {
-      track_.hand[h].force.push_back(force_[h]);
-      track_.hand[h].speed.push_back(way_[h] / (static_cast<double>(steps_) * stepSeconds_));
-    }
+    for (std::size_t h = 0; h < handCount; ++h) track_.hand[h].force.push_back(force_[h]);
     force_.fill(0.0);
-    way_.fill(0.0);
     steps_ = 0;
+  }
+  /// Speeds, of the filtered motion: noise and tremor are no way. @pre every bin is finished
+  void finish() {
+    const double bin = static_cast<double>(stepsPerBin_) * stepSeconds_;
+    for (std::size_t h = 0; h < handCount; ++h) {
+      HandTrace& hand = track_.hand[h];
+      hand.speed.assign(hand.force.size(), 0.0);
+      if (hand.speed.empty()) return;
+      for (const analytics::MotionSegment& segment : motion_[h].motion().segments) {
+        for (std::size_t i = 1; i < segment.filtered.size(); ++i) {
+          const double middle =
+              analytics::gridTime(segment.first + static_cast<std::int64_t>(i), 1.0) - 0.5 / analytics::motionRate;
+          const auto at = std::min(static_cast<std::size_t>(middle / bin), hand.speed.size() - 1);
+          const double length = std::min(bin, track_.seconds - static_cast<double>(at) * bin);  // the last is shorter
+          hand.speed[at] += analytics::lengthOf(segment.filtered[i] - segment.filtered[i - 1]) / length;
+        }
+      }
+    }
   }
 
  private:
   AttemptTrack& track_;
   std::uint64_t stepsPerBin_, steps_ = 0;
   double stepSeconds_;
-  bool any_ = false;
-  std::array<double, handCount> force_{}, way_{};
-  std::array<Vec3, handCount> tip_{Vec3::Zero(), Vec3::Zero()};
-  std::array<InstrumentKind, handCount> instrument_{};
+  std::array<analytics::MotionTrack, handCount> motion_;
+  std::array<double, handCount> force_{};
 };
 
 }  // namespace
@@ -304,7 +316,7 @@ AttemptTrack readTrack(recorder::Recording& recording,
   track.bin = static_cast<double>(stepsPerBin) * stepSeconds;
   const SubjectNames names = analytics::subjectNames(recorder::sceneFromAssets(header.assets).description);
   recorder::RecordedJudge judge(header);
-  Tracer tracer(track, stepsPerBin, stepSeconds);
+  Tracer tracer(track, header, stepsPerBin, stepSeconds);
   for (std::uint64_t n = 0; n < steps; ++n) {
     const recorder::RecordedStep& step = recording.step(n);
     const double end = static_cast<double>(n + 1) * stepSeconds;
@@ -320,6 +332,7 @@ AttemptTrack readTrack(recorder::Recording& recording,
     if (progress && (n % 100 == 99 || n + 1 == steps)) progress(n + 1, steps);
   }
   tracer.finishBin();
+  tracer.finish();
   if (track.phases.size() == 1 && track.phases[0].phase == Phase::none) track.phases.clear();
   return track;
 }

@@ -131,7 +131,7 @@ struct TrackEvent {
 /// One hand's values over bins of equal length.
 struct HandTrace {
   std::vector<double> force;  ///< largest force on the hand within the bin (N)
-  std::vector<double> speed;  ///< way of the real tip within the bin, over its length (m/s)
+  std::vector<double> speed;  ///< way of the real tip within the bin, filtered as figures are, over its length (m/s)
 };
 
 struct AttemptTrack {

@@ -44,6 +44,8 @@ std::string signedText(double difference, const std::string& magnitude, const st
 
 StretchFigure quantity(std::string title, std::array<double, 2> values, int digits, const std::string& unit) {
   StretchFigure figure{std::move(title), {}, {}};
+  const double scale = std::pow(10.0, digits);
+  for (double& value : values) value = std::round(value * scale) / scale;  // the difference is of what is shown
   for (std::size_t i = 0; i < 2; ++i) figure.text[i] = fmt::format("{:.{}f} {}", values[i], digits, unit);
   const double difference = values[1] - values[0];
   const std::string magnitude = fmt::format("{:.{}f}", std::abs(difference), digits);

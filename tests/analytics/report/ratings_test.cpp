@@ -125,11 +125,13 @@ TEST(Ratings, areTakenBackAndBothIsAudited) {
   ASSERT_EQ(database.ratings().size(), 1U);
   EXPECT_EQ(database.ratings()[0].rater, "R2") << "of the other rater nothing is taken";
   expectFault(ErrorKind::refused, path, {"R1"}, [&] { database.removeRating(rating); });
-  SQLite::Database raw(path);
-  EXPECT_EQ(raw.execAndGet("SELECT count(*) FROM audit WHERE action = 'rating-remove'").getInt(), 1);
-  SQLite::Statement seen(raw, "SELECT detail FROM audit WHERE action = 'rating' AND detail LIKE '%R1%'");
-  ASSERT_TRUE(seen.executeStep());
-  expectHolds(seen.getColumn(0).getString(), {"85"});
+  {
+    SQLite::Database raw(path);
+    EXPECT_EQ(raw.execAndGet("SELECT count(*) FROM audit WHERE action = 'rating-remove'").getInt(), 1);
+    SQLite::Statement seen(raw, "SELECT detail FROM audit WHERE action = 'rating' AND detail LIKE '%R1%'");
+    ASSERT_TRUE(seen.executeStep());
+    expectHolds(seen.getColumn(0).getString(), {"85"});
+  }  // a statement that reads keeps others from writing
   database.storeRating(stored(form), rating, false);
   EXPECT_EQ(database.ratings().size(), 2U) << "and stored again";
 }
