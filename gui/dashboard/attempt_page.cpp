@@ -82,7 +82,7 @@ AttemptPage::AttemptPage()
       figures_(new FigurePanel),
       recording_(new RecordingView({})),
       find_(parts::named("find-recording", new QPushButton("Find the &recording …"))),
-      goOn_(parts::named("go-on", new QPushButton("&Go on from here …"))),
+      goOn_(parts::named("go-on", new QPushButton("Go &on from here …"))),
       force_(new TraceChart("force-trace", "Force on the hand (N): left solid, right dashed")) {
   static_cast<QBoxLayout*>(recording_->layout())->insertWidget(1, find_, 0, Qt::AlignHCenter);
   goOn_->setToolTip("A branch: a performer, or a person in the trainer, does what comes now in another way");
