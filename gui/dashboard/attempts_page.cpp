@@ -157,6 +157,10 @@ QLayout* AttemptsPage::buildFilters() {
   operators_->addItems({"People and synthetic", "Not synthetic", "Synthetic only"});
   tag_->setToolTip("Tags are put on attempts by the menu Edit, or by calot attempt tag");
   connect(search_, &QLineEdit::textChanged, this, [this] { filter(); });
+  connect(search_, &QLineEdit::returnPressed, this, [this] {
+    if (const analytics::AttemptRow* const found = selected())
+      emit attemptActivated(QString::fromStdString(found->uuid));
+  });
   for (QComboBox* choice : {which_, verdict_, operators_, tag_})
     connect(choice, &QComboBox::currentIndexChanged, this, [this] { filter(); });
   return parts::row({which_,
