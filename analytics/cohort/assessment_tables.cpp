@@ -77,33 +77,67 @@ void CohortDatabase::withdrawProtocol(const std::string& sha256, const std::stri
   });
 }
 
+namespace {
+
+/// The rows of a completed form: by a rater about an attempt, or by a participant.
+struct RatingRows {
+  const char* table;
+  const char* where;
+  std::vector<Cell> key;
+  std::string about;  ///< "attempt UUID"
+  std::string by;     ///< " by \"R1\"", or empty
+};
+
+/// @throws Error (refused) where there is no such attempt or participant
+RatingRows rowsOf(SQLite::Database& db, const std::string& path, std::int64_t form, const Rating& rating) {
+  const bool ofAttempt = !rating.attempt.empty();
+  const std::int64_t subject = ofAttempt ? attemptId(db, rating.attempt) : participantId(db, rating.participant);
+  RatingRows rows{
+      ofAttempt ? "rating" : "questionnaire",
+      ofAttempt ? "form = ?1 AND attempt = ?2 AND rater = ?3" : "form = ?1 AND participant = ?2",
+      {form, subject},
+      ofAttempt ? "attempt " + recorder::shown(rating.attempt) : fmt::format("participant \"{}\"", rating.participant),
+      ofAttempt ? fmt::format(" by \"{}\"", rating.rater) : ""};
+  if (subject < 0) throw Error(ErrorKind::refused, Where{path}, fmt::format("no {}", rows.about));
+  if (ofAttempt) rows.key.emplace_back(rating.rater);
+  return rows;
+}
+
+/// When the form was completed; or nothing.
+std::vector<std::string> ratedOn(SQLite::Database& db, const RatingRows& rows) {
+  return firstTexts(db, fmt::format("SELECT rated_utc FROM {} WHERE {} LIMIT 1", rows.table, rows.where), rows.key);
+}
+
+void removeRows(SQLite::Database& db, const RatingRows& rows) {
+  execute(db, fmt::format("DELETE FROM {} WHERE {}", rows.table, rows.where), rows.key);
+}
+
+void auditRating(SQLite::Database& db, const char* action, const std::string& form, std::uint32_t version,
+                 const Rating& rating) {
+  std::string detail = fmt::format("{} {}", form, version);
+  if (!rating.attempt.empty()) detail += " by " + rating.rater;
+  if (rating.filmSeen) detail += fmt::format(", {:.0f} % of the film seen", 100.0 * *rating.filmSeen);
+  audit(db, action, rating.attempt.empty() ? rating.participant : rating.attempt, detail);
+}
+
+}  // namespace
+
 void tables::putRating(SQLite::Database& db, const std::string& path, const StoredDocument& form, const Rating& rating,
                        bool replace) {
   checkPseudonym(rating.attempt.empty() ? rating.participant : rating.rater);
   const std::int64_t formRow = formId(db, path, form);
-  const bool ofAttempt = !rating.attempt.empty();
-  const std::int64_t subject = ofAttempt ? attemptId(db, rating.attempt) : participantId(db, rating.participant);
-  const std::string about =
-      ofAttempt ? "attempt " + recorder::shown(rating.attempt) : fmt::format("participant \"{}\"", rating.participant);
-  if (subject < 0) throw Error(ErrorKind::refused, Where{path}, fmt::format("no {}", about));
-  const char* table = ofAttempt ? "rating" : "questionnaire";
-  const char* whose = ofAttempt ? "form = ?1 AND attempt = ?2 AND rater = ?3" : "form = ?1 AND participant = ?2";
-  std::vector<Cell> key{formRow, subject};
-  if (ofAttempt) key.emplace_back(rating.rater);
-  const std::vector<std::string> before =
-      firstTexts(db, fmt::format("SELECT rated_utc FROM {} WHERE {} LIMIT 1", table, whose), key);
-  if (!before.empty()) {
-    if (!replace) {
+  const RatingRows rows = rowsOf(db, path, formRow, rating);
+  if (const std::vector<std::string> before = ratedOn(db, rows); !before.empty()) {
+    if (!replace)
       throw Error(ErrorKind::refused, Where{path},
-                  fmt::format("{} was rated with {} on {} already{}", about, form.name, before.front(),
-                              ofAttempt ? fmt::format(" by \"{}\"", rating.rater) : ""),
+                  fmt::format("{} was rated with {} on {} already{}", rows.about, form.name, before.front(), rows.by),
                   {Remedy::replaceExisting});
-    }
-    execute(db, fmt::format("DELETE FROM {} WHERE {}", table, whose), key);
+    removeRows(db, rows);
   }
   const std::string now = nowUtc();
+  const std::int64_t subject = std::get<std::int64_t>(rows.key[1]);
   for (const auto& [item, score] : rating.answers) {
-    if (ofAttempt) {
+    if (!rating.attempt.empty()) {
       execute(db, "INSERT INTO rating (form, attempt, rater, item, score, rated_utc) VALUES (?, ?, ?, ?, ?, ?)",
               {formRow, subject, rating.rater, item, score, now});
     } else {
@@ -111,8 +145,20 @@ void tables::putRating(SQLite::Database& db, const std::string& path, const Stor
               {formRow, subject, item, score, now});
     }
   }
-  audit(db, "rating", ofAttempt ? rating.attempt : rating.participant,
-        fmt::format("{} {}{}", form.name, form.version, ofAttempt ? " by " + rating.rater : ""));
+  auditRating(db, "rating", form.name, form.version, rating);
+}
+
+void CohortDatabase::removeRating(const Rating& rating) {
+  connection_->change([&](SQLite::Database& db) {
+    const std::int64_t form =
+        firstNumber(db, "SELECT id FROM form WHERE name = ? AND version = ?", {rating.form, rating.formVersion});
+    const RatingRows rows = rowsOf(db, path(), form, rating);
+    if (ratedOn(db, rows).empty())
+      throw Error(ErrorKind::refused, Where{path()},
+                  fmt::format("{} was not rated with {}{}", rows.about, recorder::shown(rating.form), rows.by));
+    removeRows(db, rows);
+    auditRating(db, "rating-remove", rating.form, rating.formVersion, rating);
+  });
 }
 
 void CohortDatabase::storeRating(const StoredDocument& form, const Rating& rating, bool replace) {

@@ -174,7 +174,8 @@ struct Rating {
   std::string rater;        ///< pseudonym, with an attempt
   std::string participant;  ///< pseudonym, without one
   std::map<std::string, int> answers;
-  std::string ratedUtc;  ///< set by the database
+  std::string ratedUtc = {};            ///< set by the database
+  std::optional<double> filmSeen = {};  ///< share of the film that ran before the rater, for the audit; not read back
 };
 
 /// Pass mark of one figure within a norm, in SI.
@@ -328,6 +329,9 @@ class CohortDatabase {
   /// Several in one transaction: all of them or none. @param ratings each with the number of its form
   void storeRatings(const std::vector<StoredDocument>& forms,
                     const std::vector<std::pair<std::size_t, Rating>>& ratings, bool replace);
+  /// Takes a completed form back, audited. @param rating its form, version, and attempt with rater, or participant
+  /// @throws Error (refused) where it is not there
+  void removeRating(const Rating& rating);
   [[nodiscard]] std::vector<Rating> ratings() const;        ///< by form, version, attempt, rater, participant
   [[nodiscard]] std::vector<StoredDocument> forms() const;  ///< by name, version
 

@@ -28,7 +28,6 @@ inline gui::AssessProgram assessProgram() {
   program.refused = [](int exitCode) {
     return exitCode == static_cast<int>(ExitCode::damaged) || exitCode == static_cast<int>(ExitCode::no);
   };
-  program.typed = [](const QString& database) { return "calot assess recording.h5 --cohort " + database; };
   return program;
 }
 

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // calot course: how far everybody is in a course, who is behind, and what a trainee still lacks.
-#include <algorithm>
 #include <set>
 
 #include "analytics/assessment/course_progress.h"
-#include "analytics/report/report_document.h"
+#include "analytics/report/course_tables.h"
 #include "apps/calot/command.h"
 #include "apps/calot/environment.h"
 #include "recorder/base/counted.h"
@@ -19,7 +18,6 @@ using analytics::CoursePerson;
 using analytics::CourseProgress;
 using analytics::CourseTask;
 using analytics::TaskStanding;
-using analytics::TaskState;
 
 struct CourseOptions {
   std::string database, course, participant, group;
@@ -71,102 +69,41 @@ Json standingJson(const CourseTask& task, const TaskStanding& s, const std::map<
           {"not_counted", notCounted}};
 }
 
-bool isBehind(const CoursePerson& person) {
-  return std::any_of(person.tasks.begin(), person.tasks.end(), [](const TaskStanding& s) { return s.behind; });
-}
-
 Json progressJson(const CourseProgress& progress) {
   Json people = Json::array();
   for (const CoursePerson& person : progress.people) {
     Json tasks = Json::array();
     for (std::size_t t = 0; t < person.tasks.size(); ++t)
       tasks.push_back(standingJson(progress.course.tasks[t], person.tasks[t], person.uncounted[t]));
-    people.push_back(
-        {{"participant", person.participant}, {"group", person.group}, {"behind", isBehind(person)}, {"tasks", tasks}});
+    people.push_back({{"participant", person.participant},
+                      {"group", person.group},
+                      {"behind", analytics::isBehind(person)},
+                      {"tasks", tasks}});
   }
   return {{"course", progress.course.name},  {"title", progress.course.title}, {"day", progress.today},
           {"synthetic", progress.synthetic}, {"tasks", tasksJson(progress)},   {"participants", people}};
 }
 
-/// "1/2", "0/2, behind", "proficient", "lapsed, 0/2"; of a task without a criterion the tries.
-std::string cellOf(const CourseTask& task, const TaskStanding& s) {
-  if (s.state == TaskState::notBegun && !s.behind) return "-";
-  if (!task.criterion) return recorder::counted(s.attempts.size(), "try", "tries");
-  if (isProficient(s.state)) return nameOf(s.state);
-  return fmt::format("{}{}/{}{}", s.state == TaskState::lapsed ? "lapsed, " : "", s.run, task.criterion->passes,
-                     s.behind ? ", behind" : "");
-}
-
-/// "Behind: P3, Carve (due on 2026-02-01).", a sentence for each person whom it concerns.
-void printWho(const CourseProgress& progress, const std::string& heading, std::ostream& out,
-              std::string (*sinceOf)(const TaskStanding&)) {
-  for (const CoursePerson& person : progress.people) {
-    std::vector<std::string> tasks;
-    for (std::size_t t = 0; t < person.tasks.size(); ++t) {
-      if (const std::string since = sinceOf(person.tasks[t]); !since.empty())
-        tasks.push_back(fmt::format("{} ({})", progress.course.tasks[t].title, since));
-    }
-    if (!tasks.empty())
-      out << wrappedText(fmt::format("{}: {}, {}.", heading, person.participant, fmt::join(tasks, ", ")),
-                         terminalColumns(), 2)
-          << '\n';
-  }
+void printNotes(const std::vector<std::string>& notes, std::ostream& out) {
+  for (const std::string& note : notes) out << wrappedText(note, terminalColumns(), 2) << '\n';
 }
 
 void printEverybody(const CourseProgress& progress, std::ostream& out) {
-  std::vector<std::string> columns{"=participant", "=group"};
-  for (const CourseTask& task : progress.course.tasks) columns.push_back("=" + task.title);
-  analytics::ReportTable table = analytics::tableOf("", columns);
-  const bool alike = std::all_of(progress.people.begin(), progress.people.end(),
-                                 [&](const CoursePerson& p) { return p.group == progress.people.front().group; });
-  std::size_t uncounted = 0;
-  for (const CoursePerson& person : progress.people) {
-    std::vector<std::string>& row = table.rows.emplace_back(std::vector{person.participant, alike ? "" : person.group});
-    for (std::size_t t = 0; t < person.tasks.size(); ++t) {
-      row.push_back(cellOf(progress.course.tasks[t], person.tasks[t]));
-      for (const auto& [reason, count] : person.uncounted[t]) uncounted += count;
-    }
-  }
-  if (!progress.people.empty()) table.print(out, terminalColumns());
-  printWho(progress, "Behind", out,
-           [](const TaskStanding& s) { return s.behind ? "due on " + s.dueDay : std::string(); });
-  printWho(progress, "Retention test", out, [](const TaskStanding& s) {
-    return s.state == TaskState::retentionDue ? "due since " + s.retentionDay : std::string();
-  });
-  if (uncounted > 0)
+  std::vector<const CoursePerson*> people;
+  for (const CoursePerson& person : progress.people) people.push_back(&person);
+  if (!people.empty()) analytics::courseTable(progress, people).print(out, terminalColumns());
+  printNotes(analytics::courseNotes(progress), out);
+  if (const std::size_t uncounted = analytics::notCounted(progress); uncounted > 0)
     out << fmt::format("{} not counted; --participant gives the reasons\n", recorder::counted(uncounted, "attempt"));
 }
 
 /// The attempts of one person, and what is missing.
 void printPerson(const CourseProgress& progress, const CoursePerson& person, std::ostream& out) {
-  analytics::ReportTable table = analytics::tableOf("", {"=task", "=start", "=result", "in a row", "=because"});
-  std::vector<std::string> lines;
-  for (std::size_t t = 0; t < person.tasks.size(); ++t) {
-    const CourseTask& task = progress.course.tasks[t];
-    const TaskStanding& s = person.tasks[t];
-    for (const analytics::CourseAttempt& a : s.attempts) {
-      const std::string result = !task.criterion ? "not judged" : (a.passed ? "passed" : "failed");
-      const std::string effect = nameOf(a.effect);
-      table.rows.push_back(
-          {task.title, a.startUtc,
-           !task.criterion || effect == "counted" || effect == result ? result : result + ", " + effect,
-           task.criterion ? fmt::format("{}/{}", a.run, task.criterion->passes) : "", a.failure});
-    }
-    if (!s.missing.empty()) lines.push_back(s.missing + ".");
-    if (s.behind) lines.push_back(fmt::format("{}: behind, due on {}.", task.title, s.dueDay));
-    if (s.early > 0)
-      lines.push_back(fmt::format("{}: {} before the task was open; {}.", task.title,
-                                  recorder::counted(s.early, "attempt"), s.early == 1 ? "it counts" : "they count"));
-    for (const auto& [reason, count] : person.uncounted[t])
-      lines.push_back(fmt::format("{}: {} not counted: {}.", task.title, recorder::counted(count, "attempt"), reason));
-  }
-  if (!table.rows.empty()) {
+  if (const analytics::ReportTable table = analytics::courseAttempts(progress, person); !table.rows.empty()) {
     table.print(out, terminalColumns());
     out << '\n';
   }
-  if (std::all_of(person.tasks.begin(), person.tasks.end(), [](const TaskStanding& s) { return s.missing.empty(); }))
-    lines.insert(lines.begin(), "Nothing is missing.");
-  for (const std::string& line : lines) out << wrappedText(line, terminalColumns(), 2) << '\n';
+  printNotes(analytics::personNotes(progress, person), out);
 }
 
 /// Leaves those that the options name. @throws Error (refused) where nobody is left

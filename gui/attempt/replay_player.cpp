@@ -15,6 +15,7 @@
 #include "recorder/formats/scene_assets.h"
 #include "recorder/kept/kept_engine.h"
 #include "recorder/recorded_results.h"
+#include "recorder/recording/recording_facts.h"
 #include "sim/scene/version.h"
 
 namespace calot::gui {
@@ -332,11 +333,18 @@ fs::path findRecording(const analytics::AttemptRow& attempt, const fs::path& dat
   if (name.empty() || name.extension() != ".h5") return {};
   std::vector<fs::path> places{database.parent_path()};
   places.insert(places.end(), folders.begin(), folders.end());
+  fs::path unreadable;
   for (const fs::path& place : places) {
+    const fs::path file = place / name;
     std::error_code ignored;
-    if (fs::is_regular_file(place / name, ignored)) return place / name;
+    if (!fs::is_regular_file(file, ignored)) continue;
+    try {
+      if (recorder::identify(file).attempt == attempt.uuid) return file;
+    } catch (const Error&) {
+      if (unreadable.empty()) unreadable = file;  // whoever opens it says why
+    }
   }
-  return {};
+  return unreadable;
 }
 
 recorder::Recording openRecording(const fs::path& file, const std::string& attempt) {

@@ -153,7 +153,9 @@ inline constexpr std::uint64_t maxBins = 1500;  ///< of a trace: more than a scr
 AttemptTrack readTrack(recorder::Recording& recording,
                        const std::function<void(std::uint64_t, std::uint64_t)>& progress = {});
 
-/// The file of this name beside the database, or in one of the folders, in their order; empty where there is none.
+/// The attempt's recording: the file of its name beside the database, or in one of the folders, in their order, that
+/// holds this attempt. Where none does, the first one of the name that cannot be read; else empty. Reads the files in
+/// child processes: not for an interface's thread.
 std::filesystem::path findRecording(const analytics::AttemptRow& attempt, const std::filesystem::path& database,
                                     const std::vector<std::filesystem::path>& folders);
 

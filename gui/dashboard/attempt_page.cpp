@@ -132,6 +132,10 @@ void AttemptPage::connectParts() {
     figures_->setMoments(moments);
     goOn();
   });
+  connect(recording_, &RecordingView::missing, this, [this, goOn] {
+    sayMissing();
+    goOn();
+  });
   connect(recording_, &RecordingView::failed, this, [this, goOn] {
     figures_->setMomentsText({});
     find_->setVisible(!recording_->isOpen());
@@ -186,16 +190,19 @@ void AttemptPage::read() {
   goOn_->setEnabled(false);
   force_->clear();
   figures_->setAttempt(document_, *attempt_);
-  const bool found = recording_->open(*attempt_, *document_, judgedFigures(figures_->values()));
-  find_->setVisible(!found);
-  if (found) return;
+  find_->hide();
+  recording_->open(*attempt_, *document_, judgedFigures(figures_->values()));
+}
+
+void AttemptPage::sayMissing() {
+  find_->show();
   const QString name = QString::fromStdString(attempt_->fileName);
-  recording_->close(
-      (name.isEmpty()
-           ? QString("The database names no file for this attempt.")
-           : QString("%1 is not beside the database, nor in a folder where recordings were found before.").arg(name)) +
-          "\nThe checkpoints stand; replay and timeline need the recording.",
-      "No timeline without the recording.");
+  recording_->close((name.isEmpty() ? QString("The database names no file for this attempt.")
+                                    : QString("%1 is neither beside the database nor in a folder where recordings were "
+                                              "found before, or belongs to another attempt there.")
+                                          .arg(name)) +
+                        "\nThe checkpoints stand; replay and timeline need the recording.",
+                    "No timeline without the recording.");
 }
 
 void AttemptPage::askForRecording() {

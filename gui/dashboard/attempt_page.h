@@ -48,6 +48,7 @@ class AttemptPage : public CohortPage {
   void read() override;
   void connectParts();
   void whenRead(std::function<void()> action);  ///< of the recording: at once where there is none
+  void sayMissing();                            ///< of the recording
   void startSheet(const QString& what,
                   std::function<QString(const analytics::ReportDocument&, LongWork::Control&)> then);
 

@@ -155,7 +155,7 @@ QLayout* AttemptsPage::buildFilters() {
   verdict_->addItem("All verdicts");
   for (const Verdict verdict : verdicts) verdict_->addItem(badgeText(verdict));
   operators_->addItems({"People and synthetic", "Not synthetic", "Synthetic only"});
-  tag_->setToolTip("Tags are put on attempts by the menu Edit, or by calot attempt tag");
+  tag_->setToolTip("The menu Edit puts tags on attempts, and takes them off");
   connect(search_, &QLineEdit::textChanged, this, [this] { filter(); });
   connect(search_, &QLineEdit::returnPressed, this, [this] {
     if (const analytics::AttemptRow* const found = selected())
@@ -313,17 +313,18 @@ bool AttemptsPage::makeDocument(const Taker& take) {
   return true;
 }
 
-void AttemptsPage::selectNext() {
-  const int row = table_->currentIndex().row() + 1;
-  if (row < filter_.rowCount()) table_->selectRow(row);
-}
-
 std::vector<analytics::AttemptRow> AttemptsPage::selectedAll() const {
   QModelIndexList rows = table_->selectionModel()->selectedRows();
   std::sort(rows.begin(), rows.end());
   std::vector<analytics::AttemptRow> chosen;
   for (const QModelIndex& row : rows) chosen.push_back(attempts_.attempt(filter_.mapToSource(row).row()));
   return chosen;
+}
+
+std::vector<std::string> AttemptsPage::selectedUuids() const {
+  std::vector<std::string> uuids;
+  for (const analytics::AttemptRow& attempt : selectedAll()) uuids.push_back(attempt.uuid);
+  return uuids;
 }
 
 const analytics::AttemptRow* AttemptsPage::selected() const {

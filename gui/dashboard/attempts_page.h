@@ -81,9 +81,9 @@ class AttemptsPage : public CohortPage {
   /// Shows a document at once; the first attempt is selected.
   void setDocument(std::shared_ptr<const CohortDocument> document) override;
   void focusSearch();
-  void selectNext();  ///< the row below
   /// All that are selected, in the table's order.
   [[nodiscard]] std::vector<analytics::AttemptRow> selectedAll() const;
+  [[nodiscard]] std::vector<std::string> selectedUuids() const;
   [[nodiscard]] const analytics::AttemptRow* selected() const;  ///< or null
   /// Selects an attempt; filters that hide it are taken away.
   void select(const QString& uuid);

@@ -15,12 +15,12 @@
 #include <QTabBar>
 #include <QTabWidget>
 #include <QTimer>
-#include <QUndoStack>
 #include <QUrl>
 
 #include "gui/attempt/replay_player.h"
 #include "gui/dashboard/attempt_page.h"
 #include "gui/dashboard/attempts_page.h"
+#include "gui/dashboard/course_page.h"
 #include "gui/dashboard/dialogs.h"
 #include "gui/dashboard/figure_panel.h"
 #include "gui/dashboard/figures_page.h"
@@ -63,7 +63,7 @@ DashboardWindow::Opened DashboardWindow::openOrUpgrade(const std::string& path) 
 DashboardWindow::DashboardWindow(const AssessProgram& program, const std::vector<std::filesystem::path>& assetFolders)
     : problem_(parts::selectableLabel("problem")),
       stack_(new QStackedWidget),
-      greeting_(new GreetingPage(program)),
+      greeting_(new GreetingPage),
       tabs_(new QTabWidget),
       attempts_(new AttemptsPage),
       attempt_(new AttemptPage),
@@ -72,7 +72,8 @@ DashboardWindow::DashboardWindow(const AssessProgram& program, const std::vector
       trainee_(new TraineePage),
       pair_(new PairPage),
       rating_(new RatingPage),
-      undo_(new QUndoStack(this)),
+      course_(new CoursePage),
+      decisions_(new Decisions(this)),
       assetFolders_(assetFolders),
       program_(program),
       imports_(program) {
@@ -87,7 +88,8 @@ DashboardWindow::DashboardWindow(const AssessProgram& program, const std::vector
                                                                                               {study_, "Study"},
                                                                                               {trainee_, "Trainee"},
                                                                                               {pair_, "Side by side"},
-                                                                                              {rating_, "Ratings"}}) {
+                                                                                              {rating_, "Ratings"},
+                                                                                              {course_, "Course"}}) {
     tabs_->addTab(page, title);
     connect(page, &CohortPage::problem, this, &DashboardWindow::showProblem);
     connect(page, &CohortPage::attemptActivated, this, &DashboardWindow::openAttempt);
@@ -98,6 +100,7 @@ DashboardWindow::DashboardWindow(const AssessProgram& program, const std::vector
   centre->setLayout(parts::column({problem_, {stack_, 1}}));
   setCentralWidget(centre);
   rating_->readForms(assetFolders);
+  course_->readCourses(assetFolders);
   buildImport();
   buildMenus();
   connectPages();
@@ -145,11 +148,7 @@ void DashboardWindow::buildMenus() {
   add(file, "&Settings …", Qt::CTRL | Qt::Key_Comma, [this] { SettingsDialog(this).exec(); });
   add(file, "&Quit", Qt::CTRL | Qt::Key_Q, [this] { close(); });
   QMenu* const edit = menuBar()->addMenu("&Edit");
-  QAction* const undo = undo_->createUndoAction(this, "&Undo");
-  undo->setShortcut(QKeySequence::Undo);
-  QAction* const redo = undo_->createRedoAction(this, "&Redo");
-  redo->setShortcut(QKeySequence::Redo);
-  edit->addActions({undo, redo});
+  edit->addActions({decisions_->undoAction(), decisions_->redoAction()});
   exclude_ = add(edit, "&Exclude from studies …", Qt::CTRL | Qt::Key_E, [this] { askForExclusion(); });
   exclude_->setEnabled(false);
   add(edit, "Make a &norm …", Qt::CTRL | Qt::Key_M, [this] { askForNorm(); });
@@ -186,8 +185,13 @@ void DashboardWindow::buildMenus() {
 }
 
 void DashboardWindow::connectPages() {
-  connect(&writer_, &CohortWriter::written, this, &DashboardWindow::reload);
-  connect(&writer_, &CohortWriter::failed, this, &DashboardWindow::showProblem);
+  connect(decisions_, &Decisions::written, this, &DashboardWindow::reload);
+  connect(decisions_, &Decisions::failed, this, [this](const QString& reason) {
+    rating_->setDocument(document_);  // shows what is stored
+    showProblem(reason);
+  });
+  connect(course_, &CoursePage::courseChosen, trainee_, &TraineePage::readCourse);
+  connect(rating_, &RatingPage::decided, this, &DashboardWindow::decide);
   connect(greeting_, &GreetingPage::openRequested, this, &DashboardWindow::askForDatabase);
   connect(greeting_, &GreetingPage::newRequested, this, &DashboardWindow::askForNewDatabase);
   connect(greeting_, &GreetingPage::importRequested, this, &DashboardWindow::askForRecordings);
@@ -196,7 +200,6 @@ void DashboardWindow::connectPages() {
   connect(attempt_, &AttemptPage::continuationRequested, this, &DashboardWindow::askForContinuation);
   connect(attempt_, &AttemptPage::normRequested, this, &DashboardWindow::askForNorm);
   connect(attempts_, &AttemptsPage::groupEdited, this, &DashboardWindow::changeGroup);
-  connect(rating_, &RatingPage::nextWanted, attempts_, &AttemptsPage::selectNext);
   connect(attempts_, &AttemptsPage::selectionChanged, this, [this] {
     const analytics::AttemptRow* attempt = attempts_->selected();
     exclude_->setEnabled(attempt != nullptr && !attempt->withdrawn);
@@ -207,7 +210,6 @@ void DashboardWindow::connectPages() {
     exclude_->setText(attempt->excluded ? "&Include in studies again …" : "&Exclude from studies …");
     attempt_->setAttempt(document_, *attempt);
     pair_->setAttempt(1, attempt->uuid);
-    rating_->setAttempt(*attempt);
   });
   connect(attempts_, &AttemptsPage::figureActivated, this, [this](const QString& checkpoint, const QString& subject) {
     tabs_->setCurrentWidget(attempt_);
@@ -215,6 +217,7 @@ void DashboardWindow::connectPages() {
   });
   // One begins where a page begins; who is going along the tabs stays there.
   connect(tabs_, &QTabWidget::currentChanged, this, [this] {
+    if (tabs_->currentWidget() == rating_) rating_->setSelected(attempts_->selectedUuids());
     if (!tabs_->tabBar()->hasFocus()) focusPage();
   });
 }
@@ -229,14 +232,15 @@ void DashboardWindow::openAttempt(const QString& uuid) {
 void DashboardWindow::setDocument(std::shared_ptr<const CohortDocument> document) {
   const bool another = !document_ || document_->path() != document->path();
   document_ = std::move(document);
-  if (another) undo_->clear();
+  if (another) decisions_->forget();
   problem_->hide();
   const QString name = QFileInfo(QString::fromStdString(document_->path())).fileName();
   setWindowTitle(name + " – Calot");
   settings::rememberCohort(QString::fromStdString(document_->path()));
   fillRecent();
   // The list is last: its selection goes to the others.
-  for (CohortPage* page : std::initializer_list<CohortPage*>{study_, trainee_, pair_, rating_, compare_, attempts_})
+  for (CohortPage* page :
+       std::initializer_list<CohortPage*>{study_, trainee_, pair_, rating_, course_, compare_, attempts_})
     page->setDocument(document_);
   if (document_->attempts().empty()) {
     greeting_->explainEmptyDatabase(name);

@@ -8,6 +8,7 @@
 
 #include "gui/attempt/long_work.h"
 #include "gui/dashboard/cohort_document.h"
+#include "gui/dashboard/decisions.h"
 #include "gui/dashboard/import_queue.h"
 
 class QAction;
@@ -17,13 +18,13 @@ class QMenu;
 class QStackedWidget;
 class QTabWidget;
 class QTimer;
-class QUndoStack;
 
 namespace calot::gui {
 
 class AttemptPage;
 class AttemptsPage;
 class ComparePage;
+class CoursePage;
 class GreetingPage;
 class PairPage;
 class RatingPage;
@@ -31,12 +32,12 @@ class StudyPage;
 class TraineePage;
 
 /// The dashboard: pages over one cohort database. It only puts pages together; what they show is decided by models that
-/// know no window. The database is written by imports, ratings, exclusions, tags and norms alone.
+/// know no window. The database is written by imports, norms and decisions alone, and decisions can be undone.
 class DashboardWindow : public QMainWindow {
   Q_OBJECT
  public:
   /// @param program what imports recordings
-  /// @param assetFolders that may hold forms (recorder::ProgramFiles)
+  /// @param assetFolders that may hold forms and courses (recorder::ProgramFiles)
   explicit DashboardWindow(const AssessProgram& program, const std::vector<std::filesystem::path>& assetFolders = {});
   ~DashboardWindow() override;
 
@@ -79,7 +80,8 @@ class DashboardWindow : public QMainWindow {
 
   [[nodiscard]] ImportQueue& imports() { return imports_; }
   /// Writes a PNG of each page into a folder that exists, after what it shows has been read: attempts.png, attempt.png,
-  /// compare.png, study.png, trainee.png, pair.png, ratings.png, norm.png and settings.png (or greeting.png).
+  /// compare.png, study.png, trainee.png, pair.png, ratings.png, course.png, norm.png and settings.png (or
+  /// greeting.png).
   /// @throws calot::Error (failure) if one cannot be written.
   void savePictures(const QString& folder);
 
@@ -113,6 +115,7 @@ class DashboardWindow : public QMainWindow {
   void askForContinuation(const QString& recording, double time);
   void showBranch();
   void askForList();
+  void decide(const Decision& decision);
   void print();  ///< what the page shows
   void showManual();
   void fillRecent();
@@ -131,7 +134,8 @@ class DashboardWindow : public QMainWindow {
   TraineePage* trainee_;
   PairPage* pair_;
   RatingPage* rating_;
-  QUndoStack* undo_;
+  CoursePage* course_;
+  Decisions* decisions_;  ///< what Ctrl+Z takes back
   QAction* exclude_ = nullptr;
   QMenu* recent_ = nullptr;
   std::vector<std::filesystem::path> assetFolders_;
@@ -140,9 +144,9 @@ class DashboardWindow : public QMainWindow {
   AssessProgram program_;
   ImportQueue imports_;
   std::string branched_, branchName_;  ///< the parent's uuid and the branch's file name: to be shown side by side
-  CohortWriter writer_;
-  Background loader_;  ///< reads again what is open
-  Background opener_;  ///< opens another
+  Background loader_;                  ///< reads again what is open
+  Background opener_;                  ///< opens another
+  Background finder_;                  ///< looks for recordings
 };
 
 }  // namespace calot::gui

@@ -41,7 +41,8 @@ KeyList keysOf(const QMenuBar& menus) {
                            {"W", "The worst moment of an attempt, then the next one"},
                            {"Space", "Play or pause the replay"},
                            {", and .", "One step back, one step forward"},
-                           {"Ctrl+Return", "Store a rating and go to the next attempt"}});
+                           {"Ctrl+Space", "Play or pause a rater's film"},
+                           {"Ctrl+Return", "Store a rating and go to the next film"}});
   return keys;
 }
 
@@ -71,6 +72,8 @@ constexpr const char* foldersKey = "recordings/folders";
 constexpr const char* programKey = "import/program";
 constexpr const char* threadsKey = "import/threads";
 constexpr const char* personKey = "person";
+constexpr const char* courseKey = "course/file";
+constexpr const char* courseSyntheticKey = "course/synthetic";
 constexpr const char* coloursKey = "look/colours";
 constexpr const char* typeKey = "look/type";
 constexpr const char* columnsKey = "attempts/hidden-columns";
@@ -107,7 +110,7 @@ SettingsDialog::SettingsDialog(QWidget* parent)
   threads_->setValue(settings::importThreads());
   person_->setMaxLength(64);
   person_->setText(settings::person());
-  person_->setPlaceholderText("pseudonym of who rates and excludes");
+  person_->setPlaceholderText("pseudonym of who excludes and tags");
   for (const auto& [text, choice] : {std::pair{"as the system has them", theme::Choice::system},
                                      {"dark letters on light", theme::Choice::light},
                                      {"light letters on dark", theme::Choice::dark}})
@@ -127,6 +130,9 @@ SettingsDialog::SettingsDialog(QWidget* parent)
   form->addRow("&You", person_);
   form->addRow("Co&lours", colours_);
   form->addRow("&Size of letters", type_);
+  auto* const lasting = parts::plainLabel("settings-lasting");
+  lasting->setText("Settings cannot be undone by Ctrl+Z: open them again to change them back.");
+  form->addRow(lasting);
   form->addRow(decision);
   connect(addFolder, &QPushButton::clicked, this, [this] {
     const QString folder = QFileDialog::getExistingDirectory(this, "A folder with recordings");
@@ -204,6 +210,11 @@ void setType(int percent) { store().setValue(typeKey, std::clamp(percent, theme:
 
 QStringList hiddenColumns() { return store().value(columnsKey).toStringList(); }
 void setHiddenColumns(const QStringList& titles) { store().setValue(columnsKey, titles); }
+
+QString course() { return store().value(courseKey).toString(); }
+void setCourse(const QString& file) { store().setValue(courseKey, file); }
+bool courseSynthetic() { return store().value(courseSyntheticKey, false).toBool(); }
+void setCourseSynthetic(bool counts) { store().setValue(courseSyntheticKey, counts); }
 
 QString person() { return store().value(personKey).toString(); }
 void setPerson(const QString& name) { store().setValue(personKey, name); }

@@ -74,7 +74,13 @@ void setType(int percent);
 [[nodiscard]] QStringList hiddenColumns();
 void setHiddenColumns(const QStringList& titles);
 
-/// The person who rates, excludes and includes: a pseudonym, or empty.
+/// File of the course that was chosen last, or empty.
+[[nodiscard]] QString course();
+void setCourse(const QString& file);
+[[nodiscard]] bool courseSynthetic();  ///< performers' attempts count in it, too
+void setCourseSynthetic(bool counts);
+
+/// The person who excludes, includes, tags and makes norms: a pseudonym, or empty.
 [[nodiscard]] QString person();
 void setPerson(const QString& name);
 

@@ -7,6 +7,8 @@
 
 #include "analytics/report/key_figures.h"
 #include "gui/attempt/figure_text.h"
+#include "gui/dashboard/band_delegate.h"
+#include "gui/dashboard/event_tree.h"
 #include "gui/dashboard/page_parts.h"
 #include "gui/dashboard/plot_view.h"
 

@@ -8,8 +8,8 @@
 
 #include "analytics/assessment/grade.h"
 #include "analytics/report/attempt_sheet.h"
-#include "gui/dashboard/checkpoint_table_model.h"
 #include "gui/dashboard/cohort_document.h"
+#include "gui/dashboard/family_tree_model.h"
 #include "gui/words/attempt_summary.h"
 
 class QComboBox;

@@ -5,7 +5,10 @@
 
 #include "analytics/assessment/grade.h"
 #include "analytics/cohort/blinding.h"
+#include "analytics/report/course_tables.h"
 #include "gui/attempt/figure_text.h"
+#include "gui/dashboard/course_page.h"
+#include "gui/dashboard/dialogs.h"
 #include "gui/dashboard/plot_view.h"
 #include "gui/words/attempt_summary.h"
 #include "recorder/base/errors.h"
@@ -120,6 +123,7 @@ TraineePage::TraineePage()
     : FiguresPage("trainee-", new PlotView("history-chart", "A figure over the attempts")),
       trainee_(parts::choice("trainee", 13)),
       goal_(parts::plainLabel("trainee-goal")),
+      missing_(parts::plainLabel("trainee-course")),
       tasks_(makeTextTable({"Task", "Attempts", "First", "Last", "Last started"}, "trainee-tasks",
                            "Tasks of the trainee")),
       table_(makeTextTable({"No.", "Started", "Value", "Outcome", "Verification", "Remark"}, "trainee-attempts",
@@ -134,12 +138,15 @@ TraineePage::TraineePage()
   setLayout(parts::column({parts::row({{"T&rainee", trainee_, 1}, {"&Checkpoint", figure_, 3}}),
                            parts::row({{"Comparable &within", key_, 3}}),
                            goal_,
+                           missing_,
                            {splitter, 1},
                            caption_}));
   connect(trainee_, &QComboBox::currentIndexChanged, this, [this] {
     fillKeys();
     redraw();
+    showCourse();
   });
+  missing_->hide();
   const auto keyOf = [](const QTableWidgetItem* item) {
     return item->tableWidget()->item(item->row(), 0)->data(Qt::UserRole).toString();
   };
@@ -156,6 +163,39 @@ void TraineePage::fillChoices() {
   for (const Trainee& t : trainees_) names += QString::fromStdString(t.name) + (t.synthetic ? " (performer)" : "");
   refill(*trainee_, names);
   fillKeys();
+  readCourse();
+}
+
+void TraineePage::readCourse() {
+  course_.reset();
+  showCourse();
+  const QString file = settings::course();
+  if (!document_ || file.isEmpty()) return;
+  courseReader_.run(
+      [this, database = document_->path(), file = file.toStdString(), synthetic = settings::courseSynthetic()] {
+        return [this, progress = readCourseProgress(database, file, synthetic)] {
+          course_ = progress;
+          showCourse();
+        };
+      },
+      [](const QString&) {});  // the page Course says why
+}
+
+void TraineePage::showCourse() {
+  const int at = trainee_->currentIndex();
+  QString text;
+  if (course_ && at >= 0) {
+    const std::string& who = trainees_[static_cast<std::size_t>(at)].name;
+    const auto person = std::ranges::find(course_->people, who, &analytics::CoursePerson::participant);
+    if (person != course_->people.end()) {
+      const std::string next = analytics::nextMissing(*person);
+      text = QString("Course %1, proficient in %2 tasks. %3")
+                 .arg(QString::fromStdString(course_->course.title),
+                      QString::fromStdString(analytics::proficientOf(course_->course, *person)),
+                      next.empty() ? QString("Nothing is missing.") : "Missing: " + QString::fromStdString(next) + '.');
+    }
+  }
+  parts::say(missing_, text);
 }
 
 void TraineePage::fillKeys() {

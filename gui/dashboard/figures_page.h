@@ -4,6 +4,8 @@
 #include <memory>
 #include <string>
 #include <vector>
+
+#include "analytics/assessment/course_progress.h"
 #include "gui/attempt/long_work.h"
 #include "gui/dashboard/cohort_document.h"
 #include "gui/dashboard/comparison.h"
@@ -55,14 +57,17 @@ class ComparePage : public FiguresPage {
   QCheckBox* synthetic_;
 };
 
-/// One person's attempts over time: a figure's learning curve, and every attempt with its badge.
+/// One person's attempts over time: a figure's learning curve, and every attempt with its badge; and what is missing
+/// next in the course that was chosen last.
 class TraineePage : public FiguresPage {
   Q_OBJECT
  public:
   TraineePage();
+  void readCourse();  ///< another one was chosen
 
  private:
   void fillChoices() override;
+  void showCourse();
   void fillKeys();
   void redraw() override;
   void fillTable(const TraineeHistory& history);
@@ -72,8 +77,11 @@ class TraineePage : public FiguresPage {
   std::vector<Trainee> trainees_;
   QComboBox* trainee_;
   QLabel* goal_;
+  QLabel* missing_;  ///< in the course
   QTableWidget* tasks_;
   QTableWidget* table_;
+  std::shared_ptr<const analytics::CourseProgress> course_;  ///< or null
+  Background courseReader_;
 };
 
 }  // namespace calot::gui

@@ -189,7 +189,9 @@ ImportPanel::ImportPanel(ImportQueue& queue)
       results_(parts::named("import-results", new QListWidget)),
       tick_(new QTimer(this)) {
   results_->setAccessibleName("Results of the import");
-  setLayout(parts::column({text_, parts::row({{bar_, 1}, stop_}), {results_, 1}}));
+  auto* const lasting = parts::plainLabel("import-lasting");
+  lasting->setText("Import and verification cannot be undone; attempts can be excluded from studies (Ctrl+E).");
+  setLayout(parts::column({text_, parts::row({{bar_, 1}, stop_}), {results_, 1}, lasting}));
   connect(stop_, &QPushButton::clicked, &queue_, &ImportQueue::cancel);
   connect(&queue_, &ImportQueue::progressed, this, [this] { showProgress(); });
   connect(&queue_, &ImportQueue::fileDone, this, &ImportPanel::addResult);
@@ -230,10 +232,8 @@ void ImportPanel::addResult(const ImportResult& result) {
   results_->scrollToItem(item);
 }
 
-GreetingPage::GreetingPage(AssessProgram program)
-    : program_(std::move(program)),
-      title_(parts::plainLabel("greeting-title", false)),
-      text_(parts::selectableLabel("greeting")) {
+GreetingPage::GreetingPage()
+    : title_(parts::plainLabel("greeting-title", false)), text_(parts::selectableLabel("greeting")) {
   parts::enlarge(title_, 1.8);
   for (QLabel* const label : {title_, text_}) label->setAlignment(Qt::AlignHCenter);
   const auto button = [&](const char* name, const char* text, auto wish) {
@@ -253,9 +253,7 @@ GreetingPage::GreetingPage(AssessProgram program)
 void GreetingPage::explainNoDatabase() {
   title_->setText("Welcome to Calot");
   text_->setText(
-      "A cohort database holds attempts and their checkpoints.\nOpen one, make a new one, or drop one here. On the "
-      "command line:\n\n" +
-      program_.typed("cohort.db"));
+      "A cohort database holds attempts and their checkpoints.\nOpen one, make a new one, or drop one here.");
   import_->hide();
 }
 
@@ -264,8 +262,7 @@ void GreetingPage::explainEmptyDatabase(const QString& fileName) {
   text_->setText(
       fileName +
       " is a cohort database without attempts.\nImport recordings, or drop them here: each is simulated again, "
-      "verified and measured. On the command line:\n\n" +
-      program_.typed(fileName));
+      "verified and measured.");
   import_->show();
 }
 

@@ -30,8 +30,6 @@ struct AssessProgram {
   std::function<QStringList(const QString& recording, double time, const QString& database)> goOn;
   /// True if an exit code blames the recording: damaged, or in conflict with the cohort.
   std::function<bool(int exitCode)> refused;
-  /// Command line that assesses a recording into this database.
-  std::function<QString(const QString& database)> typed;
 };
 
 /// Result for one recording.
@@ -131,7 +129,7 @@ class ImportPanel : public QWidget {
 class GreetingPage : public QWidget {
   Q_OBJECT
  public:
-  explicit GreetingPage(AssessProgram program);
+  GreetingPage();
   void explainNoDatabase();
   void explainEmptyDatabase(const QString& fileName);
 
@@ -141,7 +139,6 @@ class GreetingPage : public QWidget {
   void importRequested();
 
  private:
-  AssessProgram program_;
   QLabel* title_;
   QLabel* text_;
   QPushButton* import_;

@@ -1,158 +1,123 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "gui/dashboard/ratings_page.h"
 
-#include <QButtonGroup>
-#include <QCryptographicHash>
-#include <QGroupBox>
-#include <QRadioButton>
-#include <QScrollArea>
-#include <QSettings>
+#include <algorithm>
+#include <cmath>
+#include <QListView>
+#include <QPointer>
 
-#include "gui/dashboard/dialogs.h"
-#include "recorder/base/errors.h"
+#include "gui/dashboard/rating_form_view.h"
 #include "recorder/base/files.h"
 
 namespace calot::gui {
-
-/// Identity of a rating, and of its draft: attempt and rater of a form about attempts, the participant of the others.
-struct RatingPage::Subject {
-  std::string database, form;
-  std::uint32_t formVersion = 1;
-  std::string attempt, rater, participant;
-};
-
 namespace {
 
-namespace fs = std::filesystem;
-using Answers = std::map<std::string, std::optional<int>>;  // by item
-
-/// Drafts that are not stored yet are kept among the user's settings: a rater who is called away goes on where they
-/// were.
-QSettings drafts() { return {QSettings::IniFormat, QSettings::UserScope, "calot", "drafts"}; }
-
-/// A group of the settings: no name stands there.
-QString groupOf(const auto& subject) {
-  QCryptographicHash hash(QCryptographicHash::Sha256);
-  for (const std::string& part : {subject.database, subject.form, std::to_string(subject.formVersion), subject.attempt,
-                                  subject.rater, subject.participant}) {
-    hash.addData(QByteArray::fromStdString(part));
-    hash.addData(QByteArray(1, '\0'));
-  }
-  return QString::fromLatin1(hash.result().toHex());
+bool isOf(const analytics::Rating& rating, const RatingSubject& subject) {
+  return rating.form == subject.form && rating.formVersion == subject.formVersion &&
+         rating.attempt == subject.attempt && rating.rater == subject.rater &&
+         rating.participant == subject.participant;
 }
 
-std::string textOf(std::optional<int> score) { return score ? std::to_string(*score) : "-"; }
-
-void keepDraft(const QString& group, const Answers& answers) {
-  QSettings store = drafts();
-  store.beginGroup(group);
-  store.remove("");
-  for (const auto& [item, score] : answers)
-    store.setValue(QString::fromStdString(item), QString::fromStdString(textOf(score)));
-}
-
-/// Empty: there is none.
-Answers keptDraft(const QString& group) {
-  QSettings store = drafts();
-  store.beginGroup(group);
-  Answers answers;
-  for (const QString& item : store.childKeys()) {
-    const QString text = store.value(item).toString();
-    bool number = false;
-    const int score = text.toInt(&number);
-    if (number || text == "-") answers[item.toStdString()] = number ? std::optional(score) : std::nullopt;
-  }
-  return answers;
-}
-
-/// Stores a rating as `calot rate` does. @throws Error (invalid) for an item without answer, all blank, or a missing
-/// name; (refused) as CohortDatabase::storeRating
-void storeRating(const analytics::RatingForm& form, const auto& subject, const Answers& answers, bool replace) {
-  if (form.ofAttempts && subject.attempt.empty()) throw Error(ErrorKind::invalid, "Choose the attempt that is rated.");
-  if (form.ofAttempts && subject.rater.empty()) throw Error(ErrorKind::invalid, "Say who rates, by a pseudonym.");
-  if (!form.ofAttempts && subject.participant.empty())
-    throw Error(ErrorKind::invalid, "Choose the participant who fills in the form.");
-  std::vector<std::pair<std::string, std::string>> given;
-  for (const auto& [item, score] : answers) given.emplace_back(item, textOf(score));
-  analytics::Rating rating;
-  rating.attempt = subject.attempt;
-  rating.rater = subject.rater;
-  rating.participant = subject.participant;
-  rating.answers = analytics::answersOf(form, given);
-  analytics::CohortDatabase(subject.database, analytics::CohortDatabase::Access::write)
-      .storeRating({form.name, form.version, form.sha256, form.text}, rating, replace);
-}
-
-/// Earlier answers of this rater or participant, which are to be changed.
-std::optional<analytics::Rating> earlierRating(const std::vector<analytics::Rating>& ratings,
-                                               const analytics::RatingForm& form, const auto& subject) {
-  for (const analytics::Rating& r : ratings) {
-    if (r.form != form.name || r.formVersion != form.version || r.attempt != subject.attempt) continue;
-    if (form.ofAttempts ? r.rater == subject.rater : r.participant == subject.participant) return r;
-  }
-  return std::nullopt;
-}
-
-constexpr int blank = -1000;  // button of an item that is left blank: no form's score
-
-QString scoreText(const analytics::RatingForm& form, int score) {
-  const auto at = static_cast<std::size_t>(score - form.least);
-  QString text = QString::number(score);
-  if (at < form.words.size()) text += QString::fromUtf8(" – ") + QString::fromStdString(form.words[at]);
-  return text;
-}
+int percent(double share) { return static_cast<int>(std::floor(100.0 * share + 1e-9)); }
 
 }  // namespace
 
 RatingPage::RatingPage()
-    : choice_(parts::choice("form", 12)),
-      source_(parts::plainLabel("form-source")),
-      banner_(new AttemptBanner),
+    : name_(drafts::rater()),
+      choice_(parts::choice("form", 10)),
       raterLabel_(new QLabel("Rated b&y")),
-      rater_(parts::named("rater", new QLineEdit)),
+      rater_(parts::named("rater", new QLineEdit(name_))),
       participantLabel_(new QLabel("Part&icipant")),
-      participant_(parts::named("rating-participant", new QComboBox)),
-      area_(parts::named("form-area", new QScrollArea)),
+      participant_(parts::choice("rating-participant", 8)),
+      whichLabel_(new QLabel("Fi&lms")),
+      which_(parts::choice("rating-films", 8)),
+      reveal_(parts::named("reveal", new QCheckBox("Sho&w who it was"))),
+      progress_(parts::plainLabel("rating-progress")),
+      list_(parts::named("rating-queue", new QListView)),
+      banner_(new AttemptBanner),
+      film_(new RecordingView({.timeline = false})),
+      source_(parts::plainLabel("form-source")),
+      view_(new RatingFormView),
       state_(parts::plainLabel("rating-state")),
       store_(parts::named("store-rating", new QPushButton("&Store"))),
-      next_(parts::named("store-next", new QPushButton("Store, &next"))),
-      reveal_(parts::named("reveal", new QCheckBox("Sho&w who it was"))),
-      replay_(new RecordingView({.timeline = false})) {
+      next_(parts::named("store-next", new QPushButton("Store, &next"))) {
+  next_->setToolTip("Store it and go to the next film (Ctrl+Return)");
+  list_->setModel(&films_);
+  list_->setUniformItemSizes(true);
+  list_->setEditTriggers(QAbstractItemView::NoEditTriggers);
+  list_->setAccessibleName("Films to rate");
+  list_->setMinimumWidth(theme::inType(90));
+  banner_->makeNarrow();
+  left_ = parts::boxed(parts::column({progress_, {list_, 1}}));
+  middle_ = parts::boxed(parts::column({banner_, {film_, 1}}));
+  QWidget* const right =
+      parts::boxed(parts::column({source_, {view_, 1}, state_, parts::row({parts::spring(), store_, next_})}));
+  QSplitter* const all = makeSplitter(Qt::Horizontal, {{left_, 0}, {middle_, 3}, {right, 2}});
+  all->setSizes({theme::inType(110), 780, 460});
+  setLayout(parts::column({buildHead(), {all, 1}}));
+  connectParts();
+  setSelected({});
+  begin_ = choice_;
+}
+
+QBoxLayout* RatingPage::buildHead() {
   raterLabel_->setBuddy(rater_);
   participantLabel_->setBuddy(participant_);
+  whichLabel_->setBuddy(which_);
   rater_->setMaxLength(64);
   rater_->setPlaceholderText("pseudonym");
+  rater_->setToolTip("Stands with the ratings alone: no other page takes it up");
+  which_->addItems({"every attempt", QString()});
   reveal_->setToolTip("Who rates blinded judges what was done, not who did it");
-  area_->setWidgetResizable(true);
-  next_->setToolTip("Store it and go to the next attempt (Ctrl+Return)");
-  QBoxLayout* const head =
-      parts::row({{"Fo&rm", choice_, 2}, raterLabel_, {rater_, 1}, participantLabel_, {participant_, 1}});
-  QWidget* const form = parts::boxed(
-      parts::column({head, reveal_, banner_, source_, {area_, 1}, parts::row({{state_, 1}, store_, next_})}));
-  setLayout(parts::column({{makeSplitter(Qt::Horizontal, {{replay_, 1}, {form, 1}}), 1}}));
-  connectParts();
-  begin_ = choice_;
+  return parts::row({{"Fo&rm", choice_, 2},
+                     raterLabel_,
+                     {rater_, 1},
+                     participantLabel_,
+                     {participant_, 1},
+                     whichLabel_,
+                     {which_, 1},
+                     reveal_});
 }
 
 void RatingPage::connectParts() {
   connect(choice_, &QComboBox::currentIndexChanged, this, [this] { showForm(); });
-  connect(participant_, &QComboBox::currentIndexChanged, this, [this] { showEarlier(); });
-  connect(rater_, &QLineEdit::editingFinished, this, [this] {
-    settings::setPerson(rater_->text());
-    showEarlier();
+  connect(participant_, &QComboBox::currentIndexChanged, this, [this] { showAnswers(); });
+  connect(which_, &QComboBox::currentIndexChanged, this, [this] { fillQueue(); });
+  connect(rater_, &QLineEdit::editingFinished, this, &RatingPage::setRater);
+  connect(reveal_, &QCheckBox::toggled, this, [this](bool shown) {
+    film_->setBlinded(!shown);
+    showSubject();
+    if (shown && !film_->isOpen()) {
+      shown_.clear();  // to say why it cannot be shown
+      openFilm();
+    }
   });
-  connect(store_, &QPushButton::clicked, this, [this] { store(); });
+  connect(list_->selectionModel(), &QItemSelectionModel::currentRowChanged, this, [this](const QModelIndex& at) {
+    if (!at.isValid()) return;
+    if (const std::string& uuid = queue_[static_cast<std::size_t>(at.row())]; uuid != current_) goTo(uuid);
+  });
+  film_->setBlinded(true);
+  connect(film_, &RecordingView::opened, this, [this] {
+    seen_.setLength(film_->replay().position().seconds);
+    showState();
+  });
+  connect(film_, &RecordingView::pictureShown, this, &RatingPage::takePicture);
+  connect(view_, &RatingFormView::answered, this, [this] {
+    drafts::keepAnswers(subject(), view_->answers());
+    showState();
+  });
+  connect(store_, &QPushButton::clicked, this, [this] { store(false); });
   const auto storeAndGo = [this] {
-    if (store_->isEnabled() && store()) emit nextWanted();
+    if (next_->isEnabled()) store(true);
   };
   connect(next_, &QPushButton::clicked, this, storeAndGo);
-  connect(reveal_, &QCheckBox::toggled, this, [this] { showSubject(); });
   onKey(*this, Qt::CTRL | Qt::Key_Return, storeAndGo);
-  onKey(*this, Qt::Key_Comma, [this] { replay_->replay().stepBy(-1); });
-  onKey(*this, Qt::Key_Period, [this] { replay_->replay().stepBy(1); });
+  onKey(*this, Qt::CTRL | Qt::Key_Space, [this] { film_->replay().togglePlaying(); });
+  onKey(*this, Qt::Key_Comma, [this] { film_->replay().stepBy(-1); });
+  onKey(*this, Qt::Key_Period, [this] { film_->replay().stepBy(1); });
 }
 
-void RatingPage::readForms(const std::vector<fs::path>& folders) {
+void RatingPage::readForms(const std::vector<std::filesystem::path>& folders) {
   QStringList titles;
   for (const auto& entry : recorder::filesIn(folders, "forms")) {
     const QString fault = faultOf([&] {
@@ -165,39 +130,33 @@ void RatingPage::readForms(const std::vector<fs::path>& folders) {
   showForm();
 }
 
-void RatingPage::openReplay() {
-  if (!document_ || !attempt_ || !isVisible() || shown_ == attempt_->uuid) return;
-  shown_ = attempt_->uuid;
-  replay_->open(*attempt_, *document_);
-}
-
-RatingPage::Subject RatingPage::subject() const {
-  const analytics::RatingForm& shown = *form();
-  return {document_ ? document_->path() : std::string(),
-          shown.name,
-          shown.version,
-          shown.ofAttempts && attempt_ ? attempt_->uuid : std::string(),
-          shown.ofAttempts ? rater_->text().toStdString() : std::string(),
-          shown.ofAttempts ? std::string() : participant_->currentText().toStdString()};
-}
-
 void RatingPage::read() {
-  if (rater_->text().isEmpty()) rater_->setText(settings::person());
   QStringList people;
   tryTo([&] {
     for (const analytics::Participant& person : document_->database().participants())
       people += QString::fromStdString(person.pseudonym);
+    ratings_ = document_->assessment().ratings();
   });
   refill(*participant_, people);
-  showEarlier();
-  openReplay();
+  dropStored();
+  fillQueue();
 }
 
-void RatingPage::setAttempt(const analytics::AttemptRow& attempt) {
-  const bool another = !attempt_ || attempt_->uuid != attempt.uuid;
-  attempt_ = attempt;
-  showSubject();
-  if (another) outdate();
+/// Answers that are in the cohort now are no draft any more.
+void RatingPage::dropStored() {
+  for (const auto& entry : waiting_) {
+    const RatingSubject& about = entry.first;
+    const auto there = std::ranges::find_if(ratings_, [&](const analytics::Rating& r) { return isOf(r, about); });
+    if (there != ratings_.end() && there->answers == entry.second.answers) drafts::dropAnswers(about);
+  }
+  waiting_.clear();
+}
+
+void RatingPage::setSelected(std::vector<std::string> uuids) {
+  selected_ = std::move(uuids);
+  which_->setItemText(1, QString("the %1 selected").arg(selected_.size()));
+  which_->setItemData(1, "Those that are selected on the page Attempts", Qt::ToolTipRole);
+  if (which_->currentIndex() == 1) fillQueue();
 }
 
 void RatingPage::chooseForm(const QString& name) {
@@ -209,136 +168,226 @@ const analytics::RatingForm* RatingPage::form() const {
   return at < 0 ? nullptr : &forms_[static_cast<std::size_t>(at)];
 }
 
-void RatingPage::showSubject() {
-  const bool ofAttempts = form() == nullptr || form()->ofAttempts;
-  for (QWidget* widget : std::initializer_list<QWidget*>{rater_, raterLabel_, reveal_, replay_})
-    widget->setVisible(ofAttempts);
-  banner_->setVisible(ofAttempts && (reveal_->isChecked() || !attempt_));
-  for (QWidget* widget : std::initializer_list<QWidget*>{participant_, participantLabel_})
-    widget->setVisible(!ofAttempts);
-  if (!attempt_)
-    banner_->showText("Select the attempt that is rated on the page Attempts.");
-  else
-    banner_->showAttempt(*attempt_);
+RatingSubject RatingPage::subject() const {
+  const analytics::RatingForm& shown = *form();
+  return {document_ ? document_->path() : std::string(),
+          shown.name,
+          shown.version,
+          shown.ofAttempts ? current_ : std::string(),
+          shown.ofAttempts ? name_.toStdString() : std::string(),
+          shown.ofAttempts ? std::string() : participant_->currentText().toStdString()};
+}
+
+std::optional<analytics::Rating> RatingPage::stored() const {
+  const RatingSubject about = subject();
+  const auto found = std::ranges::find_if(ratings_, [&](const analytics::Rating& r) { return isOf(r, about); });
+  return found == ratings_.end() ? std::nullopt : std::optional(*found);
+}
+
+int RatingPage::number() const {
+  const auto at = std::ranges::find(queue_, current_);
+  return at == queue_.end() ? 0 : static_cast<int>(at - queue_.begin()) + 1;
+}
+
+void RatingPage::setRater() {
+  const QString name = rater_->text().trimmed();
+  if (name == name_) return;
+  const bool first = name_.isEmpty();
+  const SeenFilm before = seen_;
+  keepSeen();
+  name_ = name;
+  drafts::keepRater(name);
+  shown_.clear();  // each rater sees the films
+  if (first && form() != nullptr && drafts::seen(subject()).kept().isEmpty()) {
+    // A film that was watched before the name was typed was seen all the same.
+    drafts::keepSeen(subject(), before);
+    shown_ = current_;
+  }
+  fillQueue();
 }
 
 void RatingPage::showForm() {
-  groups_.clear();
-  auto* content = new QWidget;
-  auto* layout = new QVBoxLayout(content);
   const analytics::RatingForm* shown = form();
-  if (shown == nullptr) {
-    source_->setText(fault_.isEmpty() ? "No forms were found (CALOT_ASSETS)." : fault_);
-  } else {
-    source_->setText(QString("Version %1. %2").arg(shown->version).arg(QString::fromStdString(shown->source)));
-    for (const analytics::FormSection& section : shown->sections) {
-      auto* box = new QGroupBox(QString::fromStdString(section.name));
-      auto* boxLayout = new QVBoxLayout(box);
-      for (const analytics::FormItem& item : section.items) addItem(*boxLayout, item);
-      layout->addWidget(box);
-    }
-  }
-  layout->addStretch(1);
-  area_->setWidget(content);  // deletes the former one
+  view_->setForm(shown);
+  source_->setText(shown != nullptr
+                       ? QString("Version %1. %2").arg(shown->version).arg(QString::fromStdString(shown->source))
+                   : fault_.isEmpty() ? "No forms were found: Calot is not installed completely."
+                                      : fault_);
   showSubject();
-  showEarlier();
+  fillQueue();
 }
 
-void RatingPage::addItem(QVBoxLayout& layout, const analytics::FormItem& item) {
-  auto* text = parts::plainLabel("");
-  text->setText(QString::fromStdString(item.text));
-  parts::embolden(text);
-  layout.addWidget(text);
-  auto* buttons = new QButtonGroup(text);
-  auto* row = new QHBoxLayout;
-  const analytics::RatingForm& shown = *form();
-  const auto add = [&](int id, const QString& label, const QString& tip) {
-    auto* button = new QRadioButton(label);
-    button->setObjectName(QString::fromStdString(item.key) + '=' + (id == blank ? "-" : QString::number(id)));
-    button->setAccessibleName(QString::fromStdString(item.text) + ": " + label);
-    button->setToolTip(tip);
-    buttons->addButton(button, id);
-    row->addWidget(button);
-  };
-  for (int score = shown.least; score <= shown.most; ++score) {
-    const auto anchor = static_cast<std::size_t>(score - shown.least);
-    add(score, scoreText(shown, score),
-        anchor < item.anchors.size() ? QString::fromStdString(item.anchors[anchor]) : QString());
-  }
-  add(blank, "left blank", "Nothing can be said");
-  row->addStretch(1);
-  layout.addLayout(row);
-  QStringList anchors;
-  for (std::size_t i = 0; i < item.anchors.size(); ++i) {
-    if (!item.anchors[i].empty())
-      anchors += QString("%1: %2").arg(shown.least + static_cast<int>(i)).arg(QString::fromStdString(item.anchors[i]));
-  }
-  if (!anchors.isEmpty()) {
-    auto* words = parts::plainLabel((item.key + "-anchors").c_str());
-    words->setText(anchors.join('\n'));
-    layout.addWidget(words);
-  }
-  layout.addSpacing(6);
-  groups_.emplace_back(item.key, buttons);
-  connect(buttons, &QButtonGroup::idClicked, this, [this, key = item.key](int id) {
-    answers_[key] = id == blank ? std::nullopt : std::optional(id);
-    keepDraft(groupOf(subject()), answers_);
-    showState();
-  });
-}
-
-void RatingPage::showEarlier() {
-  replaces_ = false;
-  answers_.clear();
-  const analytics::RatingForm* const shown = form();
-  if (shown == nullptr) {
-    showState();
+void RatingPage::fillQueue() {
+  if (!document_ || form() == nullptr) {
+    showAnswers();
     return;
   }
-  std::optional<analytics::Rating> earlier;
-  if (document_) tryTo([&] { earlier = earlierRating(document_->assessment().ratings(), *shown, subject()); });
-  replaces_ = earlier.has_value();
-  // Answers that were begun and not stored are newer than the stored ones.
-  Answers answers = keptDraft(groupOf(subject()));
-  if (answers.empty() && earlier) {
-    for (const analytics::FormItem& item : shown->items()) {
-      const auto at = earlier->answers.find(item.key);
-      answers[item.key] = at == earlier->answers.end() ? std::nullopt : std::optional(at->second);
-    }
+  const bool some = which_->currentIndex() == 1;
+  queue_ = some && selected_.empty()
+               ? std::vector<std::string>()
+               : filmQueue(document_->attempts(), name_.toStdString(), some ? selected_ : std::vector<std::string>());
+  rated_.clear();
+  RatingSubject about = subject();
+  for (const analytics::Rating& r : ratings_) {
+    about.attempt = r.attempt;
+    if (!r.attempt.empty() && isOf(r, about)) rated_.insert(r.attempt);
   }
-  for (const auto& [key, buttons] : groups_) {
-    // A group without a choice: exclusive ones keep theirs.
-    buttons->setExclusive(false);
-    for (QAbstractButton* button : buttons->buttons()) button->setChecked(false);
-    buttons->setExclusive(true);
-    const auto at = answers.find(key);
-    if (at == answers.end()) continue;
-    QAbstractButton* button = buttons->button(at->second.value_or(blank));
-    if (button == nullptr) continue;  // a score of another scale
-    button->setChecked(true);
-    answers_[key] = at->second;
+  markRated();
+  if (number() == 0) current_ = drafts::film(subject());  // a rater goes on where they were
+  if (number() > 0)
+    goTo(current_);
+  else if (const auto open = std::ranges::find_if(queue_, [&](const auto& uuid) { return !rated_.contains(uuid); });
+           open != queue_.end())
+    goTo(*open);
+  else
+    goTo(queue_.empty() ? std::string() : queue_.front());
+}
+
+void RatingPage::markRated() {
+  QStringList names;
+  names.reserve(static_cast<qsizetype>(queue_.size()));
+  std::size_t done = 0;
+  for (std::size_t i = 0; i < queue_.size(); ++i) {
+    const bool rated = rated_.contains(queue_[i]);
+    done += rated ? 1 : 0;
+    names += (rated ? QString::fromUtf8("✓ Film %1") : QString("Film %1")).arg(i + 1);
+  }
+  if (names != films_.stringList()) films_.setStringList(names);
+  progress_->setText(queue_.empty() ? QString("no films") : QString("%1 of %2 rated").arg(done).arg(queue_.size()));
+  progress_->setToolTip("Films that you have rated with this form");
+}
+
+void RatingPage::goTo(const std::string& uuid) {
+  if (uuid != current_) keepSeen();
+  current_ = uuid;
+  if (form() != nullptr && ofFilms() && !uuid.empty()) drafts::keepFilm(subject());
+  if (const int row = number() - 1; row >= 0) list_->setCurrentIndex(films_.index(row));
+  showSubject();
+  showAnswers();
+  openFilm();
+}
+
+void RatingPage::goToNext() {
+  const auto from = static_cast<std::size_t>(std::max(0, number() - 1));
+  for (std::size_t i = 1; i <= queue_.size(); ++i) {
+    const std::string& uuid = queue_[(from + i) % queue_.size()];
+    if (rated_.contains(uuid)) continue;
+    goTo(uuid);
+    return;
   }
   showState();
 }
 
-void RatingPage::showState() {
-  const std::size_t items = form() == nullptr ? 0 : form()->items().size();
-  store_->setEnabled(items > 0 && document_ && answers_.size() == items);
-  next_->setEnabled(store_->isEnabled());
-  store_->setText(replaces_ ? "Replace what was &stored" : "&Store");
-  QString text;
-  if (items > 0) text = QString("%1 of %2 items are answered.").arg(answers_.size()).arg(items);
-  if (replaces_) text += " This form was filled in before; storing replaces it.";
-  state_->setText(text);
+void RatingPage::openFilm() {
+  if (!document_ || !isVisible() || !ofFilms() || shown_ == current_) return;
+  shown_ = current_;
+  ran_ = false;
+  seen_ = drafts::seen(subject());
+  const analytics::AttemptRow* const attempt = document_->attempt(current_);
+  if (attempt == nullptr)
+    film_->close("There is no film to rate.");
+  else
+    film_->open(*attempt, *document_);
+  showState();
 }
 
-bool RatingPage::store() {
-  return tryTo([this] {
-    storeRating(*form(), subject(), answers_, replaces_);
-    drafts().remove(groupOf(subject()));
-    replaces_ = true;
+void RatingPage::takePicture(double time) {
+  // The picture that is on its way when the film stops was of the film as it ran.
+  const bool runs = film_->replay().isOpen() && film_->replay().position().playing;
+  if (!std::exchange(ran_, runs) && !runs) return;
+  const double before = seen_.share();
+  seen_.show(time);
+  if (seen_.share() == before) return;
+  if (before < SeenFilm::enough && seen_.suffices()) keepSeen();
+  showState();
+}
+
+void RatingPage::keepSeen() {
+  if (document_ && form() != nullptr && ofFilms() && !shown_.empty() && shown_ == current_)
+    drafts::keepSeen(subject(), seen_);
+}
+
+void RatingPage::hideEvent(QHideEvent* event) {
+  keepSeen();
+  CohortPage::hideEvent(event);
+}
+
+void RatingPage::showSubject() {
+  const bool films = ofFilms();
+  for (QWidget* widget :
+       std::initializer_list<QWidget*>{rater_, raterLabel_, which_, whichLabel_, reveal_, left_, middle_})
+    widget->setVisible(films);
+  for (QWidget* widget : std::initializer_list<QWidget*>{participant_, participantLabel_}) widget->setVisible(!films);
+  const analytics::AttemptRow* const attempt = document_ ? document_->attempt(current_) : nullptr;
+  banner_->setVisible(films && reveal_->isChecked() && attempt != nullptr);
+  if (attempt != nullptr) banner_->showAttempt(*attempt);
+}
+
+void RatingPage::showAnswers() {
+  if (form() == nullptr) {
     showState();
-    state_->setText("Stored. " + state_->text());
+    return;
+  }
+  // Answers that were begun and not stored are newer than the stored ones.
+  FormAnswers answers = drafts::answers(subject());
+  if (const std::optional<analytics::Rating> before = stored(); before && answers.empty()) {
+    for (const analytics::FormItem& item : form()->items()) {
+      const auto at = before->answers.find(item.key);
+      answers[item.key] = at == before->answers.end() ? std::nullopt : std::optional(at->second);
+    }
+  }
+  view_->setAnswers(answers);
+  showState();
+}
+
+void RatingPage::showState() {
+  const bool named = form() != nullptr && document_ &&
+                     (ofFilms() ? !name_.isEmpty() && number() > 0 : participant_->currentIndex() >= 0);
+  const bool seen = !ofFilms() || seen_.suffices();
+  store_->setEnabled(view_->complete() && named && seen);
+  next_->setEnabled(store_->isEnabled());
+  next_->setVisible(ofFilms());
+  const bool replaces = named && stored().has_value();
+  store_->setText(replaces ? "Replace what was &stored" : "&Store");
+  QStringList text;
+  if (!queue_.empty() && rated_.size() >= queue_.size() && ofFilms()) text += "Every film is rated.";
+  if (view_->items() > 0)
+    text += QString("%1 of %2 items are answered.").arg(view_->answers().size()).arg(view_->items());
+  if (ofFilms() && number() > 0)
+    text += QString("%1 % of the film seen%2.")
+                .arg(percent(seen_.share()))
+                .arg(seen ? QString() : QString(", %1 % are needed").arg(percent(SeenFilm::enough)));
+  if (ofFilms() && name_.isEmpty()) text += "Say who rates.";
+  if (replaces) text += "Stored before; storing replaces it.";
+  state_->setText(text.join(' '));
+}
+
+void RatingPage::store(bool goOn) {
+  const RatingSubject about = subject();
+  const analytics::RatingForm& with = *form();
+  tryTo([&] {
+    analytics::Rating rating = ratingOf(with, about, view_->answers());
+    if (with.ofAttempts) rating.filmSeen = seen_.share();
+    const std::optional<analytics::Rating> before = stored();
+    Decision decision = ratingDecision(
+        {with.name, with.version, with.sha256, with.text}, rating, before,
+        with.ofAttempts ? QString("film %1").arg(number()) : "by " + QString::fromStdString(about.participant));
+    // Answers that are taken back can be changed and stored again.
+    decision.takenBack = [page = QPointer(this), about, answers = view_->answers()] {
+      if (!page) return;
+      std::erase_if(page->waiting_, [&](const auto& entry) { return isOf(entry.second, about); });
+      drafts::keepAnswers(about, answers);
+      if (!about.attempt.empty()) page->goTo(about.attempt);
+    };
+    keepSeen();
+    waiting_.emplace_back(about, rating);
+    std::erase_if(ratings_, [&](const analytics::Rating& r) { return isOf(r, about); });
+    ratings_.push_back(rating);
+    if (with.ofAttempts) rated_.insert(about.attempt);
+    emit decided(decision);
+    markRated();
+    goTo(current_);
+    if (goOn) goToNext();
   });
 }
 

@@ -2,69 +2,103 @@
 #pragma once
 
 #include <filesystem>
-#include <map>
 #include <optional>
+#include <QStringListModel>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
 
-#include "analytics/assessment/rating_form.h"
+#include "gui/dashboard/decisions.h"
 #include "gui/dashboard/page_parts.h"
+#include "gui/dashboard/rating_queue.h"
 #include "gui/dashboard/recording_view.h"
 
-class QButtonGroup;
+class QListView;
 
 namespace calot::gui {
 
-/// Forms to be filled in: raters judge the attempt that is selected, beside its replay, participants what they took
-/// part in. Who acted is hidden unless it is asked for. What is not stored yet is kept as a draft. Nothing is stored
-/// before every item is answered or left blank on purpose.
+class RatingFormView;
+
+/// Forms to be filled in. A rater goes through a queue of films: each is watched, judged beside it and stored, and the
+/// next one follows. Who acted is hidden unless it is asked for; films have numbers, in an order of the rater's own.
+/// Participants fill in what they took part in. What is not stored yet is kept as a draft (drafts). A rating is stored
+/// when every item is answered or left blank on purpose, and enough of the film was seen (SeenFilm::enough).
 class RatingPage : public CohortPage {
   Q_OBJECT
  public:
   RatingPage();
   /// True if the replay stands where it was sent to, or there is none.
-  [[nodiscard]] bool settled() const { return replay_->settled(); }
+  [[nodiscard]] bool settled() const { return film_->settled(); }
+  [[nodiscard]] const SeenFilm& seenFilm() const { return seen_; }  ///< by the rater, of the film that is shown
   /// Offers the forms in `forms/` of these folders, best first (recorder::ProgramFiles).
   void readForms(const std::vector<std::filesystem::path>& folders);
   void chooseForm(const QString& name);
-  void setAttempt(const analytics::AttemptRow& attempt);
+  /// Attempts that are selected elsewhere: the queue can be limited to them. @param uuids none: all
+  void setSelected(std::vector<std::string> uuids);
 
  signals:
-  /// The rating is stored: the next attempt is wanted.
-  void nextWanted();
+  /// A form was completed and is to be stored.
+  void decided(const calot::gui::Decision& decision);
+
+ protected:
+  void hideEvent(QHideEvent* event) override;
 
  private:
   void read() override;
+  QBoxLayout* buildHead();
   void connectParts();
+  void setRater();
   void showForm();
-  void addItem(QVBoxLayout& layout, const analytics::FormItem& item);
+  void fillQueue();
+  void markRated();
+  void goTo(const std::string& uuid);
+  void goToNext();
+  void openFilm();
+  void takePicture(double time);
+  void keepSeen();
   void showSubject();
-  void showEarlier();
+  void showAnswers();
   void showState();
-  bool store();
-  void openReplay();
-  struct Subject;
-  [[nodiscard]] Subject subject() const;  ///< @pre form() is not null
-  [[nodiscard]] const analytics::RatingForm* form() const;
+  void store(bool goOn);
+  void dropStored();
+  [[nodiscard]] const analytics::RatingForm* form() const;        ///< or null
+  [[nodiscard]] RatingSubject subject() const;                    ///< @pre form() is not null
+  [[nodiscard]] std::optional<analytics::Rating> stored() const;  ///< of the subject @pre form() is not null
+  [[nodiscard]] bool ofFilms() const { return form() == nullptr || form()->ofAttempts; }
+  [[nodiscard]] int number() const;  ///< of the film in the queue, from 1; 0: it is not there
 
-  std::optional<analytics::AttemptRow> attempt_;
   std::vector<analytics::RatingForm> forms_;
-  QString fault_;                                      ///< why one of the forms cannot be read
-  std::map<std::string, std::optional<int>> answers_;  ///< so far; none: left blank
-  bool replaces_ = false;                              ///< who fills it in has filled it in before
+  QString fault_;                                                     ///< why one of the forms cannot be read
+  std::vector<analytics::Rating> ratings_;                            ///< of the cohort, and what was decided since
+  std::vector<std::pair<RatingSubject, analytics::Rating>> waiting_;  ///< decided and not read back yet
+  std::vector<std::string> selected_, queue_;
+  std::set<std::string> rated_;  ///< of the queue
+  std::string current_;          ///< uuid of the film that is rated, or empty
+  std::string shown_;            ///< uuid whose film was opened
+  QString name_;                 ///< of the rater
+  SeenFilm seen_;
+  bool ran_ = false;  ///< the film ran at the picture before
 
   QComboBox* choice_;
-  QLabel* source_;
-  AttemptBanner* banner_;
   QLabel* raterLabel_;
   QLineEdit* rater_;
   QLabel* participantLabel_;
   QComboBox* participant_;
-  QScrollArea* area_;
-  std::vector<std::pair<std::string, QButtonGroup*>> groups_;
+  QLabel* whichLabel_;
+  QComboBox* which_;
+  QCheckBox* reveal_;
+  QLabel* progress_;
+  QStringListModel films_;
+  QListView* list_;
+  QWidget* left_;  ///< the queue
+  AttemptBanner* banner_;
+  RecordingView* film_;
+  QWidget* middle_;  ///< the film
+  QLabel* source_;
+  RatingFormView* view_;
   QLabel* state_;
   QPushButton *store_, *next_;
-  QCheckBox* reveal_;
-  RecordingView* replay_;
-  std::string shown_;  ///< uuid whose replay was opened
 };
 
 }  // namespace calot::gui

@@ -47,9 +47,11 @@ RecordingView::RecordingView(Parts with)
   });
   connect(replay_.get(), &Replay::positionChanged, this, [this] { timeline_->setPosition(replay_->position().time); });
   connect(replay_.get(), &Replay::failed, this, [this](const QString& reason) {
-    picture_->showText(reason);
+    say(blinded_ ? "This film cannot be shown." : reason);
     fail("No timeline: the recording cannot be shown.");
   });
+  connect(picture_, &ScenePictureWidget::pictureShown, this,
+          [this](quint64 /*step*/, double time) { emit pictureShown(time); });
   connect(&work_, &LongWork::progressed, this, [this](double share) {
     if (!track_) timeline_->setText(QString("Reading the recording … %1 %").arg(static_cast<int>(100.0 * share)));
   });
@@ -59,14 +61,24 @@ RecordingView::RecordingView(Parts with)
 
 RecordingView::~RecordingView() { replay_.reset(); }  // its thread uses the picture
 
-bool RecordingView::open(const analytics::AttemptRow& attempt, const CohortDocument& document, const Figures& figures) {
-  const std::filesystem::path file = findRecording(attempt, document.path(), settings::recordingPlaces());
-  if (file.empty())
-    close("The recording was not found. Open the attempt on its own page to say where it is.",
+void RecordingView::open(const analytics::AttemptRow& attempt, const CohortDocument& document, const Figures& figures) {
+  close("Looking for the recording …", "Looking for the recording …");
+  busy_ = true;
+  const auto lost = [this] {
+    close("The recording was not found, neither beside the cohort nor in the folders that the settings name.",
           "No timeline without the recording.");
-  else
-    openFile(file, attempt.uuid, figures);
-  return !file.empty();
+    emit missing();
+  };
+  finder_.run(
+      [this, attempt, figures, lost, database = document.path(), places = settings::recordingPlaces()] {
+        return [this, lost, figures, uuid = attempt.uuid, file = findRecording(attempt, database, places)] {
+          if (file.empty())
+            lost();
+          else
+            openFile(file, uuid, figures);
+        };
+      },
+      [lost](const QString&) { lost(); });
 }
 
 void RecordingView::openFile(const std::filesystem::path& file, const std::string& attempt, const Figures& figures) {
@@ -78,12 +90,13 @@ void RecordingView::openFile(const std::filesystem::path& file, const std::strin
 }
 
 void RecordingView::close(const QString& text, const QString& timelineText) {
+  finder_.forget();
   work_.cancel();
   replay_->close();
   busy_ = false;
   file_.clear();
   track_.reset();
-  picture_->showText(text);
+  say(text);
   free_->forget({});
   timeline_->setText(timelineText);
 }
@@ -99,6 +112,11 @@ void RecordingView::toggleFreeView() { toggle_->toggle(); }
 void RecordingView::hideEvent(QHideEvent* event) {
   QWidget::hideEvent(event);
   replay_->pause();
+}
+
+void RecordingView::say(const QString& text) {
+  text_ = text;
+  picture_->showText(text);
 }
 
 void RecordingView::fail(const QString& timelineText) {

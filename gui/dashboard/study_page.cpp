@@ -147,7 +147,7 @@ StudyPage::StudyPage()
 QLayout* StudyPage::buildChoices() {
   rule_->addItem("the first", static_cast<int>(analytics::AttemptRule::first));
   rule_->addItem("the mean", static_cast<int>(analytics::AttemptRule::mean));
-  protocol_->setToolTip("A protocol that is registered in this cohort makes the choices (calot protocol register)");
+  protocol_->setToolTip("A protocol that is registered in this cohort makes the choices");
   QBoxLayout* const upper = parts::row({{"&By", fields_.by}, {"C&ompare", fields_.first}, {"w&ith", fields_.second}});
   parts::fill(upper, {{"Of several &attempts", rule_}, parts::spring(), csv_, html_});
   QBoxLayout* const lower = parts::row({{"Pro&tocol", protocol_}, {"Comparable &within", fields_.key, 1}});
@@ -331,8 +331,10 @@ bool StudyPage::makeDocument(const Taker& take) {
 void StudyPage::saveAs(bool html) {
   if (!study_) return;
   const QString target =
-      html ? QFileDialog::getSaveFileName(this, "Write the study as a page", "study.html", "Pages (*.html)")
-           : QFileDialog::getExistingDirectory(this, "Write study.csv, values.csv and flow.csv into");
+      html ? QFileDialog::getSaveFileName(this, "Write the study as a page (the cohort notes it for good)",
+                                          "study.html", "Pages (*.html)")
+           : QFileDialog::getExistingDirectory(
+                 this, "Write study.csv, values.csv and flow.csv into (the cohort notes it for good)");
   if (!target.isEmpty()) write(target, html);
 }
 

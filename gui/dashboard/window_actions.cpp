@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Actions on the selected attempts, and pictures of the dashboard's pages for its documentation.
 #include <algorithm>
-#include <atomic>
 #include <filesystem>
-#include <map>
 #include <QCoreApplication>
 #include <QDesktopServices>
 #include <QElapsedTimer>
@@ -19,15 +17,13 @@
 #include <QStandardPaths>
 #include <QStatusBar>
 #include <QTabWidget>
-#include <QUndoCommand>
-#include <QUndoStack>
 #include <QUrl>
 #include <system_error>
-#include <utility>
 
 #include "gui/attempt/replay_player.h"
 #include "gui/dashboard/attempt_page.h"
 #include "gui/dashboard/attempts_page.h"
+#include "gui/dashboard/course_page.h"
 #include "gui/dashboard/dashboard_window.h"
 #include "gui/dashboard/dialogs.h"
 #include "gui/dashboard/figure_panel.h"
@@ -48,91 +44,6 @@ namespace {
 QString personWhoDecides(QWidget* window) {
   const QString known = settings::person();
   return known.isEmpty() ? QInputDialog::getText(window, "Who decides", "Your pseudonym:").trimmed() : known;
-}
-
-/// Decisions of a person about attempts, and their reversal; the database notes both.
-class DecisionCommand : public QUndoCommand {
- public:
-  using Change = CohortWriter::Change;
-  /// @param writer outlives this
-  /// @param done it was carried out already
-  DecisionCommand(CohortWriter& writer, std::string database, const QString& text, Change redo, Change undo,
-                  bool done = false)
-      : QUndoCommand(text),
-        writer_(writer),
-        database_(std::move(database)),
-        redo_(std::move(redo)),
-        undo_(std::move(undo)),
-        done_(done) {}
-  void redo() override {
-    if (!std::exchange(done_, false)) write(redo_);
-  }
-  void undo() override { write(undo_); }
-
- private:
-  void write(const Change& change) {
-    if (*failed_) {
-      setObsolete(true);  // what could not be done leaves nothing to undo
-      return;
-    }
-    const auto apply = [failed = failed_, change](analytics::CohortDatabase& cohort) {
-      if (!*failed) change(cohort);
-    };
-    writer_.write(database_, apply, [failed = failed_] { *failed = true; });
-  }
-
-  CohortWriter& writer_;
-  std::string database_;
-  Change redo_, undo_;
-  bool done_;
-  std::shared_ptr<std::atomic<bool>> failed_ = std::make_shared<std::atomic<bool>>(false);  ///< by the writer's thread
-};
-
-/// The person who decides, the attempts and their database.
-struct Decision {
-  std::string database, by;
-  std::vector<analytics::AttemptRow> attempts;
-};
-
-/// Keeps the attempts out of studies, or takes that back.
-DecisionCommand* exclusionCommand(CohortWriter& writer, const Decision& decision, bool exclude,
-                                  const std::string& reason) {
-  std::vector<std::string> uuids;
-  for (const analytics::AttemptRow& attempt : decision.attempts) uuids.push_back(attempt.uuid);
-  const std::string by = decision.by;
-  if (exclude) {
-    return new DecisionCommand(
-        writer, decision.database, "exclusion",
-        [=](analytics::CohortDatabase& cohort) { cohort.excludeAttempts(uuids, reason, by); },
-        [=](analytics::CohortDatabase& cohort) { cohort.includeAttempts(uuids, "undone: " + reason, by); });
-  }
-  std::map<std::string, std::vector<std::string>> former;  // reason -> attempts
-  for (const analytics::AttemptRow& attempt : decision.attempts)
-    former[attempt.exclusionReason].push_back(attempt.uuid);
-  return new DecisionCommand(
-      writer, decision.database, "inclusion",
-      [=](analytics::CohortDatabase& cohort) { cohort.includeAttempts(uuids, reason, by); },
-      [=](analytics::CohortDatabase& cohort) {
-        for (const auto& [why, attempts] : former) cohort.excludeAttempts(attempts, why, by);
-      });
-}
-
-/// Puts a tag on those attempts that do not have it, or takes it off those that do.
-DecisionCommand* tagCommand(CohortWriter& writer, const Decision& decision, bool add, const std::string& tag) {
-  std::vector<std::string> uuids;
-  for (const analytics::AttemptRow& attempt : decision.attempts) {
-    const bool has = std::find(attempt.tags.begin(), attempt.tags.end(), tag) != attempt.tags.end();
-    if (has != add) uuids.push_back(attempt.uuid);
-  }
-  const auto change = [uuids, tag, by = decision.by](bool put) -> DecisionCommand::Change {
-    return [=](analytics::CohortDatabase& cohort) {
-      if (put)
-        cohort.tagAttempts(uuids, tag, by);
-      else
-        cohort.untagAttempts(uuids, tag, by);
-    };
-  };
-  return new DecisionCommand(writer, decision.database, add ? "tag" : "removal of a tag", change(add), change(!add));
 }
 
 constexpr qint64 maxWaiting = 120000;  // ms for a page to have read what it shows
@@ -161,36 +72,22 @@ std::vector<analytics::AttemptRow> DashboardWindow::chosenAttempts() const {
 }
 
 void DashboardWindow::excludeOrInclude(const QString& reason, const QString& by) {
-  const analytics::AttemptRow* current = attempts_->selected();
-  if (current == nullptr) return;
-  const bool exclude = !current->excluded;
-  Decision decision{document_->path(), by.toStdString(), chosenAttempts()};
-  // Those that are so already stay as they are.
-  std::erase_if(decision.attempts,
-                [&](const analytics::AttemptRow& a) { return a.withdrawn || a.excluded == exclude; });
-  undo_->push(exclusionCommand(writer_, decision, exclude, reason.toStdString()));
+  if (const analytics::AttemptRow* current = attempts_->selected())
+    decide(exclusionDecision(chosenAttempts(), !current->excluded, reason.toStdString(), by.toStdString()));
 }
 
 void DashboardWindow::tagSelected(const QString& tag, bool add, const QString& by) {
-  if (attempts_->selected() == nullptr) return;
-  const Decision decision{document_->path(), by.toStdString(), chosenAttempts()};
-  undo_->push(tagCommand(writer_, decision, add, tag.toStdString()));
+  if (attempts_->selected() != nullptr) decide(tagDecision(chosenAttempts(), add, tag.toStdString(), by.toStdString()));
 }
 
 void DashboardWindow::changeGroup(const QString& participant, const QString& group) {
   const auto current =
       std::ranges::find(document_->attempts(), participant.toStdString(), &analytics::AttemptRow::participant);
-  if (current == document_->attempts().end()) return;
-  const auto change = [name = participant.toStdString()](const std::string& to) -> DecisionCommand::Change {
-    return [name, to](analytics::CohortDatabase& cohort) {
-      analytics::ParticipantChange made;
-      made.group = to;
-      cohort.setParticipant(name, made);
-    };
-  };
-  undo_->push(new DecisionCommand(writer_, document_->path(), "change of group", change(group.toStdString()),
-                                  change(current->group)));
+  if (current != document_->attempts().end())
+    decide(groupDecision(participant.toStdString(), group.toStdString(), current->group));
 }
+
+void DashboardWindow::decide(const Decision& decision) { decisions_->take(document_->path(), decision); }
 
 void DashboardWindow::exportList(const QString& file) {
   std::string text;
@@ -214,7 +111,7 @@ void DashboardWindow::print() {
     if (dialog.exec() == QDialog::Accepted) tryTo([&] { paintReport(document, printer); });
   };
   if (!document_ || !static_cast<CohortPage*>(tabs_->currentWidget())->makeDocument(take))
-    showProblem("There is nothing to print here: the pages Attempts, Attempt and Study are printed.");
+    showProblem("There is nothing to print here: the pages Attempts, Attempt, Study and Course are printed.");
 }
 
 void DashboardWindow::fillRecent() {
@@ -241,14 +138,21 @@ void DashboardWindow::showManual() {
 
 void DashboardWindow::verifySelected() {
   if (!document_) return;
-  QStringList files, missing;
-  for (const analytics::AttemptRow& attempt : attempts_->selectedAll()) {
-    const std::filesystem::path file = findRecording(attempt, document_->path(), settings::recordingPlaces());
-    (file.empty() ? missing : files) += QString::fromStdString(file.empty() ? attempt.fileName : file.string());
-  }
-  if (!missing.isEmpty())
-    showProblem("Not found, so not verified: " + missing.join(", ") + ". Settings name the folders with recordings.");
-  if (!files.isEmpty()) importRecordings(files);
+  finder_.run(
+      [this, attempts = attempts_->selectedAll(), database = document_->path(), places = settings::recordingPlaces()] {
+        QStringList files, missing;
+        for (const analytics::AttemptRow& attempt : attempts) {
+          const std::filesystem::path file = findRecording(attempt, database, places);
+          (file.empty() ? missing : files) += QString::fromStdString(file.empty() ? attempt.fileName : file.string());
+        }
+        return [this, files, missing] {
+          if (!missing.isEmpty())
+            showProblem("Not found, so not verified: " + missing.join(", ") +
+                        ". Settings name the folders with recordings.");
+          if (!files.isEmpty()) importRecordings(files);
+        };
+      },
+      [this](const QString& reason) { showProblem(reason); });
 }
 
 void DashboardWindow::pairSelected() {
@@ -297,8 +201,8 @@ void DashboardWindow::askForRecordings() {
     showProblem("Open a cohort database first, or make one: recordings are imported into it.");
     return;
   }
-  const QStringList files =
-      QFileDialog::getOpenFileNames(this, "Import recordings", {}, "Recordings (*.h5);;All files (*)");
+  const QStringList files = QFileDialog::getOpenFileNames(this, "Import recordings (this cannot be undone)", {},
+                                                          "Recordings (*.h5);;All files (*)");
   if (!files.isEmpty()) importRecordings(files);
 }
 
@@ -308,7 +212,7 @@ void DashboardWindow::askForExclusion() {
   const QString by = personWhoDecides(this);
   if (by.isEmpty()) return;
   const QString what = attempt->excluded ? "Include in studies again" : "Exclude from studies";
-  const QString reason = QInputDialog::getText(this, what, "Reason, for the record:").trimmed();
+  const QString reason = QInputDialog::getText(this, what, "Reason, for the record (Ctrl+Z undoes it):").trimmed();
   if (reason.isEmpty()) return;
   settings::setPerson(by);
   excludeOrInclude(reason, by);
@@ -333,10 +237,11 @@ void DashboardWindow::askForTag(bool add) {
   if (by.isEmpty()) return;
   bool agreed = false;
   const QString what = chosen.size() == 1 ? "this attempt" : QString("%1 attempts").arg(chosen.size());
-  const QString tag = QInputDialog::getItem(this, add ? "Add a tag" : "Remove a tag",
-                                            add ? "One word, to put on " + what + ':' : "To take off " + what + ':',
-                                            words, 0, add, &agreed)
-                          .trimmed();
+  const QString tag =
+      QInputDialog::getItem(this, add ? "Add a tag" : "Remove a tag",
+                            (add ? "One word, to put on " : "To take off ") + what + " (Ctrl+Z undoes it):", words, 0,
+                            add, &agreed)
+          .trimmed();
   if (!agreed || tag.isEmpty()) return;
   if (!tryTo([&] { analytics::checkTag(tag.toStdString()); })) return;
   settings::setPerson(by);
@@ -345,20 +250,14 @@ void DashboardWindow::askForTag(bool add) {
 
 void DashboardWindow::askForNorm() {
   if (!document_) return;
-  std::vector<std::string> selected;
-  for (const analytics::AttemptRow& attempt : attempts_->selectedAll()) selected.push_back(attempt.uuid);
-  NormDialog dialog(document_, selected, this);
+  NormDialog dialog(document_, attempts_->selectedUuids(), this);
   connect(&dialog, &NormDialog::made, this, &DashboardWindow::keepNorm);
-  connect(&dialog, &NormDialog::undoWanted, undo_, &QUndoStack::undo);
+  connect(&dialog, &NormDialog::undoWanted, decisions_->undoAction(), &QAction::trigger);
   dialog.exec();
 }
 
 void DashboardWindow::keepNorm(const analytics::Norm& norm) {
-  const auto version = std::make_shared<std::uint32_t>(norm.version);  // the writer's thread alone reads and sets it
-  undo_->push(new DecisionCommand(
-      writer_, document_->path(), "norm " + QString::fromStdString(norm.name),
-      [norm, version](analytics::CohortDatabase& cohort) { *version = cohort.storeNorm(norm); },
-      [norm, version](analytics::CohortDatabase& cohort) { cohort.removeNorm(norm.name, *version, norm.by); }, true));
+  decide(normDecision(norm));
   reload();
 }
 
@@ -391,6 +290,7 @@ void DashboardWindow::savePictures(const QString& folder) {
   save(pair_, "pair.png", [this] { return pair_->settled(); });
   rating_->chooseForm("goals");
   save(rating_, "ratings.png", [this] { return rating_->settled(); });
+  save(course_, "course.png", [this] { return course_->ready(); });
   const auto saveDialog = [&](QDialog& dialog, const char* name) {
     dialog.show();
     waitFor(atOnce);

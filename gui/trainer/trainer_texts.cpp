@@ -124,7 +124,8 @@ QString pointerText(const TrainingStatus& status, recorder::Mode mode, Pointer p
       return practice ? "The picture has the mouse: Escape pauses and frees it."
                       : "The picture has the mouse: Escape frees it.";
     case Pointer::bounded:
-      return "This window system (Wayland) lets no program hold the mouse: it stops at the screen's edge. Ctrl moves it "
+      return "This window system (Wayland) lets no program hold the mouse: it stops at the screen's edge. Ctrl moves "
+             "it "
              "without the hand.";
     case Pointer::free:
       return "The mouse is free and moves no hand. Click the picture to drive again.";

@@ -11,7 +11,7 @@ namespace {
 /// Remedies of a window. The other remedies are the command line's.
 constexpr std::pair<Remedy, const char*> advice[] = {
     {Remedy::replaceExisting, "choose another name, or allow it to be replaced"},
-    {Remedy::recover, "what it holds can be recovered on the command line"},
+    {Remedy::recover, "what it holds up to there can be recovered"},
     {Remedy::moveFork, "choose another time"},
     {Remedy::measureCalibration, "measure its calibration again"},
     {Remedy::addParticipant, "add the participant first"},

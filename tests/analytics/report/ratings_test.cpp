@@ -8,6 +8,7 @@
 #include "tests/analytics/assessment/support/texts.h"
 #include "tests/analytics/cohort/support/cohort_support.h"
 #include "tests/support/fault.h"
+#include "tests/support/message.h"
 
 namespace calot::analytics::ratings_test {
 namespace {
@@ -105,6 +106,32 @@ TEST(Ratings, areStoredOnceAndReplacedWhenAsked) {
   form.sha256[0] = form.sha256[0] == '0' ? '1' : '0';
   expectFault(ErrorKind::refused, "", {"competence", "wording"},
               [&] { database.storeRating(stored(form), rating, false); });
+}
+
+TEST(Ratings, areTakenBackAndBothIsAudited) {
+  const Folder folder;
+  const std::string path = folder.file("c.db");
+  CohortDatabase database(path, Access::create);
+  database.storeAttempt(humanAttempt(1, "P1"), {});
+  Rating rating{"competence", 1, uuidOf(1), "R1", "", {{"competent", 0}}, "", 0.85};
+  expectFault(ErrorKind::refused, path, {uuidOf(1), "competence", "R1"}, [&] { database.removeRating(rating); });
+  const RatingForm form = shipped("competence");
+  rating.formVersion = form.version;
+  database.storeRating(stored(form), rating, false);
+  Rating other = rating;
+  other.rater = "R2";
+  database.storeRating(stored(form), other, false);
+  database.removeRating(rating);
+  ASSERT_EQ(database.ratings().size(), 1U);
+  EXPECT_EQ(database.ratings()[0].rater, "R2") << "of the other rater nothing is taken";
+  expectFault(ErrorKind::refused, path, {"R1"}, [&] { database.removeRating(rating); });
+  SQLite::Database raw(path);
+  EXPECT_EQ(raw.execAndGet("SELECT count(*) FROM audit WHERE action = 'rating-remove'").getInt(), 1);
+  SQLite::Statement seen(raw, "SELECT detail FROM audit WHERE action = 'rating' AND detail LIKE '%R1%'");
+  ASSERT_TRUE(seen.executeStep());
+  expectHolds(seen.getColumn(0).getString(), {"85"});
+  database.storeRating(stored(form), rating, false);
+  EXPECT_EQ(database.ratings().size(), 2U) << "and stored again";
 }
 
 TEST(Ratings, agreementIsThatOfShroutAndFleiss) {

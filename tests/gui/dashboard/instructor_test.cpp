@@ -7,12 +7,10 @@
 #include <filesystem>
 #include <fstream>
 #include <QAction>
-#include <QCheckBox>
 #include <QComboBox>
 #include <QLabel>
 #include <QMenu>
 #include <QPushButton>
-#include <QRadioButton>
 #include <QSignalSpy>
 #include <QSlider>
 #include <QTableView>
@@ -34,14 +32,14 @@
 #include "gui/attempt/widget_parts.h"
 #include "gui/dashboard/attempt_page.h"
 #include "gui/dashboard/attempts_page.h"
-#include "gui/dashboard/checkpoint_table_model.h"
 #include "gui/dashboard/comparison.h"
 #include "gui/dashboard/dashboard_window.h"
 #include "gui/dashboard/dialogs.h"
+#include "gui/dashboard/event_tree.h"
+#include "gui/dashboard/family_tree_model.h"
 #include "gui/dashboard/figure_panel.h"
 #include "gui/dashboard/pair_page.h"
 #include "gui/dashboard/plot_view.h"
-#include "gui/dashboard/ratings_page.h"
 #include "gui/dashboard/timeline.h"
 #include "gui/report/pdf_report.h"
 #include "gui/words/attempt_summary.h"
@@ -60,10 +58,7 @@ using test::patience;
 
 class Instructor : public test::AssessedCohort {
  protected:
-  void SetUp() override {
-    test::AssessedCohort::SetUp();
-    settings::setPerson("R1");
-  }
+  void SetUp() override { test::AssessedCohort::SetUp(); }
   [[nodiscard]] std::unique_ptr<DashboardWindow> opened() const {
     auto window = std::make_unique<DashboardWindow>(apps::assessProgram(),
                                                     std::vector<fs::path>{fs::path(CALOT_SOURCE_DIR) / "assets"});
@@ -331,42 +326,6 @@ TEST_F(Instructor, SeesTwoAttemptsTracesOnOnePlot) {
   child<QComboBox>(page, "pair-trace")->setCurrentIndex(2);
   for (const auto& line : traces.values()) EXPECT_GT(*std::max_element(line.begin(), line.end()), 0.0);
   EXPECT_NE(traces.values()[0], traces.values()[1]);
-}
-
-TEST_F(Instructor, RatesBlindedBesideTheReplayKeepsADraftAndGoesOnByKey) {
-  const QStringList items{"depth-perception", "bimanual-dexterity", "efficiency", "tissue-handling", "autonomy"};
-  const auto chooseGoals = [](DashboardWindow& window) {
-    showPage(window, 7);
-    QComboBox& form = *child<QComboBox>(window, "form");
-    form.setCurrentIndex(form.findText("goals", Qt::MatchStartsWith));
-  };
-  {
-    const auto window = opened();
-    chooseGoals(*window);
-    RatingPage& page = *window->findChild<RatingPage*>();
-    EXPECT_FALSE(child<QLabel>(page, "identity")->isVisible()) << "blinded";
-    child<QCheckBox>(page, "reveal")->click();
-    EXPECT_TRUE(child<QLabel>(page, "identity")->isVisible()) << "unless asked otherwise";
-    ASSERT_TRUE(QTest::qWaitFor([&] { return page.findChild<ScenePictureWidget*>()->shown() > 0; }, patience))
-        << "beside the replay";
-    child<QRadioButton>(page, "efficiency=3")->click();
-  }
-  const auto window = opened();
-  chooseGoals(*window);
-  RatingPage& page = *window->findChild<RatingPage*>();
-  EXPECT_TRUE(child<QRadioButton>(page, "efficiency=3")->isChecked()) << "the draft was kept";
-  for (const QString& item : items) child<QRadioButton>(page, qPrintable(item + "=4"))->click();
-  const std::string first = window->findChild<AttemptsPage*>()->selected()->uuid;
-  window->activateWindow();
-  ASSERT_TRUE(QTest::qWaitForWindowActive(window.get()));
-  ASSERT_TRUE(child<QPushButton>(page, "store-next")->isEnabled());
-  child<QRadioButton>(page, "efficiency=4")->setFocus();
-  QTest::keyClick(child<QRadioButton>(page, "efficiency=4"), Qt::Key_Return, Qt::ControlModifier);
-  const auto ratings = analytics::CohortDatabase(file("c.db").toStdString(), Access::read).ratings();
-  ASSERT_EQ(ratings.size(), 1U);
-  EXPECT_EQ(ratings[0].attempt, first);
-  EXPECT_NE(window->findChild<AttemptsPage*>()->selected()->uuid, first) << "the next one";
-  EXPECT_FALSE(child<QRadioButton>(page, "efficiency=4")->isChecked());
 }
 
 }  // namespace

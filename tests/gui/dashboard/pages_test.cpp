@@ -16,7 +16,6 @@
 #include <QListWidget>
 #include <QMimeData>
 #include <QPushButton>
-#include <QRadioButton>
 #include <QSignalSpy>
 #include <QSlider>
 #include <QTableView>
@@ -33,6 +32,7 @@
 #include "gui/dashboard/attempts_page.h"
 #include "gui/dashboard/dashboard_window.h"
 #include "gui/dashboard/dialogs.h"
+#include "gui/dashboard/family_tree_model.h"
 #include "gui/dashboard/figure_panel.h"
 #include "gui/dashboard/pair_page.h"
 #include "gui/dashboard/study_page.h"
@@ -238,34 +238,6 @@ TEST_F(Pages, WhatCannotBeDecidedIsSaidAndLeavesNothingToUndo) {
   EXPECT_FALSE(undo.canUndo());
 }
 
-TEST_F(Pages, ARaterFillsInAFormAndChangesIt) {
-  DashboardWindow window(apps::assessProgram(), {fs::path(CALOT_SOURCE_DIR) / "assets"});
-  window.show();
-  ASSERT_TRUE(window.openDatabase(file("c.db")));
-  settings::setPerson("R1");
-  showPage(window, 7);
-  QComboBox& form = *child<QComboBox>(window, "form");
-  form.setCurrentIndex(form.findText("goals", Qt::MatchStartsWith));
-  QPushButton& store = *child<QPushButton>(window, "store-rating");
-  const QStringList items{"depth-perception", "bimanual-dexterity", "efficiency", "tissue-handling"};
-  for (const QString& item : items) child<QRadioButton>(window, qPrintable(item + "=4"))->click();
-  EXPECT_FALSE(store.isEnabled()) << "one item is not answered";
-  child<QRadioButton>(window, "autonomy=-")->click();
-  ASSERT_TRUE(store.isEnabled());
-  store.click();
-  const auto ratings = [&] { return analytics::CohortDatabase(file("c.db").toStdString(), Access::read).ratings(); };
-  ASSERT_EQ(ratings().size(), 1U) << child<QLabel>(window, "problem")->text().toStdString();
-  EXPECT_EQ(ratings()[0].form, "goals");
-  EXPECT_EQ(ratings()[0].rater, "R1");
-  EXPECT_EQ(ratings()[0].answers.size(), 4U) << "what was left blank has no score";
-  EXPECT_EQ(ratings()[0].answers.at("efficiency"), 4);
-  child<QRadioButton>(window, "efficiency=2")->click();
-  EXPECT_TRUE(store.text().startsWith("Replace"));
-  store.click();
-  ASSERT_EQ(ratings().size(), 1U);
-  EXPECT_EQ(ratings()[0].answers.at("efficiency"), 2);
-}
-
 TEST_F(Pages, TwoRecordingsGoInStep) {
   DashboardWindow window(apps::assessProgram());
   window.show();
@@ -348,7 +320,7 @@ TEST_F(Pages, PicturesOfAllPagesAreWritten) {
   ASSERT_TRUE(window.openDatabase(file("c.db")));
   window.savePictures(folder_.path());
   for (const char* name : {"attempts.png", "attempt.png", "compare.png", "study.png", "trainee.png", "pair.png",
-                           "ratings.png", "norm.png", "settings.png"})
+                           "ratings.png", "course.png", "norm.png", "settings.png"})
     EXPECT_GT(QImage(file(name)).width(),
               std::string(name) == "settings.png" || std::string(name) == "norm.png" ? 400 : 600)
         << name;

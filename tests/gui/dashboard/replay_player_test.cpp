@@ -202,19 +202,23 @@ TEST(ReplayPlayer, EndsInTheMiddleOfALongWay) {
   player.reset();  // joins: hangs here if a wish to end is not heard
 }
 
-TEST(FindRecording, LooksBesideTheDatabaseThenInTheFolders) {
+TEST(FindRecording, TakesTheFileOfItsNameThatHoldsTheAttempt) {
   const Folder folder, other;
   analytics::AttemptRow attempt;
+  attempt.uuid = recorded().attempt;
   attempt.fileName = "r.h5";
   const std::filesystem::path database = folder / "c.db";
   const std::vector<std::filesystem::path> places{(other / "r.h5").parent_path()};
   EXPECT_TRUE(findRecording(attempt, database, places).empty());
-  std::ofstream(other / "r.h5") << "x";
-  EXPECT_EQ(findRecording(attempt, database, places), other / "r.h5");
-  std::ofstream(folder / "r.h5") << "x";
-  EXPECT_EQ(findRecording(attempt, database, places), folder / "r.h5");
+  test::recordPerformer(folder / "r.h5", 0.1, 9);
+  EXPECT_TRUE(findRecording(attempt, database, places).empty()) << "another attempt's";
+  std::filesystem::copy_file(recorded().file, other / "r.h5");
+  EXPECT_EQ(findRecording(attempt, database, places), other / "r.h5") << "not hidden by the one before";
+  std::ofstream(folder / "r.h5", std::ios::trunc) << "x";
+  EXPECT_EQ(findRecording(attempt, database, places), other / "r.h5") << "nor by a damaged one";
+  EXPECT_EQ(findRecording(attempt, database, {}), folder / "r.h5") << "which is named where there is no other";
   // A database from elsewhere cannot name files outside of the places.
-  attempt.fileName = "../" + (folder / "r.h5").parent_path().filename().string() + "/r.h5";
+  attempt.fileName = "../" + (other / "r.h5").parent_path().filename().string() + "/r.h5";
   EXPECT_EQ(findRecording(attempt, database, {}), folder / "r.h5") << "only the file's name counts";
   attempt.fileName = "c.db";
   std::ofstream(folder / "c.db") << "x";

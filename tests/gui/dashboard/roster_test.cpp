@@ -9,7 +9,6 @@
 #include <QTableView>
 #include <QTemporaryDir>
 #include <QTest>
-#include <QUndoStack>
 
 #include "apps/calot-dashboard/assess_program.h"
 #include "gui/dashboard/attempts_page.h"
@@ -18,6 +17,7 @@
 #include "recorder/base/csv.h"
 #include "tests/gui/dashboard/support/cohort.h"
 #include "tests/gui/dashboard/support/recorded.h"
+#include "tests/support/message.h"
 
 namespace calot::gui {
 namespace {
@@ -62,6 +62,12 @@ class Roster : public testing::Test {
     }
     return -1;
   }
+  [[nodiscard]] QAction* actionOfKey(QKeySequence::StandardKey key) const {
+    for (QAction* action : window_->findChildren<QAction*>()) {
+      if (action->shortcut() == QKeySequence(key)) return action;
+    }
+    return nullptr;
+  }
   [[nodiscard]] std::string groupOfP1() const {
     return analytics::CohortDatabase(path_.toStdString(), Access::read).participants().front().group;
   }
@@ -99,11 +105,40 @@ TEST_F(Roster, GroupsAreEditedInPlaceAndUndone) {
   ASSERT_TRUE(shown.wait(20000));
   EXPECT_EQ(groupOfP1(), "expert");
   EXPECT_EQ(cell(rowOf("P1"), Model::groupColumn), "expert") << "of every attempt of theirs";
-  window_->findChild<QUndoStack*>()->undo();
+  QAction* const undo = actionOfKey(QKeySequence::Undo);
+  ASSERT_NE(undo, nullptr);
+  expectHolds(undo->text().toStdString(), {"P1"});
+  QTest::keyClick(table_, Qt::Key_Z, Qt::ControlModifier);
   ASSERT_TRUE(shown.wait(20000));
   EXPECT_EQ(groupOfP1(), "novice");
+  EXPECT_FALSE(undo->isEnabled());
+  QAction* const redo = actionOfKey(QKeySequence::Redo);
+  ASSERT_NE(redo, nullptr);
+  expectHolds(redo->text().toStdString(), {"P1"});
   const QModelIndex nobody = table_->model()->index(rowOf("skilled"), Model::groupColumn);
   EXPECT_FALSE(nobody.flags().testFlag(Qt::ItemIsEditable)) << "a performer is nobody's participant";
+}
+
+TEST_F(Roster, UndoesTheLastDecisionsOneByOne) {
+  QSignalSpy shown(window_.get(), &DashboardWindow::documentShown);
+  const std::string uuid = window_->findChild<AttemptsPage*>()->selected()->uuid;
+  window_->excludeOrInclude("the light failed", "A. Instructor");
+  ASSERT_TRUE(shown.wait(20000));
+  window_->tagSelected("a&b", true, "A. Instructor");
+  ASSERT_TRUE(shown.wait(20000));
+  QAction* const undo = actionOfKey(QKeySequence::Undo);
+  expectHolds(undo->text().toStdString(), {"a&&b", uuid.substr(0, 8)});
+  const auto now = [&] { return *analytics::CohortDatabase(path_.toStdString(), Access::read).attempt(uuid); };
+  EXPECT_EQ(now().tags.size(), 1U);
+  QTest::keyClick(table_, Qt::Key_Z, Qt::ControlModifier);
+  ASSERT_TRUE(shown.wait(20000));
+  EXPECT_TRUE(now().tags.empty());
+  EXPECT_TRUE(now().excluded);
+  expectHolds(undo->text().toStdString(), {"exclude", uuid.substr(0, 8)});
+  QTest::keyClick(table_, Qt::Key_Z, Qt::ControlModifier);
+  ASSERT_TRUE(shown.wait(20000));
+  EXPECT_FALSE(now().excluded);
+  EXPECT_FALSE(undo->isEnabled());
 }
 
 TEST_F(Roster, IsWrittenAsItIsShown) {
