@@ -42,7 +42,8 @@ KeyList keysOf(const QMenuBar& menus) {
                            {"Space", "Play or pause the replay"},
                            {", and .", "One step back, one step forward"},
                            {"Ctrl+Space", "Play or pause a rater's film"},
-                           {"Ctrl+Return", "Store a rating and go to the next film"}});
+                           {"1 to 5, -", "Answer an item of a form, or leave it blank, and go to the next"},
+                           {"Ctrl+Return", "Store a rating and go to the next film; Enter in a form does, too"}});
   return keys;
 }
 
