@@ -123,7 +123,8 @@ void RatingFormView::keyPressEvent(QKeyEvent* event) {
   bool digit = false;
   const int id = event->text() == "-" ? blank : event->text().toInt(&digit);
   const auto focused = [](const auto& item) {
-    return std::ranges::any_of(item.second->buttons(), [](const QAbstractButton* button) { return button->hasFocus(); });
+    return std::ranges::any_of(item.second->buttons(),
+                               [](const QAbstractButton* button) { return button->hasFocus(); });
   };
   auto item = std::ranges::find_if(items_, focused);
   if (item == items_.end())

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Ten tasks of an instructor by real keys: each reaches its goal with the presses that docs/reference/instructor-tasks.md
-// states, and no more than half of the seconds that it took before.
+// Ten tasks of an instructor by real keys: each reaches its goal with the presses that
+// docs/reference/instructor-tasks.md states, and no more than half of the seconds that it took before.
 #include <gtest/gtest.h>
 #include <cmath>
 #include <QApplication>
@@ -269,10 +269,14 @@ TEST_F(TenTasks, FindTheWorstMoment) {
   ASSERT_TRUE(waitFor([&] { return page.settled(); }));
   const double time = chosen[0][0].toDouble();
   EXPECT_NEAR(part<AttemptPage>().replay().position().time, time, 0.011);
-  const auto worst = part<FigurePanel>().worstMoments();
-  ASSERT_FALSE(worst.empty());
-  EXPECT_LE(time, worst.front().time) << "or shortly before it";
-  EXPECT_GE(time, worst.front().time - 2.0 * MomentCycle::leadIn);
+  const CheckpointTableModel& figures = part<FigurePanel>().figures();
+  int that = -1;
+  for (int row = 0; row < figures.rowCount(); ++row) {
+    const analytics::FigureMoments* const found = figures.moments(row);
+    if (found == nullptr || found->moments.empty()) continue;
+    if (std::abs(std::max(0.0, worstOf(found->moments).begin - MomentCycle::leadIn) - time) < 1e-9) that = row;
+  }
+  EXPECT_GE(that, 0) << "it is the worst one of a figure";
 }
 
 TEST_F(TenTasks, Print) {
