@@ -394,7 +394,9 @@ TEST_F(TenTasks, RetractAMistake) {
 
 TEST_F(TenTasks, TheWorstMomentIsFollowedByTheNext) {
   auto& panel = part<FigurePanel>();
-  const std::vector<analytics::ErrorLine> errors{{.time = 3.0}, {.time = 1.0}};
+  std::vector<analytics::ErrorLine> errors(2);
+  errors[0].time = 3.0;
+  errors[1].time = 1.0;
   panel.setTrack({}, errors);
   QSignalSpy chosen(&panel, &FigurePanel::timeChosen);
   for (int i = 0; i < 3; ++i) panel.showWorst();
