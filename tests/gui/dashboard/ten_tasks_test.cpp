@@ -283,7 +283,9 @@ TEST_F(TenTasks, FindTheWorstMoment) {
     if (std::abs(std::max(0.0, worstOf(found->moments).begin - MomentCycle::leadIn) - time) < 1e-9) that = row;
   }
   const auto& errors = part<FigurePanel>().errors();
-  if (!errors.empty()) EXPECT_EQ(time, errors.front().time) << "the gravest error";
+  if (!errors.empty()) {
+    EXPECT_EQ(time, errors.front().time) << "the gravest error";
+  }
   EXPECT_TRUE(!errors.empty() || that >= 0) << "it is the worst one of a figure";
 }
 
