@@ -131,6 +131,10 @@ void serve(const Channel& parent, const GuardProcesses::Task& task) {
   }
 }
 
+constexpr char ready = '+';                    ///< of a copy of this process that can read
+constexpr std::chrono::seconds untilReady(5);  ///< for it to say so
+constexpr int maxCopies = 6;
+
 std::string readThrough(const std::string& file) {
   Recording recording(file);
   for (std::uint64_t n = 0; n < recording.stepCount(); ++n) recording.step(n);
@@ -163,14 +167,28 @@ std::string runGuarded(const std::string& what, const std::function<std::string(
                  fmt::format("reading it needs more than {} MiB of memory; the file is damaged or not a recording",
                              limits.memory / mebibyte));
   };
-  // No other thread is inside HDF5 while the process is copied: the child may use it.
-  ChildProcess child(
-      [&](const Channel& parent) {
-        limitProcess(limits.time, limits.memory);
-        const std::string answer = answerOf(what, task, tooLarge);
-        static_cast<void>(parent.send(std::as_bytes(std::span(answer))));
-      },
-      &hdf5::processLock());
+  const auto work = [&](const Channel& parent) {
+    limitProcess(limits.time, limits.memory);
+    {
+      const hdf5::Session usable;  // or this process waits for ever, and is given up
+    }
+    if (!parent.send(std::as_bytes(std::span(&ready, 1)))) return;
+    const std::string answer = answerOf(what, task, tooLarge);
+    static_cast<void>(parent.send(std::as_bytes(std::span(answer))));
+  };
+  std::optional<ChildProcess> copied;
+  for (int tries = 1; !copied; ++tries) {
+    // No thread is in a Session while the process is copied: the child may use HDF5. A thread that was inside the
+    // library all the same leaves its lock to a child that nobody will ever unlock it for: another copy is made.
+    copied.emplace(work, &hdf5::processLock());
+    char first = 0;
+    const auto began = copied->channel().receive(std::as_writable_bytes(std::span(&first, 1)),
+                                                 std::chrono::steady_clock::now() + untilReady);
+    if (began != Channel::Received::late || tries == maxCopies) break;
+    copied->end(std::chrono::milliseconds(0));
+    copied.reset();
+  }
+  ChildProcess& child = *copied;
   std::vector<std::byte> answer;
   const auto received = child.channel().receiveRest(answer, std::chrono::steady_clock::now() + limits.wall);
   if (received == Channel::Received::late) {
