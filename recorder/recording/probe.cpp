@@ -172,7 +172,7 @@ std::string runGuarded(const std::string& what, const std::function<std::string(
     {
       const hdf5::Session usable;  // or this process waits for ever, and is given up
     }
-    if (!parent.send(std::as_bytes(std::span(&ready, 1)))) return;
+    if (!parent.send(std::as_bytes(std::span(&usableCopy, 1)))) return;
     const std::string answer = answerOf(what, task, tooLarge);
     static_cast<void>(parent.send(std::as_bytes(std::span(answer))));
   };

@@ -8,6 +8,8 @@
 #include <random>
 #include <vector>
 
+#include "analytics/checkpoints/collector.h"
+#include "analytics/checkpoints/hand_motion.h"
 #include "recorder/base/errors.h"
 #include "recorder/replay.h"
 #include "tests/gui/dashboard/support/recorded.h"
@@ -232,8 +234,7 @@ TEST(AttemptTrack, HoldsWhatTheRecordingsStepsSay) {
   EXPECT_DOUBLE_EQ(track.seconds, 3.2);
   EXPECT_DOUBLE_EQ(track.bin, 0.01) << "320 steps need no wider bins";
   // Again, step by step, for both hands.
-  std::array<double, handCount> largest{}, way{};
-  std::array<Vec3, handCount> tip{};
+  std::array<double, handCount> largest{};
   for (std::uint64_t n = 0; n < recording.stepCount(); ++n) {
     const recorder::RecordedStep& step = recording.step(n);
     for (std::size_t h = 0; h < handCount; ++h) {
@@ -241,16 +242,16 @@ TEST(AttemptTrack, HoldsWhatTheRecordingsStepsSay) {
       for (const auto& tick : step.ticks) force = std::max(force, tick.hand[h].force.norm());
       ASSERT_EQ(track.hand[h].force[n], force);
       largest[h] = std::max(largest[h], force);
-      if (n > 0) way[h] += (step.result.hand[h].tipReal - tip[h]).norm();
-      tip[h] = step.result.hand[h].tipReal;
     }
   }
   EXPECT_GT(std::max(largest[0], largest[1]), 0.05) << "the performer touches the liver";
+  const std::array<analytics::Motion, handCount> motion = analytics::motionOf(recording, analytics::motionCutoff);
   for (std::size_t h = 0; h < handCount; ++h) {
     double traced = 0.0;
     for (const double speed : track.hand[h].speed) traced += speed * track.bin;
-    EXPECT_NEAR(traced, way[h], 1e-9) << "speeds add up to the way";
-    EXPECT_GT(way[h], 0.01);
+    const double way = analytics::pathLength(motion[h]);
+    EXPECT_NEAR(traced, way, 1e-9) << "speeds add up to the way that the path's figure has";
+    EXPECT_GT(way, 0.01);
   }
 }
 
