@@ -131,7 +131,7 @@ void serve(const Channel& parent, const GuardProcesses::Task& task) {
   }
 }
 
-constexpr char ready = '+';                    ///< of a copy of this process that can read
+constexpr char usableCopy = '+';               ///< of a copy of this process that can read
 constexpr std::chrono::seconds untilReady(5);  ///< for it to say so
 constexpr int maxCopies = 6;
 
