@@ -47,7 +47,7 @@ class AttemptPage : public CohortPage {
  private:
   void read() override;
   void connectParts();
-  void whenRead(std::function<void()> action);  ///< of the recording: at once where there is none
+  void whenRead(std::function<void()> action);  ///< once the recording was read; at once without one
   void sayMissing();                            ///< of the recording
   void startSheet(const QString& what,
                   std::function<QString(const analytics::ReportDocument&, LongWork::Control&)> then);

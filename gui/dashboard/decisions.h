@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What people decide about attempts and participants: each decision is a change of the cohort with its reversal. One
+// Decisions of people about attempts and participants: each one is a change of the cohort with its reversal. One
 // list of a window holds them, for undo and redo.
 #pragma once
 

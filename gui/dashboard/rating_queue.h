@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a rater has before them: films in an order of their own, the seconds of a film that they saw, and answers that
+// The work of a rater: films in an order of their own, the seconds of a film that they saw, and answers that
 // are not stored yet. Knows no window.
 #pragma once
 
