@@ -35,8 +35,6 @@ class AttemptPage : public CohortPage {
  public slots:
   /// Asks where the recording is.
   void askForRecording();
-  /// Asks for a file, and writes the sheet to it when the recording was read.
-  void askForSheet();
 
  signals:
   void sheetWritten(const QString& text);
@@ -47,15 +45,14 @@ class AttemptPage : public CohortPage {
  private:
   void read() override;
   void connectParts();
-  void whenRead(std::function<void()> action);  ///< once the recording was read; at once without one
-  void sayMissing();                            ///< of the recording
+  void sayMissing();  ///< of the recording
+  void askForSheet();
   void startSheet(const QString& what,
                   std::function<QString(const analytics::ReportDocument&, LongWork::Control&)> then);
 
   std::optional<analytics::AttemptRow> attempt_;
   LongWork work_;
-  std::function<void()> printed_;                    ///< hands over what work_ makes for paper
-  std::vector<std::function<void()>> afterReading_;  ///< what waits for the recording to be read
+  std::function<void()> printed_;  ///< hands over what work_ makes for paper
   WorkStrip* strip_;
   AttemptBanner* banner_;
   VerdictCard* verdict_;
