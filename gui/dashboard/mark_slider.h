@@ -40,7 +40,7 @@ class MarkSlider : public QSlider {
     std::vector<Dot> dots;
     bool whole = false;            ///< counts
     bool lowerIsBetter = true;     ///< values up to the mark pass
-    std::optional<double> mark;    ///< none: there is none yet, and a first move sets it
+    std::optional<double> mark;    ///< none until a first move sets it
     std::optional<double> before;  ///< the mark that the members give, where a person set another
     double start = 0.0;            ///< where a mark begins that is not there yet
   };

@@ -59,7 +59,7 @@ analytics::Rating ratingOf(const analytics::RatingForm& form, const RatingSubjec
 /// were. No name stands there but the rater's, which no other page reads.
 namespace calot::gui::drafts {
 
-FormAnswers answers(const RatingSubject& subject);  ///< empty: there are none
+FormAnswers answers(const RatingSubject& subject);  ///< empty without a draft
 void keepAnswers(const RatingSubject& subject, const FormAnswers& answers);
 void dropAnswers(const RatingSubject& subject);
 SeenFilm seen(const RatingSubject& subject);

@@ -40,7 +40,7 @@ class AttemptInput {
 
   /// Mode of the attempts to come, between sessions. @param calibration file of the device's; empty: the one that it
   /// has
-  /// @throws Error where an assessment may not use it, as recorder::checkCalibration, or there is none
+  /// @throws Error where an assessment may not use it, as recorder::checkCalibration, or it is missing
   virtual void setMode(recorder::Mode /*mode*/, const std::filesystem::path& /*calibration*/) {}
 
   /// Requirements of the source on its run: feedback to motors.
