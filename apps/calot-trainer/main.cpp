@@ -157,8 +157,8 @@ gui::TrainerSetup setUp(const Options& o, const std::optional<recorder::LoadedSc
   setup.settings.attempt = {o.participant, stationOf(o.station, setup.settings.key), o.purpose, o.handedness, mode,
                             o.seed};
   setup.settings.folder = o.folder;
-  // Pictures and timings are taken where nobody moves a hand.
-  setup.settings.fromFirstMotion = o.pictures.empty() && o.seconds == 0.0;
+  // Pictures and timings are taken where nobody moves a hand, and no hand is at the null device.
+  setup.settings.fromFirstMotion = o.pictures.empty() && o.seconds == 0.0 && o.source.device.name != "null";
   setup.cohort = cohortOf(o.cohort);
   SourceOptions performer;
   performer.performer = "skilled";
