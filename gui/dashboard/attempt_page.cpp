@@ -125,11 +125,21 @@ void AttemptPage::connectParts() {
   connect(replay, &Replay::positionChanged, goOn_, [this] { goOn_->setEnabled(recording_->isOpen()); });
   connect(replay, &Replay::positionChanged, force_, [this, replay] { force_->setPosition(replay->position().time); });
   connect(recording_, &RecordingView::opened, this, [this] { figures_->setMomentsText("looking …"); });
-  connect(recording_, &RecordingView::momentsFound, figures_, &FigurePanel::setMoments);
-  connect(recording_, &RecordingView::missing, this, &AttemptPage::sayMissing);
-  connect(recording_, &RecordingView::failed, this, [this] {
+  const auto goOn = [this] {
+    for (const auto& action : std::exchange(afterReading_, {})) action();
+  };
+  connect(recording_, &RecordingView::momentsFound, this, [this, goOn](const auto& moments) {
+    figures_->setMoments(moments);
+    goOn();
+  });
+  connect(recording_, &RecordingView::missing, this, [this, goOn] {
+    sayMissing();
+    goOn();
+  });
+  connect(recording_, &RecordingView::failed, this, [this, goOn] {
     figures_->setMomentsText({});
     find_->setVisible(!recording_->isOpen());
+    goOn();
   });
   connect(recording_, &RecordingView::trackRead, this, [this](const AttemptTrack& track) {
     figures_->setTrack(track.events, track.errors);
@@ -138,6 +148,7 @@ void AttemptPage::connectParts() {
     for (std::size_t h = 0; h < handCount; ++h) forces[h] = track.hand[h].force;
     force_->setTraces(track.seconds, track.bin, std::move(forces));
   });
+  onKey(*this, Qt::Key_W, [this] { whenRead([this] { figures_->showWorst(); }); });
   onKey(*this, Qt::Key_V, [this] { recording_->toggleFreeView(); });
   onKey(*this, Qt::Key_Space, [replay] { replay->togglePlaying(); });
   onKey(*this, Qt::Key_Comma, [replay] { replay->stepBy(-1); });
@@ -153,7 +164,15 @@ void AttemptPage::setAttempt(std::shared_ptr<const CohortDocument> document, con
   if (!same) outdate();
 }
 
+void AttemptPage::whenRead(std::function<void()> action) {
+  if (recording_->reading())
+    afterReading_.push_back(std::move(action));
+  else
+    action();
+}
+
 void AttemptPage::clear() {
+  afterReading_.clear();
   document_.reset();
   attempt_.reset();
   recording_->close("No attempt is chosen.", "No attempt is chosen.");
@@ -166,6 +185,7 @@ void AttemptPage::clear() {
 }
 
 void AttemptPage::read() {
+  afterReading_.clear();
   banner_->showAttempt(*attempt_);
   goOn_->setEnabled(false);
   force_->clear();
@@ -197,11 +217,13 @@ void AttemptPage::askForRecording() {
 }
 
 void AttemptPage::askForSheet() {
+  if (!attempt_) return;
   const QString name = QString("sheet-%1.pdf").arg(QString::fromStdString(attempt_->uuid).left(8));
   const QString file = QFileDialog::getSaveFileName(
       this, "Write the grade sheet", QFileInfo(QString::fromStdString(document_->path())).absolutePath() + '/' + name,
       "PDF (*.pdf)");
-  if (!file.isEmpty()) writeSheet(file.toStdString());
+  // Errors and moments are those of the recording.
+  if (!file.isEmpty()) whenRead([this, file] { writeSheet(file.toStdString()); });
 }
 
 void AttemptPage::startSheet(const QString& what,
@@ -233,10 +255,12 @@ void AttemptPage::writeSheet(const std::filesystem::path& file) {
 bool AttemptPage::makeDocument(const Taker& take) {
   if (!attempt_ || work_.busy()) return false;
   const auto made = std::make_shared<analytics::ReportDocument>();
-  printed_ = [made, take] { take(*made); };
-  startSheet("Making the sheet", [made](const analytics::ReportDocument& document, LongWork::Control&) {
-    *made = document;
-    return QString("The sheet is ready.");
+  whenRead([this, made, take] {
+    printed_ = [made, take] { take(*made); };
+    startSheet("Making the sheet", [made](const analytics::ReportDocument& document, LongWork::Control&) {
+      *made = document;
+      return QString("The sheet is ready.");
+    });
   });
   return true;
 }

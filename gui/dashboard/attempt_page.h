@@ -35,6 +35,8 @@ class AttemptPage : public CohortPage {
  public slots:
   /// Asks where the recording is.
   void askForRecording();
+  /// Asks for a file, and writes the sheet to it when the recording was read.
+  void askForSheet();
 
  signals:
   void sheetWritten(const QString& text);
@@ -45,14 +47,15 @@ class AttemptPage : public CohortPage {
  private:
   void read() override;
   void connectParts();
-  void sayMissing();  ///< of the recording
-  void askForSheet();
+  void whenRead(std::function<void()> action);  ///< once the recording was read; at once without one
+  void sayMissing();                            ///< of the recording
   void startSheet(const QString& what,
                   std::function<QString(const analytics::ReportDocument&, LongWork::Control&)> then);
 
   std::optional<analytics::AttemptRow> attempt_;
   LongWork work_;
-  std::function<void()> printed_;  ///< hands over what work_ makes for paper
+  std::function<void()> printed_;                    ///< hands over what work_ makes for paper
+  std::vector<std::function<void()>> afterReading_;  ///< what waits for the recording to be read
   WorkStrip* strip_;
   AttemptBanner* banner_;
   VerdictCard* verdict_;

@@ -157,6 +157,10 @@ QLayout* AttemptsPage::buildFilters() {
   operators_->addItems({"People and synthetic", "Not synthetic", "Synthetic only"});
   tag_->setToolTip("The menu Edit puts tags on attempts, and takes them off");
   connect(search_, &QLineEdit::textChanged, this, [this] { filter(); });
+  connect(search_, &QLineEdit::returnPressed, this, [this] {
+    if (const analytics::AttemptRow* const found = selected())
+      emit attemptActivated(QString::fromStdString(found->uuid));
+  });
   for (QComboBox* choice : {which_, verdict_, operators_, tag_})
     connect(choice, &QComboBox::currentIndexChanged, this, [this] { filter(); });
   return parts::row({which_,

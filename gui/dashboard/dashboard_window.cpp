@@ -137,7 +137,13 @@ void DashboardWindow::buildMenus() {
   fillRecent();
   add(file, "&New cohort …", QKeySequence::New, [this] { askForNewDatabase(); });
   add(file, "&Import recordings …", Qt::CTRL | Qt::Key_I, [this] { askForRecordings(); });
+  add(file, "Import ne&w recordings", Qt::CTRL | Qt::SHIFT | Qt::Key_I, [this] { importNew(); });
   add(file, "&Print …", QKeySequence::Print, [this] { print(); });
+  QAction* const sheet = add(file, "&Grade sheet …", QKeySequence::Save, [this] {
+    if (attempts_->selected() == nullptr) return;
+    tabs_->setCurrentWidget(attempt_);
+    attempt_->askForSheet();
+  });
   add(file, "&Export the list …", {}, [this] { askForList(); });
   add(file, "&Settings …", Qt::CTRL | Qt::Key_Comma, [this] { SettingsDialog(this).exec(); });
   add(file, "&Quit", Qt::CTRL | Qt::Key_Q, [this] { close(); });
@@ -146,7 +152,7 @@ void DashboardWindow::buildMenus() {
   exclude_ = add(edit, "&Exclude from studies …", Qt::CTRL | Qt::Key_E, [this] { askForExclusion(); });
   exclude_->setEnabled(false);
   add(edit, "Make a &norm …", Qt::CTRL | Qt::Key_M, [this] { askForNorm(); });
-  attempts_->offer({exclude_,
+  attempts_->offer({sheet, exclude_,
                     add(edit, "Change the grou&p", Qt::CTRL | Qt::Key_G,
                         [this] {
                           tabs_->setCurrentWidget(attempts_);
@@ -311,6 +317,21 @@ void DashboardWindow::importRecordings(const QStringList& paths) {
   for (const QString& file : files) settings::rememberRecordingFolder(QFileInfo(file).absolutePath());
   importDock_->show();
   imports_.add(files);
+}
+
+void DashboardWindow::importNew() {
+  if (!document_) return;
+  QStringList files = recordingsIn(QStringList(QFileInfo(QString::fromStdString(document_->path())).absolutePath()) +
+                                   settings::recordingFolders());
+  const auto& attempts = document_->attempts();
+  files.removeIf([&](const QString& file) {
+    return std::ranges::find(attempts, QFileInfo(file).fileName().toStdString(), &analytics::AttemptRow::fileName) !=
+           attempts.end();
+  });
+  if (files.isEmpty())
+    statusBar()->showMessage("No new recordings in the folders that the settings name.", noticeFor);
+  else
+    importRecordings(files);
 }
 
 void DashboardWindow::addBranch(const BranchRequest& request, const QString& parentUuid) {

@@ -54,6 +54,8 @@ class DashboardWindow : public QMainWindow {
   void reload();
   /// Puts recordings (files, and folders with such) into the import's queue. @pre a database is open
   void importRecordings(const QStringList& paths);
+  /// The same with those beside the cohort and in the folders of recordings whose names the cohort does not know.
+  void importNew();
   /// Has a performer go on with an attempt's recording; both are shown side by side when the branch is in the cohort.
   /// @pre a cohort is open
   void addBranch(const BranchRequest& request, const QString& parentUuid);

@@ -38,10 +38,12 @@ KeyList keysOf(const QMenuBar& menus) {
                            {"Arrows", "Rows of a table; dots of a plot; events of a timeline"},
                            {"Left, Right", "In a tree: fold, unfold"},
                            {"Enter", "Open what is chosen; its worst moment, then the next one"},
+                           {"W", "The worst moment of an attempt, then the next one"},
                            {"Space", "Play or pause the replay"},
                            {", and .", "One step back, one step forward"},
                            {"Ctrl+Space", "Play or pause a rater's film"},
-                           {"Ctrl+Return", "Store a rating and go to the next film"}});
+                           {"1 to 5, -", "Answer an item of a form, or leave it blank, and go to the next"},
+                           {"Ctrl+Return", "Store a rating and go to the next film; Enter in a form does, too"}});
   return keys;
 }
 

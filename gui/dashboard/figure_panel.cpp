@@ -74,6 +74,7 @@ FigurePanel::FigurePanel()
 
 void FigurePanel::setTrack(const std::vector<TrackEvent>& events, const std::vector<analytics::ErrorLine>& errors) {
   errors_ = errors;
+  nextWorst_ = 0;
   listEvents(events_, events, errors);
   eventTable_->expandAll();
 }
@@ -197,7 +198,7 @@ void FigurePanel::goToFigure(const std::string& checkpoint, const std::string& s
 
 void FigurePanel::showWorst() {
   if (!errors_.empty()) {
-    emit timeChosen(errors_.front().time);
+    emit timeChosen(errors_[std::exchange(nextWorst_, (nextWorst_ + 1) % errors_.size())].time);
     return;
   }
   int chosen = -1;

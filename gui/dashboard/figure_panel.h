@@ -62,8 +62,8 @@ class FigurePanel : public QWidget {
   [[nodiscard]] const CheckpointTableModel& figures() const { return figures_; }
   /// Goes to the moments of a figure as soon as they are known.
   void goToFigure(const std::string& checkpoint, const std::string& subject);
-  /// Goes to the gravest error; without errors to the moments of the first figure that falls short of the norm, else of
-  /// the first that has any.
+  /// Goes to the gravest error, then to the next; without errors to the moments of the first figure that falls short of
+  /// the norm, else of the first that has any.
   void showWorst();
 
  signals:
@@ -91,6 +91,7 @@ class FigurePanel : public QWidget {
   FamilyTreeModel families_{figures_};
   QStandardItemModel events_{0, 2};
   std::vector<analytics::ErrorLine> errors_;
+  std::size_t nextWorst_ = 0;  ///< of errors_
   MomentCycle cycle_;
   QComboBox* norm_;
   QLabel* verdict_;

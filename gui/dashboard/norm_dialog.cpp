@@ -101,8 +101,10 @@ NormDialog::NormDialog(std::shared_ptr<const CohortDocument> document, std::vect
   setLayout(parts::column({buildFields(), {splitter, 1}, buildRule(), outcome_, resultArea_, strip_, buttons}));
   connectFields();
   connect(buttons, &QDialogButtonBox::rejected, this, &QDialog::accept);
+  make_->setDefault(true);
   gather();
   name_->setFocus();
+  name_->selectAll();
 }
 
 QLayout* NormDialog::buildFields() {
@@ -118,6 +120,7 @@ QLayout* NormDialog::buildFields() {
   offerRaters();
   first_->setChecked(true);
   fields_.synthetic->setToolTip("The norm is marked as one of performers");
+  suggestName();
   return parts::column(
       {parts::row({{noted({{"&Name", name_, 1}}, nameNote_), 1}, {noted({{"Made &by", by_, 1}}, byNote_), 1}}),
        noted({{"&Groups by", fields_.by, 1}, {"Comp&etent are", fields_.first, 1}, {"&Others are", fields_.second, 1}},
@@ -146,6 +149,11 @@ QLayout* NormDialog::buildRule() {
   return noted({{"&Rule", rule_}, least_, parts::spring()}, ruleNote_);
 }
 
+/// The task's name, till a person types another.
+void NormDialog::suggestName() {
+  if (!name_->isModified()) name_->setText(fields_.key->currentText().section('/', 0, 0));
+}
+
 /// Forms by which raters judged attempts make groups, too.
 void NormDialog::offerRaters() {
   std::set<std::string> forms;
@@ -165,6 +173,7 @@ void NormDialog::connectFields() {
     if (fields_.by->currentData().toInt() != byRaters) fields_.offerGroups(document_->attempts());
     gather();
   });
+  connect(fields_.key, &QComboBox::currentIndexChanged, this, &NormDialog::suggestName);
   for (QComboBox* box : {fields_.first, fields_.second, fields_.key, attempts_})
     connect(box, &QComboBox::currentIndexChanged, this, [this] { gather(); });
   for (QCheckBox* box : {first_, fields_.practice, fields_.synthetic})

@@ -42,6 +42,7 @@ class NormDialog : public QDialog {
   QWidget* buildFigures();
   QLayout* buildRule();
   void connectFields();
+  void suggestName();
   void offerRaters();
   [[nodiscard]] analytics::NormRequest request() const;
   void gather();  ///< members again: another choice of groups or attempts

@@ -2,12 +2,15 @@
 #include "gui/dashboard/page_parts.h"
 
 #include <algorithm>
+#include <functional>
+#include <numeric>
 #include <QAbstractItemModel>
 #include <QApplication>
 #include <QEvent>
 #include <QShortcut>
 #include <QTimer>
 
+#include "analytics/report/study_population.h"
 #include "gui/attempt/figure_text.h"
 #include "gui/dashboard/study_view.h"
 
@@ -118,14 +121,24 @@ void GroupFields::offer(const std::vector<analytics::AttemptRow>& attempts) cons
 }
 
 void GroupFields::offerGroups(const std::vector<analytics::AttemptRow>& attempts) const {
-  const QStringList names = textsOf(groupsOf(attempts, options().grouping));
-  for (QComboBox* group : {first, second}) {
+  const analytics::Grouping grouping = options().grouping;
+  const std::vector<std::string> names = groupsOf(attempts, grouping);
+  std::vector<std::ptrdiff_t> sizes;
+  for (const std::string& name : names)
+    sizes.push_back(std::ranges::count_if(
+        attempts, [&](const analytics::AttemptRow& a) { return analytics::groupOf(a, grouping) == name; }));
+  // The two with the most attempts are compared until others are chosen.
+  std::vector<int> chosen(names.size());
+  std::iota(chosen.begin(), chosen.end(), 0);
+  std::ranges::stable_sort(chosen, std::greater(), [&](int at) { return sizes[static_cast<std::size_t>(at)]; });
+  chosen.resize(2, -1);
+  if (chosen[1] >= 0 && chosen[1] < chosen[0]) std::swap(chosen[0], chosen[1]);
+  for (const auto& [group, at] : {std::pair{first, chosen[0]}, std::pair{second, chosen[1]}}) {
     const QSignalBlocker quiet(group);
     group->clear();
-    group->addItems(names);
+    group->addItems(textsOf(names));
+    group->setCurrentIndex(at);
   }
-  const QSignalBlocker quiet(second);
-  second->setCurrentIndex(second->count() > 1 ? 1 : -1);
 }
 
 analytics::StudyOptions GroupFields::options() const {

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "gui/dashboard/rating_form_view.h"
 
+#include <algorithm>
 #include <QButtonGroup>
 #include <QGroupBox>
+#include <QKeyEvent>
 #include <QMouseEvent>
 #include <QRadioButton>
 
@@ -115,6 +117,29 @@ void RatingFormView::setAnswers(const FormAnswers& answers) {
     button->setChecked(true);
     answers_[key] = at->second;
   }
+}
+
+void RatingFormView::keyPressEvent(QKeyEvent* event) {
+  bool digit = false;
+  const int id = event->text() == "-" ? blank : event->text().toInt(&digit);
+  const auto focused = [](const auto& item) {
+    return std::ranges::any_of(item.second->buttons(),
+                               [](const QAbstractButton* button) { return button->hasFocus(); });
+  };
+  auto item = std::ranges::find_if(items_, focused);
+  if (item == items_.end())
+    item = std::ranges::find_if(items_, [this](const auto& i) { return !answers_.contains(i.first); });
+  QAbstractButton* const button = item == items_.end() || (!digit && id != blank) ? nullptr : item->second->button(id);
+  if (button == nullptr) {
+    QScrollArea::keyPressEvent(event);
+    return;
+  }
+  button->click();
+  if (item + 1 != items_.end()) ++item;
+  QAbstractButton* const checked = item->second->checkedButton();
+  QAbstractButton* const next = checked != nullptr ? checked : item->second->buttons().front();
+  next->setFocus(Qt::OtherFocusReason);
+  ensureWidgetVisible(next);
 }
 
 }  // namespace calot::gui

@@ -15,7 +15,8 @@ class QVBoxLayout;
 namespace calot::gui {
 
 /// A form to be filled in: its sections and items, the words of each anchor at its point of the scale, and a choice to
-/// leave an item blank.
+/// leave an item blank. A digit answers the item that has the keyboard, else the first without an answer, `-` leaves it
+/// blank; the next item follows.
 class RatingFormView : public QScrollArea {
   Q_OBJECT
  public:
@@ -29,6 +30,9 @@ class RatingFormView : public QScrollArea {
 
  signals:
   void answered();  ///< by a person
+
+ protected:
+  void keyPressEvent(QKeyEvent* event) override;
 
  private:
   void addItem(QVBoxLayout& layout, const analytics::FormItem& item, const analytics::RatingForm& form);

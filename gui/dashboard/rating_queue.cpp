@@ -83,6 +83,7 @@ namespace calot::gui::drafts {
 namespace {
 
 constexpr const char* raterKey = "rater";
+constexpr const char* formKey = "form";
 
 QSettings store() { return {QSettings::IniFormat, QSettings::UserScope, "calot", "drafts"}; }
 
@@ -132,6 +133,8 @@ void keepFilm(const RatingSubject& subject) {
   store().setValue(lastKey(subject), QString::fromStdString(subject.attempt));
 }
 
+QString form() { return store().value(formKey).toString(); }
+void keepForm(const std::string& name) { store().setValue(formKey, QString::fromStdString(name)); }
 QString rater() { return store().value(raterKey).toString(); }
 void keepRater(const QString& name) { store().setValue(raterKey, name); }
 

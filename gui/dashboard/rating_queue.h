@@ -69,5 +69,7 @@ std::string film(const RatingSubject& subject);
 void keepFilm(const RatingSubject& subject);
 QString rater();  ///< the last one's pseudonym, or empty
 void keepRater(const QString& name);
+QString form();  ///< name of the one that was filled in last, or empty
+void keepForm(const std::string& name);
 
 }  // namespace calot::gui::drafts

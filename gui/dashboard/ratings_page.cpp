@@ -41,7 +41,7 @@ RatingPage::RatingPage()
       state_(parts::plainLabel("rating-state")),
       store_(parts::named("store-rating", new QPushButton("&Store"))),
       next_(parts::named("store-next", new QPushButton("Store, &next"))) {
-  next_->setToolTip("Store it and go to the next film (Ctrl+Return)");
+  next_->setToolTip("Store it and go to the next film (Enter in the form, Ctrl+Return everywhere)");
   list_->setModel(&films_);
   list_->setUniformItemSizes(true);
   list_->setEditTriggers(QAbstractItemView::NoEditTriggers);
@@ -57,7 +57,7 @@ RatingPage::RatingPage()
   setLayout(parts::column({buildHead(), {all, 1}}));
   connectParts();
   setSelected({});
-  begin_ = choice_;
+  begin_ = view_;
 }
 
 QBoxLayout* RatingPage::buildHead() {
@@ -104,6 +104,7 @@ void RatingPage::connectParts() {
   connect(film_, &RecordingView::pictureShown, this, &RatingPage::takePicture);
   connect(view_, &RatingFormView::answered, this, [this] {
     drafts::keepAnswers(subject(), view_->answers());
+    drafts::keepForm(form()->name);
     showState();
   });
   connect(store_, &QPushButton::clicked, this, [this] { store(false); });
@@ -112,6 +113,7 @@ void RatingPage::connectParts() {
   };
   connect(next_, &QPushButton::clicked, this, storeAndGo);
   onKey(*this, Qt::CTRL | Qt::Key_Return, storeAndGo);
+  for (const Qt::Key key : {Qt::Key_Return, Qt::Key_Enter}) onKey(*view_, key, storeAndGo);
   onKey(*this, Qt::CTRL | Qt::Key_Space, [this] { film_->replay().togglePlaying(); });
   onKey(*this, Qt::Key_Comma, [this] { film_->replay().stepBy(-1); });
   onKey(*this, Qt::Key_Period, [this] { film_->replay().stepBy(1); });
@@ -127,6 +129,7 @@ void RatingPage::readForms(const std::vector<std::filesystem::path>& folders) {
     if (fault_.isEmpty()) fault_ = fault;
   }
   refill(*choice_, titles);
+  chooseForm(drafts::form());
   showForm();
 }
 
@@ -273,6 +276,7 @@ void RatingPage::goToNext() {
     const std::string& uuid = queue_[(from + i) % queue_.size()];
     if (rated_.contains(uuid)) continue;
     goTo(uuid);
+    view_->setFocus(Qt::OtherFocusReason);  // begins with the first item
     return;
   }
   showState();

@@ -50,6 +50,7 @@ class RecordingView : public QWidget {
   [[nodiscard]] const QString& text() const { return text_; }                ///< that stood last in place of a picture
   [[nodiscard]] const std::filesystem::path& file() const { return file_; }  ///< that was opened last, or empty
   [[nodiscard]] const std::optional<AttemptTrack>& track() const { return track_; }  ///< once it was read
+  [[nodiscard]] bool reading() const { return busy_; }  ///< something is still to come of the recording
   /// True if everything readable was read and the replay is at its target, or there is no recording.
   [[nodiscard]] bool settled() const;
 
@@ -76,8 +77,8 @@ class RecordingView : public QWidget {
   Figures figures_;
   std::optional<AttemptTrack> track_;
   bool reads_;
+  bool busy_ = false;
   bool blinded_ = false;
-  bool busy_ = false;  ///< something is still to come of the recording
   ScenePictureWidget* picture_;
   FreeView* free_;  ///< beside the endoscope's, where it is asked for
   QPushButton* toggle_;

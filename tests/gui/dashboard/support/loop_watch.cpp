@@ -18,7 +18,7 @@
 namespace calot::gui::test {
 namespace {
 
-constexpr double usualWork = 120.0;  // ms: calibrate() on two cores of 2.5 GHz, as in docs/reference/dashboard.md
+constexpr double usualWork = 120.0;  // ms: calibrate() on two cores of 2.5 GHz
 
 double processorMilliseconds() {
   timespec time{};
