@@ -11,7 +11,7 @@ namespace {
 
 using Subject = EventWords::Subject;
 
-constexpr std::array<EventWords, 20> told{{
+constexpr std::array<EventWords, 21> told{{
     {EventKind::instrumentExchange, Subject::none, "instrument exchanged"},
     {EventKind::instrumentsTouched, Subject::none, "instruments touched"},
     {EventKind::retractionMore, Subject::structure, "more retraction asked for"},
@@ -29,6 +29,7 @@ constexpr std::array<EventWords, 20> told{{
     {EventKind::wallInjured, Subject::structure, "wall burned"},
     {EventKind::vesselSealed, Subject::structure, "sealed"},
     {EventKind::organPerforated, Subject::structure, "perforated"},
+    {EventKind::pressedHard, Subject::structure, "pressed hard"},
     {EventKind::clipDropped, Subject::none, "clip lost"},
     {EventKind::clockStretched, Subject::none, "simulation late, clock stretched"},
     {EventKind::runaway, Subject::none, "simulation failed"},

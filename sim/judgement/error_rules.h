@@ -15,7 +15,7 @@
 namespace calot {
 
 /// Rises when a rule below changes, comes or goes: counts of errors then have a new version.
-inline constexpr std::uint32_t errorRulesVersion = 1;
+inline constexpr std::uint32_t errorRulesVersion = 2;
 
 /// How severe an error is. One critical error makes an attempt unsafe, and it is not passed whatever its other figures.
 enum class Severity : std::uint8_t {
@@ -52,6 +52,7 @@ enum class ErrorRule : std::uint8_t {
   tornFromJaws = 44,
   slipped = 45,
   strandsTorn = 46,
+  pressedHard = 47,
 };
 
 /// Names in the order of subjects.
@@ -98,6 +99,8 @@ class ErrorList {
 
   /// The errors of one step. @pre steps come in their order
   void add(std::span<const JudgedError> errors);
+  /// What was found earlier lasts: its line reaches to this step, at its worst if the value is the largest one so far.
+  void goOn(const JudgedError& error);
   /// Takes back a rule that doesn't hold any more (an open end that was closed), whatever else happened with it.
   void takeBack(ErrorRule rule, std::uint16_t subject);
 

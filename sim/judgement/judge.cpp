@@ -31,6 +31,8 @@ Judge::Judge(const SceneDescription& scene, const JudgementRules& rules)
   const std::size_t firstVessel = scene.organs.size();
   for (const OrganDescription& organ : scene.organs) role_.push_back(organ.role);
   for (const VesselDescription& vessel : scene.vessels) role_.push_back(vessel.role);
+  pressed_.resize(role_.size());
+  pressedSteps_ = static_cast<std::uint32_t>(1000.0 * rules.pressedFor / scene.ticksPerStep + 0.5);
   present_ = !procedure.specimen.empty();
   if (!present_) return;
   fat_ = indexNamed(scene.fat, procedure.fat);
@@ -83,9 +85,10 @@ void Judge::judged(Event event, EventKind kind, double value) {
   event.kind = kind;
   event.value = value;
   now_.events.push_back(event);
-  constexpr std::array<std::pair<EventKind, ErrorRule>, 3> rules{{{EventKind::clipHalfOn, ErrorRule::clipHalfOn},
+  constexpr std::array<std::pair<EventKind, ErrorRule>, 4> rules{{{EventKind::clipHalfOn, ErrorRule::clipHalfOn},
                                                                   {EventKind::clipOnClip, ErrorRule::clipOnClip},
-                                                                  {EventKind::clipTooNear, ErrorRule::clipTooNear}}};
+                                                                  {EventKind::clipTooNear, ErrorRule::clipTooNear},
+                                                                  {EventKind::pressedHard, ErrorRule::pressedHard}}};
   for (const auto& [of, rule] : rules) {
     if (of == kind) find(rule, event);
   }
@@ -205,6 +208,33 @@ void Judge::judgeHarm(const Event& event) {
   if (rule) find(*rule, event);
 }
 
+/// A liver on which an instrument, tip or shaft, presses too hard.
+void Judge::judgePressing(const StepResult& result) {
+  for (std::size_t s = 0; s < role_.size(); ++s) {
+    if (role_[s] != StructureRole::liver) continue;
+    for (std::size_t h = 0; h < handCount; ++h) {
+      const HandResult& hand = result.hand[h];
+      const double force = s < hand.structureForce.size() ? hand.structureForce[s] : 0.0;
+      std::uint32_t& steps = pressed_[s][h];
+      steps = force > rules_.pressedForce ? steps + 1 : 0;
+      if (steps < pressedSteps_) continue;
+      Event event;
+      event.step = result.step;
+      event.kind = EventKind::pressedHard;
+      event.hand = static_cast<std::uint8_t>(h);
+      event.subject = static_cast<std::uint16_t>(s);
+      event.position = hand.tipSimulated;
+      event.value = force;
+      if (steps == pressedSteps_) {
+        judged(event, EventKind::pressedHard, force);
+      } else {
+        errors_.goOn({ErrorRule::pressedHard, event});
+        now_.changed = true;
+      }
+    }
+  }
+}
+
 void Judge::judgeEvent(const std::vector<Event>& events, std::size_t at) {
   const Event& event = events[at];
   const bool isSpared = std::find(spare_.begin(), spare_.end(), event.subject) != spare_.end();
@@ -318,6 +348,7 @@ const Judgement& Judge::observe(const StepResult& result) {
     follow(event, phase);
     judgeEvent(result.events, i);
   }
+  judgePressing(result);
   countErrors();
   if (!judged) return now_;
   const bool allParted =

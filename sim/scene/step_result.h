@@ -65,6 +65,7 @@ enum class EventKind : std::uint16_t {
   retractionMore = 47,      ///< the assistant was asked for more; subject: structure; value: how far it now goes (m)
   retractionLess = 48,      ///< the same for less
   fatTorn = 49,             ///< a string of fat tore; subject: structure; value: its volume (m^3)
+  pressedHard = 50,         ///< judged: an instrument begins to press too hard; subject: structure; value: force (N)
 };
 
 /// Subject of smoke from connective tissue 0.

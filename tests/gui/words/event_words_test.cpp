@@ -45,7 +45,7 @@ TEST(EventWords, HaveOneRowAKind) {
     ++all;
     EXPECT_EQ(words->kind, static_cast<EventKind>(number));
   }
-  EXPECT_EQ(all, 20);
+  EXPECT_EQ(all, 21);
 }
 
 TEST(Telling, TellsAnErrorInTheEventsPlaceAndOfAStructureInOneSentence) {

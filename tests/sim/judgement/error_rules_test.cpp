@@ -82,6 +82,7 @@ const std::map<ErrorRule, Events>& breaking() {
       {ErrorRule::clipOnClip, clipping(ofDuct, 1.0, -0.001)},
       {ErrorRule::clipTooNear, clipping(ofDuct, 1.0, 0.0005)},
       {ErrorRule::tornFromJaws, {told(EventKind::tissueTear, ofGallbladder, 3.0)}},
+      {ErrorRule::pressedHard, {}},
       {ErrorRule::slipped, {told(EventKind::graspSlip, ofGallbladder, 3.0)}},
       {ErrorRule::strandsTorn, {told(EventKind::strandsTorn, 0, 0.01)}}};
   return all;
@@ -117,6 +118,10 @@ TEST(ErrorRules, areBrokenByWhatTheySay) {
     result.vessel[0].covered = hidden ? 1.0 : 0.0;
     result.vessel[1].covered = rule == ErrorRule::notIdentified ? 1.0 : 0.0;
     result.events = events;
+    if (rule == ErrorRule::pressedHard) {
+      result.hand[1].structureForce = {4.0};
+      for (int step = 0; step < 9; ++step) judge.observe(result);
+    }
     const Judgement& now = judge.observe(result);
     ASSERT_FALSE(now.found.empty()) << textOf(rule).name;
     EXPECT_TRUE(std::any_of(now.found.begin(), now.found.end(), [&](const JudgedError& e) { return e.rule == rule; }))
@@ -127,6 +132,44 @@ TEST(ErrorRules, areBrokenByWhatTheySay) {
     EXPECT_EQ(now.errors(textOf(rule).severity), 1U) << textOf(rule).name;
     EXPECT_EQ(now.errors(), 1U) << textOf(rule).name;
   }
+}
+
+TEST(ErrorRules, aLiverIsPressedHardForAWhile) {
+  Judge judge(erring());
+  StepResult result;
+  const Judgement& now = judge.judgement();
+  std::size_t events = 0, found = 0;
+  const auto press = [&](double force, int steps) {
+    result.hand[0].structureForce = {force, 100.0};  // what is not the liver doesn't count
+    for (int i = 0; i < steps; ++i, ++result.step) {
+      judge.observe(result);
+      events += now.events.size();
+      found += now.found.size();
+    }
+  };
+  press(3.38, 500);
+  press(50.0, 9);
+  press(3.0, 1);
+  EXPECT_EQ(now.errors(), 0U) << "as hard as surgeons do, or for less than 0.1 s";
+  press(3.5, 100);
+  const std::uint64_t worst = result.step;
+  press(5.0, 1);
+  press(4.0, 299);
+  ASSERT_EQ(now.errorList.size(), 1U);
+  EXPECT_EQ(now.errorList[0].count, 1U);
+  EXPECT_EQ(now.errorList[0].first, 510U + 9U);
+  EXPECT_EQ(now.errorList[0].last, result.step - 1);
+  EXPECT_EQ(now.errorList[0].worst, worst);
+  EXPECT_EQ(now.errorList[0].value, 5.0);
+  press(0.0, 50);
+  press(4.0, 20);
+  EXPECT_EQ(now.errorList[0].count, 1U) << "within a second";
+  press(0.0, 200);
+  press(4.0, 20);
+  EXPECT_EQ(now.errorList[0].count, 2U);
+  EXPECT_EQ(now.errors(Severity::minor), 2U);
+  EXPECT_EQ(events, 3U) << "each press is an event once";
+  EXPECT_EQ(found, 3U);
 }
 
 TEST(ErrorRules, areAsTheDocumentationHasThem) {
