@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <thread>
 
+#include "recorder/formats/scene_assets.h"
 #include "recorder/kept/kept_engine.h"
 #include "recorder/live/worker_pool.h"
 #include "recorder/recorded_results.h"
@@ -259,6 +260,21 @@ void Seeker::seek(std::uint64_t step) {
   if (!goOn) differs_.reset();
   begun_ = true;
   while (engine_->steps() <= step) advance();
+}
+
+SceneView Seeker::view() {
+  if (!fallen_) {
+    const AttemptHeader& header = recording_.header();
+    const std::vector<Event> events = recording_.events();
+    const bool any =
+        std::any_of(events.begin(), events.end(), [](const Event& e) { return e.kind == EventKind::clipDropped; });
+    fallen_.emplace(any ? sceneFromAssets(header.assets).description.clip : ClipDescription(),
+                    header.tickSeconds * header.ticksPerStep);
+    for (const Event& event : events) fallen_->add(event);
+  }
+  SceneView view = engine_->view();
+  fallen_->show(view);
+  return view;
 }
 
 bool Seeker::isAsRecorded(const RecordedStep& recorded, const EngineStep& step) {

@@ -14,6 +14,7 @@
 
 #include "recorder/base/errors.h"
 #include "recorder/engine/engine.h"
+#include "recorder/engine/fallen_clips.h"
 #include "recorder/engine/observer.h"
 #include "recorder/prepared_scene.h"
 #include "recorder/recording/reader.h"
@@ -167,8 +168,8 @@ class Seeker {
 
   /// Steps done. @pre seek()
   [[nodiscard]] std::uint64_t steps() const { return engine_->steps(); }
-  /// Scene view after that step, and the State as bytes.
-  [[nodiscard]] SceneView view() { return engine_->view(); }
+  /// Scene view after that step, with the clips that fell; and the State as bytes.
+  [[nodiscard]] SceneView view();
   [[nodiscard]] Keyframe keyframe() { return engine_->keyframe(); }
   /// First step since the keyframe that it began at whose State has another digest than the recorded one: from there on
   /// another attempt is shown. Keyframes themselves are the content chain's concern.
@@ -184,6 +185,7 @@ class Seeker {
   bool begun_ = false;
   BriefDigest brief_;
   std::optional<std::uint64_t> differs_;
+  std::optional<FallenClips> fallen_;  ///< none: not read yet
 };
 
 }  // namespace calot::recorder

@@ -202,12 +202,20 @@ std::string PictureRate::report(int width, int height, const std::string& drawnB
   return line + "; drawn by " + drawnBy;
 }
 
+void ViewTap::handOut(SceneView view) {
+  fallen_->show(view);
+  sink_(std::make_shared<const SceneView>(std::move(view)));
+}
+
 void ViewTap::begin(recorder::Session& session) {
   underway_ = 1;
-  sink_(std::make_shared<const SceneView>(session.view()));
+  fallen_.emplace(session.model().scene().clip, session.model().stepSeconds());
+  for (const Event& event : before_) fallen_->add(event);
+  handOut(session.view());
 }
 
 void ViewTap::onStep(const recorder::StepRecord& record) {
+  for (const Event& event : record.result.events) fallen_->add(event);
   const Clock::time_point now = Clock::now();
   if (now < next_) return;
   if (underway_ >= maxUnderway && now < last_ + retryAfter) return;
@@ -216,7 +224,7 @@ void ViewTap::onStep(const recorder::StepRecord& record) {
   last_ = now;
   ++underway_;
   ++taken_;
-  sink_(std::make_shared<const SceneView>(record.view()));
+  handOut(record.view());
 }
 
 }  // namespace calot::gui

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "gui/words/event_words.h"
+#include "recorder/engine/fallen_clips.h"
 #include "recorder/engine/observer.h"
 #include "recorder/engine/session.h"
 #include "recorder/sources/source.h"
@@ -187,6 +188,8 @@ class ViewTap final : public recorder::Observer {
   void onStep(const recorder::StepRecord& record) override;
   void onEnd(recorder::Outcome /*outcome*/) override {}
 
+  /// Before begin(): events of the steps that the session has done, which a branch has of its parent.
+  void setOutFrom(std::vector<Event> before) { before_ = std::move(before); }
   /// Hands out a view of a session that it is to be joined to.
   void begin(recorder::Session& session);
   /// Any thread: a view has been shown.
@@ -198,7 +201,11 @@ class ViewTap final : public recorder::Observer {
  private:
   using Clock = std::chrono::steady_clock;
 
+  void handOut(SceneView view);
+
   Sink sink_;
+  std::vector<Event> before_;
+  std::optional<recorder::FallenClips> fallen_;  ///< none before begin()
   Clock::time_point next_{};  ///< when the next one is due
   Clock::time_point last_{};
   std::atomic<int> underway_{0};  ///< handed out since the last one was shown

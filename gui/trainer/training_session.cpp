@@ -260,6 +260,9 @@ void TrainingSession::attempt(const Command& command) {
   AttemptMonitor monitor(model);
   session.join(writer);
   session.join(monitor);
+  std::vector<Event> before = parent ? parent->events() : std::vector<Event>();
+  std::erase_if(before, [fork](const Event& event) { return event.step >= fork; });
+  tap_.setOutFrom(std::move(before));
   const auto record = [&] {
     if (auto* const device = source->device(); device != nullptr)
       writer.takeRawSamples(device->rawSamples(), session.steps() * scene().ticksPerStep);

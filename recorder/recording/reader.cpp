@@ -58,21 +58,26 @@ struct Recording::Impl {
     columns->readBlock(before, status[row], false, *block);
     columns->readRaw(before, status[row], *block);
     events.assign(static_cast<std::size_t>(status[row].steps - before.steps), {});
-    const std::vector<std::byte>& packed = block->column[layout->events];
-    std::uint64_t latest = 0;
-    for (std::uint64_t i = 0; i < status[row].events - before.events; ++i) {
-      Event e;
-      static_cast<void>(parseRow(std::span(packed).subspan(static_cast<std::size_t>(i) * eventBytes), e));
+    for (const Event& e : parseEvents(block->column[layout->events], before, status[row]))
+      events[static_cast<std::size_t>(e.step - before.steps)].push_back(e);
+    blockRow = row;
+  }
+
+  /// The events between two rows of /status.
+  std::vector<Event> parseEvents(std::span<const std::byte> packed, const StatusRow& before,
+                                 const StatusRow& after) const {
+    std::vector<Event> all(static_cast<std::size_t>(after.events - before.events));
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      Event& e = all[i];
+      static_cast<void>(parseRow(packed.subspan(i * eventBytes), e));
       const auto refuse = [&](const char* why) {
         throw hdf5::damaged(path, "/events", fmt::format("row {} {}", before.events + i, why));
       };
-      if (e.step < before.steps || e.step >= status[row].steps) refuse("belongs to a step outside its flush");
-      if (i > 0 && e.step < latest) refuse("belongs to an earlier step than the row before it");
+      if (e.step < before.steps || e.step >= after.steps) refuse("belongs to a step outside its flush");
+      if (i > 0 && e.step < all[i - 1].step) refuse("belongs to an earlier step than the row before it");
       if (e.hand >= handCount && e.hand != 255) refuse("belongs to no hand");
-      latest = e.step;
-      events[static_cast<std::size_t>(e.step - before.steps)].push_back(e);
     }
-    blockRow = row;
+    return all;
   }
 
   /// Only results of a runaway step may hold numbers that are not finite.
@@ -118,6 +123,16 @@ const RecordedStep& Recording::step(std::uint64_t n) {
   impl.current.result.events = impl.events[static_cast<std::size_t>(n - first)];
   impl.refuseUnfinite(impl.current.result);
   return impl.current;
+}
+
+std::vector<Event> Recording::events() const {
+  if (impl_->layout->minimal) return {};
+  std::vector<std::byte> bytes;
+  {
+    const hdf5::Session session;
+    impl_->columns->readRows(impl_->layout->events, 0, eventCount(), bytes);
+  }
+  return impl_->parseEvents(bytes, {}, impl_->status.back());
 }
 
 const Layout& Recording::layout() const { return *impl_->layout; }

@@ -127,6 +127,10 @@ class Recording {
   /// @pre n < stepCount()
   const RecordedStep& step(std::uint64_t n);
 
+  /// Events of all steps, in their order, read by themselves; none in a golden recording. Those of a runaway step may
+  /// hold numbers that are not finite.
+  [[nodiscard]] std::vector<Event> events() const;
+
   /// Its columns, and the bytes of all rows of one of them (Layout::columns) in the flush of the step that was read
   /// last.
   /// @pre the column is one of ticks, steps or events

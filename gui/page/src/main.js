@@ -165,19 +165,19 @@ function setTimeline() {
   showVerdict();
 }
 
-/** Of a scene file; zeros where it tells of none. The engine says what else is wrong with the file. */
-function gravityOf(bytes) {
+/** What pictures need of a scene file: zeros for gravity where it has none. The engine says what else is wrong with it. */
+function pictured(bytes) {
   try {
-    const { gravity } = JSON.parse(new TextDecoder().decode(bytes));
-    if (Array.isArray(gravity) && gravity.length === 3 && gravity.every(Number.isFinite)) return gravity;
+    const { gravity, clip } = JSON.parse(new TextDecoder().decode(bytes));
+    return { gravity: Array.isArray(gravity) && gravity.length === 3 && gravity.every(Number.isFinite) ? gravity : [0, 0, 0], clip };
   } catch { /* no scene file */ }
-  return [0, 0, 0];
+  return { gravity: [0, 0, 0] };
 }
 
 const fromReader = {
   scene: ({ files }) => {
     mark('scene');
-    threads.picture.postMessage({ kind: 'gravity', gravity: gravityOf(files[0].content) });
+    threads.picture.postMessage({ kind: 'scene', ...pictured(files[0].content) });
     threads.player.postMessage({ kind: 'scene', files });
   },
   undecided: ({ simulation }) => refused(`it is of simulation version ${simulation}, and this page has the engine of version ${state.engine.simulation} alone (${state.engine.software})`),

@@ -5,6 +5,7 @@ import { instantiate, place, textAt } from './wasm_host.js';
 
 const blank = [0.043, 0.05, 0.06, 1];
 const smokeSeconds = 2.5;
+const kinds = { clipDropped: 25, smoke: 31 }; // of events
 // Film quality takes about eight times as long as interactive quality (docs/explanation/rendering.md). What one picture takes, both
 // panes of it, decides what pictures have:
 const measured = 6; // pictures that tell
@@ -121,13 +122,15 @@ export function pictureWorker() {
     setTimeout(once, hidden); // a page that is not seen has no frames, but goes on proving
   }
 
-  /** Smoke is no part of a view: it is made of the events of the last seconds (docs/explanation/rendering.md). */
-  function addSmoke(moment) {
+  /** Smoke and clips that fell are no part of a view: they are made of events (docs/explanation/rendering.md). */
+  function addTraces(moment) {
     if (!events) return;
     const oldest = moment - Math.ceil(smokeSeconds / events.stepSeconds);
     const rows = [];
-    for (let i = events.bytes.length / 45 - 1; i >= 0 && events.steps[i] >= oldest; --i)
-      if (events.steps[i] < moment && events.bytes[45 * i + 8] === 31) rows.unshift(events.bytes.subarray(45 * i, 45 * i + 45));
+    for (let i = 0; i < events.steps.length && events.steps[i] < moment; ++i) {
+      const kind = events.bytes[45 * i + 8];
+      if (kind === kinds.clipDropped || (kind === kinds.smoke && events.steps[i] >= oldest)) rows.push(events.bytes.subarray(45 * i, 45 * i + 45));
+    }
     const list = new Uint8Array(8 + 44 * rows.length);
     new DataView(list.buffer).setBigUint64(0, BigInt(rows.length), true);
     rows.forEach((row, i) => {
@@ -135,7 +138,7 @@ export function pictureWorker() {
       list.set(row.subarray(10), 8 + 44 * i + 9);
     });
     place(module, list);
-    module.calot_smoke(events.stepSeconds);
+    module.calot_traces(events.stepSeconds);
   }
 
   const on = {
@@ -162,7 +165,7 @@ export function pictureWorker() {
       try {
         place(module, new Uint8Array(m.view.buffer, m.view.byteOffset, m.view.byteLength));
         if (module.calot_view() !== 1) throw new Error('the engine gave no scene view');
-        addSmoke(m.moment);
+        addTraces(m.moment);
         const first = !seen;
         seen = true;
         const extent = Array.from(new Float64Array(module.memory.buffer, module.calot_extent() >>> 0, 4));
@@ -182,7 +185,10 @@ export function pictureWorker() {
     },
     orbit(m) { orbit = m.camera; later(); },
     events(m) { events = m; },
-    gravity(m) { module?.calot_gravity(...m.gravity); },
+    scene(m) {
+      module?.calot_gravity(...m.gravity);
+      module?.calot_clips(m.clip?.width, m.clip?.legs);
+    },
     reset() {
       seen = false;
       orbit = null;

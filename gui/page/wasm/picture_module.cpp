@@ -12,6 +12,7 @@
 #include "gui/render/scene_painter.h"
 #include "gui/render/translucent.h"
 #include "gui/render/view_check.h"
+#include "recorder/engine/fallen_clips.h"
 #include "recorder/engine/wire.h"
 #include "sim/scene/scene_view.h"
 
@@ -46,6 +47,7 @@ struct Pictures {
   std::array<gui::DrawListMaker, 2> lists;  ///< the endoscope's, and another camera's: both remember surfaces
   SceneView view;
   Vec3 down = SceneView().down;  ///< of the scene, which no view of an engine contains
+  ClipDescription clip;          ///< likewise
   std::vector<gui::Puff> smoke;
 };
 
@@ -106,6 +108,13 @@ __attribute__((export_name("calot_gravity"))) void calot_gravity(double x, doubl
   pictures().down = downOf(Vec3(x, y, z));
 }
 
+/// Width and length of the scene's clips (m); not a number: the usual one.
+__attribute__((export_name("calot_clips"))) void calot_clips(double width, double legs) {
+  const ClipDescription usual;
+  pictures().clip.width = width > 0.0 ? width : usual.width;
+  pictures().clip.legs = legs > 0.0 ? legs : usual.legs;
+}
+
 /// Takes the placed payload of an engine's scene view. @return 1, or 0 if it is invalid
 __attribute__((export_name("calot_view"))) int calot_view() {
   recorder::wire::View wire;
@@ -118,20 +127,24 @@ __attribute__((export_name("calot_view"))) int calot_view() {
   return 1;
 }
 
-/// Smoke of the view: placed is a list of events, each of the protocol's form, of its last seconds. @return as above
-__attribute__((export_name("calot_smoke"))) int calot_smoke(double stepSeconds) {
+/// What a view knows nothing of, smoke and clips that fell: placed is a list of the events that they are of, each of the
+/// protocol's form. @return as above
+__attribute__((export_name("calot_traces"))) int calot_traces(double stepSeconds) {
   std::vector<recorder::wire::Event> events;
   if (!recorder::decode(page::placed(), events)) return 0;
   gui::SmokeTrail trail;
+  recorder::FallenClips fallen(pictures().clip, stepSeconds);
   // Events of one step belong together: a puff's number counts within its step.
   for (std::size_t i = 0; i < events.size();) {
     std::vector<Event> together;
     const std::uint64_t step = events[i].step;
     for (; i < events.size() && events[i].step == step; ++i) together.push_back(recorder::wire::fromWire(events[i]));
     trail.add(static_cast<double>(step + 1) * stepSeconds, together);
+    for (const Event& event : together) fallen.add(event);
   }
   pictures().smoke = trail.at(pictures().view.time);
   gui::checkSmoke(pictures().smoke);
+  fallen.show(pictures().view);
   return 1;
 }
 

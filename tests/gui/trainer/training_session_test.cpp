@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <thread>
@@ -11,6 +12,7 @@
 #include "gui/trainer/attempt_report.h"
 #include "recorder/base/errors.h"
 #include "recorder/recording/reader.h"
+#include "recorder/replay.h"
 #include "tests/gui/trainer/support/trainer_rig.h"
 #include "tests/support/message.h"
 
@@ -28,6 +30,7 @@ struct Rig {
   recorder::test::Folder folder;
   std::shared_ptr<ScriptInput> input;
   std::atomic<int> views{0};
+  std::atomic<std::size_t> clips{0};  ///< the most that a view has shown
   std::unique_ptr<TrainingSession> session;
 
   explicit Rig(double seconds, recorder::Mode mode = recorder::Mode::practice)
@@ -37,6 +40,7 @@ struct Rig {
     session = std::make_unique<TrainingSession>(std::move(settings), input, [this](auto view) {
       EXPECT_GT(view->surface.size(), 0U);
       ++views;
+      clips = std::max<std::size_t>(clips, view->clip.size());
       session->shown(view->step);
     });
   }
@@ -90,6 +94,20 @@ TEST(TrainingSession, RecordsAsTheCommandLineDoesAndReplaysExactly) {
   const analytics::ErrorLine& error = status.figures.errors->front();
   EXPECT_EQ(error.text, "clip lost");
   EXPECT_NEAR(error.time - std::floor(error.time), 0.82, 0.011);
+  // The first of them is seen as it falls, here and in the replay.
+  EXPECT_GT(rig.clips, 0U);
+  recorder::Seeker seeker(recording);
+  const std::vector<Event> events = recording.events();
+  EXPECT_EQ(events.size(), recording.eventCount());
+  const auto lost = std::ranges::find(events, EventKind::clipDropped, &Event::kind);
+  ASSERT_NE(lost, events.end());
+  const std::uint64_t first = lost->step;
+  seeker.seek(first - 1);
+  EXPECT_TRUE(seeker.view().clip.empty());
+  seeker.seek(first);
+  const SceneView falling = seeker.view();
+  ASSERT_EQ(falling.clip.size(), 1U);
+  EXPECT_LT((falling.clip[0].pose.position - recording.step(first).result.hand[1].tipSimulated).norm(), 0.003);
 }
 
 TEST(TrainingSession, AnAttemptBeginsWhenItsFirstPictureWasShown) {
