@@ -2,6 +2,7 @@
 #include "gui/dashboard/rating_form_view.h"
 
 #include <algorithm>
+#include <QApplication>
 #include <QButtonGroup>
 #include <QGroupBox>
 #include <QKeyEvent>
@@ -62,6 +63,8 @@ void RatingFormView::setForm(const analytics::RatingForm* form) {
     }
   }
   layout->addStretch(1);
+  // Keys go on to the form: what has the focus is about to be deleted.
+  if (widget() != nullptr && widget()->isAncestorOf(QApplication::focusWidget())) setFocus(Qt::OtherFocusReason);
   setWidget(content);  // deletes the former one
 }
 

@@ -129,7 +129,8 @@ TEST(AttemptSummary, figuresOfEarlierRulesSaySo) {
   CheckpointValue early = of("critical-errors", "", 2.0);
   early.version -= 1;
   EXPECT_EQ(errorSentence(Severity::critical, &early),
-            "Critical errors: 2 by version 2 of the rules, which are of version 3 now.");
+            fmt::format("Critical errors: 2 by version {} of the rules, which are of version {} now.", early.version,
+                        early.version + 1));
 }
 
 TEST(AttemptSummary, anAttemptThatDivergedSaysSoFirst) {
