@@ -206,7 +206,7 @@ class ViewTap final : public recorder::Observer {
   Sink sink_;
   std::vector<Event> before_;
   std::optional<recorder::FallenClips> fallen_;  ///< none before begin()
-  Clock::time_point next_{};  ///< when the next one is due
+  Clock::time_point next_{};                     ///< when the next one is due
   Clock::time_point last_{};
   std::atomic<int> underway_{0};  ///< handed out since the last one was shown
   std::atomic<std::uint64_t> taken_{0};

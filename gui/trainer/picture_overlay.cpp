@@ -8,6 +8,7 @@
 #include <QPainter>
 #include <QPainterPath>
 
+#include "gui/attempt/widget_parts.h"
 #include "gui/render/draw_list.h"
 
 namespace calot::gui {
@@ -55,6 +56,14 @@ std::optional<QPointF> directionOutside(const Vec3& tip, QSizeF size, double ver
 }
 
 PictureOverlay::PictureOverlay(QWidget* picture) : QWidget(picture) {
+  auto* const title = parts::plainLabel("sheetTitle", false);
+  title->setText("Learn the controls");
+  parts::embolden(title);
+  auto* const skips = parts::plainLabel("skips", false);
+  skips->setText("Ctrl+K skips a control, Ctrl+E ends");
+  sheet_ = parts::sheet(parts::column({parts::row({title, parts::spring(), skips})}));
+  sheet_->hide();
+  setLayout(parts::column({parts::row({parts::spring(), {sheet_, 2}, parts::spring()}), parts::spring()}));
   setAttribute(Qt::WA_TransparentForMouseEvents);
   setObjectName("over");
   errorShown_.setSingleShot(true);

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <optional>
+#include <QFrame>
 #include <QPointF>
 #include <QRectF>
 #include <QTimer>
@@ -18,13 +19,15 @@ namespace calot::gui {
 /// @param size of the picture (pixels) @param verticalFieldOfView rad
 [[nodiscard]] std::optional<QPointF> directionOutside(const Vec3& tip, QSizeF size, double verticalFieldOfView);
 
-/// Over the picture of the operation: a countdown, a sentence, an error in words when it happens, and at the rim an
-/// arrow towards each instrument that is out of the picture. Takes no mouse.
+/// Over the picture of the operation: a sheet with the controls' tutorial, a countdown, a sentence, an error in words
+/// when it happens, and at the rim an arrow towards each instrument that is out of the picture. Takes no mouse.
 class PictureOverlay : public QWidget {
   Q_OBJECT
  public:
   explicit PictureOverlay(QWidget* picture);
 
+  /// A sheet with the tutorial's title; its layout takes what else stands there.
+  [[nodiscard]] QFrame& sheet() { return *sheet_; }
   /// Large, in the middle: "3". Empty: nothing.
   void showCount(const QString& text);
   /// A sentence below the picture, until another is shown. Empty: nothing.
@@ -48,6 +51,7 @@ class PictureOverlay : public QWidget {
   Severity severity_ = Severity::minor;
   std::array<std::optional<QPointF>, handCount> arrow_;
   QTimer errorShown_;
+  QFrame* sheet_;
 };
 
 }  // namespace calot::gui

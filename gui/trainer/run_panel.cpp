@@ -174,6 +174,14 @@ void RunPanel::setMode(recorder::Mode mode) {
 
 void RunPanel::setTechnical(bool shown) { technical_->setVisible(shown); }
 
+void RunPanel::showHintIn(QLayout* place) {
+  auto* const own = static_cast<QBoxLayout*>(layout());
+  if (place == nullptr)
+    own->insertWidget(own->indexOf(pointer_), hint_);
+  else
+    place->addWidget(hint_);
+}
+
 /// Numbers alone that go on are not worth being read aloud.
 void RunPanel::announce(QLabel* label, const QString& text) {
   static const QRegularExpression numbers("[0-9]+");

@@ -39,6 +39,8 @@ class RunPanel : public QWidget {
   void setMode(recorder::Mode mode);
   /// Sets whether figures are shown that only who looks after the computer needs.
   void setTechnical(bool shown);
+  /// Moves the hint there; null: back into the panel.
+  void showHintIn(QLayout* place);
 
  signals:
   void pauseRequested();

@@ -126,6 +126,7 @@ void TrainerWindow::open(recorder::LoadedScene scene, Purpose purpose) {
   tutorial_.reset();
   if (purpose != Purpose::own) settings.attempt.mode = recorder::Mode::practice;
   if (purpose == Purpose::controls) tutorial_.emplace(setup_.mouse != nullptr);
+  panel_->showHintIn(tutorial_ ? view_->over().sheet().layout() : nullptr);
   if (purpose == Purpose::demonstration) {
     settings.attempt.participant.clear();  // no attempt of theirs
     settings.folder.clear();
@@ -331,6 +332,7 @@ void TrainerWindow::refresh() {
     tutorial_->observe(status, driven());
     if (drives || status.stage == Stage::paused) text.hint = tutorial_->text();
   }
+  view_->over().sheet().setVisible(tutorial_ && !text.hint.isEmpty());
   panel_->show(status, text, tickLength * scene.ticksPerStep);
   if (status.stage == Stage::ended && status.attempt != ended_) showEnd(status, text.result);
   if (!status.problem.empty() || !end_->isVisible())

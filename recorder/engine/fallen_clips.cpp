@@ -34,7 +34,8 @@ Ground groundBelow(const SceneView& view, const Vec3& p) {
   Ground ground;
   for (const SurfaceView& surface : view.surface) {
     for (const Index3& t : surface.triangle) {
-      const Vec3 &a = surface.position[static_cast<std::size_t>(t[0])], &b = surface.position[static_cast<std::size_t>(t[1])],
+      const Vec3 &a = surface.position[static_cast<std::size_t>(t[0])],
+                 &b = surface.position[static_cast<std::size_t>(t[1])],
                  &c = surface.position[static_cast<std::size_t>(t[2])];
       const auto below = meet(p, view.down, a, b, c);
       if (!below || *below < -sunk || *below >= ground.below) continue;

@@ -30,10 +30,10 @@ struct JudgementRules {
   double clearedTwo = 0.10;
   double freedOne = 0.5;  ///< of the bed's lower third that may still be attached
   double freedTwo = 0.05;
-  double bareShare = 0.2;   ///< fat close around a vessel that may be left where it counts as bare
+  double bareShare = 0.2;      ///< fat close around a vessel that may be left where it counts as bare
   double pressedForce = 3.38;  ///< of an instrument on the liver, above which it is pressed hard (N)
   double pressedFor = 0.1;     ///< as long as that lasts at least (s)
-  double encloses = 0.999;  ///< share of a vessel between a clip's legs, below which the clip is half on
+  double encloses = 0.999;     ///< share of a vessel between a clip's legs, below which the clip is half on
   /// Points out of six: the view is satisfactory from here on (the published doublet view).
   int satisfactory = 5;
   /// Points below which a vessel that is divided was not identified.
@@ -127,10 +127,10 @@ class Judge {
   std::size_t fat_ = 0;  ///< the procedure's body of fat
   std::size_t bed_ = 0;  ///< the procedure's connective tissue
   std::vector<Divide> divide_;
-  std::vector<std::size_t> spare_;   ///< structures
-  std::vector<StructureRole> role_;  ///< of the structures
-  std::vector<bool> parted_;         ///< of divide_: it was cut, burned or torn before
-  std::uint32_t pressedSteps_ = 0;   ///< of rules_.pressedFor
+  std::vector<std::size_t> spare_;                             ///< structures
+  std::vector<StructureRole> role_;                            ///< of the structures
+  std::vector<bool> parted_;                                   ///< of divide_: it was cut, burned or torn before
+  std::uint32_t pressedSteps_ = 0;                             ///< of rules_.pressedFor
   std::vector<std::array<std::uint32_t, handCount>> pressed_;  ///< of the structures: steps so far
   std::vector<OpenEnd> open_;
   ErrorList errors_;

@@ -312,6 +312,8 @@ TEST_F(Trainer, AskForOneControlAfterTheOtherAndSaysWhenItWasUsed) {
   window.refresh();
   EXPECT_TRUE(text("hint").startsWith("Control 1 of 10")) << text("hint").toStdString();
   EXPECT_TRUE(child<QLabel>("assistantKeys")->isHidden()) << "the scene has none";
+  const QFrame& sheet = window.view()->over().sheet();
+  EXPECT_TRUE(sheet.isVisible() && sheet.isAncestorOf(child<QLabel>("hint"))) << "over the picture";
   hold(Qt::Key_Down, [&] { return text("hint").contains("Control 2 of 10"); });
   EXPECT_TRUE(text("hint").startsWith(QString::fromUtf8("✓ Done: moving")));
   QTest::keyClick(window.view(), Qt::Key_K, Qt::ControlModifier);
@@ -319,6 +321,11 @@ TEST_F(Trainer, AskForOneControlAfterTheOtherAndSaysWhenItWasUsed) {
   hold(Qt::Key_S, [&] { return text("hint").contains("Control 4 of 10"); });
   EXPECT_TRUE(alerts.filter("Control 1 of 10").size() == 1 && alerts.filter("Control 4 of 10").size() == 1)
       << "announced once each: " << alerts.join(" | ").toStdString();
+  window.begin(trainertest::smallLoadedScene());
+  ASSERT_TRUE(runs(0.1));
+  window.refresh();
+  EXPECT_FALSE(sheet.isVisible());
+  EXPECT_TRUE(window.findChild<RunPanel*>()->isAncestorOf(child<QLabel>("hint"))) << "where hints are else";
 }
 
 TEST_F(Trainer, ReadsAloudWhatItAsksForUntilItIsToldNotTo) {
