@@ -18,7 +18,7 @@ struct Ground {
   Vec3 normal = Vec3::Zero();
 };
 
-/// Where a ray from p meets a triangle (Moeller and Trumbore 1997): how far along it, or nothing.
+/// How far along a ray from p it meets a triangle (Moeller and Trumbore 1997), or nothing.
 std::optional<double> meet(const Vec3& p, const Vec3& along, const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 ab = b - a, ac = c - a, across = along.cross(ac);
   const double volume = ab.dot(across);

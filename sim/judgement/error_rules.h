@@ -99,7 +99,8 @@ class ErrorList {
 
   /// The errors of one step. @pre steps come in their order
   void add(std::span<const JudgedError> errors);
-  /// What was found earlier lasts: its line reaches to this step, at its worst if the value is the largest one so far.
+  /// An error that was found earlier lasts: its line reaches to this step, its worst one where the value is the largest
+  /// so far.
   void goOn(const JudgedError& error);
   /// Takes back a rule that doesn't hold any more (an open end that was closed), whatever else happened with it.
   void takeBack(ErrorRule rule, std::uint16_t subject);

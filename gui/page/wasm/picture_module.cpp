@@ -127,7 +127,7 @@ __attribute__((export_name("calot_view"))) int calot_view() {
   return 1;
 }
 
-/// What a view knows nothing of, smoke and clips that fell: placed is a list of the events that they are of, each of
+/// Smoke, and clips that fell, of which a view knows nothing: placed is a list of the events that they are of, each of
 /// the protocol's form. @return as above
 __attribute__((export_name("calot_traces"))) int calot_traces(double stepSeconds) {
   std::vector<recorder::wire::Event> events;
