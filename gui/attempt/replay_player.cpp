@@ -8,16 +8,13 @@
 #include <exception>
 
 #include "analytics/checkpoints/collector.h"
-#include "analytics/checkpoints/replay_words.h"
+#include "gui/attempt/recording_file.h"
 #include "gui/moments/moments.h"
 #include "gui/view/thread_rank.h"
 #include "gui/words/problem_words.h"
 #include "recorder/base/errors.h"
 #include "recorder/formats/scene_assets.h"
-#include "recorder/kept/kept_engine.h"
 #include "recorder/recorded_results.h"
-#include "recorder/recording/recording_facts.h"
-#include "sim/scene/version.h"
 
 namespace calot::gui {
 namespace {
@@ -107,7 +104,7 @@ class ReplayPlayer::Run {
  public:
   explicit Run(ReplayPlayer& player)
       : player_(player),
-        recording_(openRecording(player.file_, player.attempt_)),
+        recording_(openBeginning(player.file_, player.attempt_)),
         seeker_(recording_),
         stepSeconds_(recording_.seconds() / static_cast<double>(recording_.stepCount())) {
     position_.steps = recording_.stepCount();
@@ -116,6 +113,9 @@ class ReplayPlayer::Run {
 
   void loop() {
     goTo(0);
+    if (player_.receiver_.glimpse && !wasReadThrough(player_.file_))
+      player_.receiver_.glimpse(std::make_shared<const SceneView>(seeker_.view()));
+    readThrough(player_.file_);
     publish(true, false);
     for (;;) {
       Asked wish;
@@ -335,50 +335,6 @@ AttemptTrack readTrack(recorder::Recording& recording,
   tracer.finish();
   if (track.phases.size() == 1 && track.phases[0].phase == Phase::none) track.phases.clear();
   return track;
-}
-
-namespace fs = std::filesystem;
-
-fs::path findRecording(const analytics::AttemptRow& attempt, const fs::path& database,
-                       const std::vector<fs::path>& folders) {
-  // The name comes from a database that anyone may have made: it names a file, never a folder.
-  const fs::path name = fs::path(attempt.fileName).filename();
-  if (name.empty() || name.extension() != ".h5") return {};
-  std::vector<fs::path> places{database.parent_path()};
-  places.insert(places.end(), folders.begin(), folders.end());
-  fs::path unreadable;
-  for (const fs::path& place : places) {
-    const fs::path file = place / name;
-    std::error_code ignored;
-    if (!fs::is_regular_file(file, ignored)) continue;
-    try {
-      if (recorder::identify(file).attempt == attempt.uuid) return file;
-    } catch (const Error&) {
-      if (unreadable.empty()) unreadable = file;  // whoever opens it says why
-    }
-  }
-  return unreadable;
-}
-
-recorder::Recording openRecording(const fs::path& file, const std::string& attempt) {
-  const recorder::ChainVerdict chain = recorder::probe(file);
-  recorder::Recording recording(file);
-  const std::string name = file.filename().string();
-  const std::string& found = recording.header().attempt;
-  if (!attempt.empty() && found != attempt)
-    throw Error(ErrorKind::refused, Where{name},
-                fmt::format("is the recording of attempt {}, not of {}", found, attempt));
-  if (!chain.intact())
-    throw Error(ErrorKind::refused, Where{name},
-                fmt::format("its content chain is broken ({})", analytics::wordsFor(chain)));
-  if (recording.stepCount() == 0) throw Error(ErrorKind::damaged, Where{name}, "holds no step to show");
-  const std::uint32_t version = recording.header().simulationVersion;
-  if (version != simulationVersion && recorder::commandOfEngine(version).empty())
-    throw Error(ErrorKind::undecided, Where{name},
-                fmt::format("was made by simulation version {}; this program has version {}, and no engine of version "
-                            "{} is installed to repeat it",
-                            version, simulationVersion, version));
-  return recording;
 }
 
 }  // namespace calot::gui

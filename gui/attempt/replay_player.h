@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The recording behind an attempt: where it lies, its course over time, and its replay. Knows no window.
+// The recording behind an attempt: its course over time, and its replay. Knows no window.
 #pragma once
 
 #include <array>
@@ -17,7 +17,6 @@
 
 #include "analytics/cohort/cohort_database.h"
 #include "gui/words/event_words.h"
-#include "recorder/recording/probe.h"
 #include "recorder/recording/reader.h"
 #include "recorder/replay.h"
 #include "sim/scene/scene_view.h"
@@ -55,9 +54,11 @@ class ReplayPlayer {
     /// On the player's thread. The view is changed by nobody any more.
     std::function<void(std::shared_ptr<const SceneView>, const PlayerPosition&)> moment;
     std::function<void(const std::string&)> failed;  ///< on the player's thread: one line; nothing more comes
+    /// On the player's thread: the first step, while the rest of the file is still to be read. May be empty.
+    std::function<void(std::shared_ptr<const SceneView>)> glimpse = {};
   };
 
-  /// Opens the file (after a child process read all of it) and shows its first step.
+  /// Opens the file and shows its first step: at once as a glimpse, and as a moment when all of it was read.
   /// @param attempt uuid that the recording must have; empty: any
   ReplayPlayer(std::filesystem::path file, std::string attempt, Receiver receiver);
   /// Waits for the step that is being computed.
@@ -152,18 +153,5 @@ inline constexpr std::uint64_t maxBins = 1500;  ///< of a trace: more than a scr
 /// @throws Error (damaged)
 AttemptTrack readTrack(recorder::Recording& recording,
                        const std::function<void(std::uint64_t, std::uint64_t)>& progress = {});
-
-/// The attempt's recording: the file of its name beside the database, or in one of the folders, in their order, that
-/// holds this attempt. Where none does, the first one of the name that cannot be read; else empty. Reads the files in
-/// child processes: not for an interface's thread.
-std::filesystem::path findRecording(const analytics::AttemptRow& attempt, const std::filesystem::path& database,
-                                    const std::vector<std::filesystem::path>& folders);
-
-/// Opens a recording to be shown. A child process reads all of it first, so that a file that breaks the reading library
-/// takes no window with it.
-/// @param attempt uuid that it must have; empty: any
-/// @throws Error as recorder::probe(); (refused) for another attempt's recording or a broken content chain; (damaged)
-/// without any step; (undecided) for one of another simulation version, which this program cannot simulate.
-recorder::Recording openRecording(const std::filesystem::path& file, const std::string& attempt);
 
 }  // namespace calot::gui

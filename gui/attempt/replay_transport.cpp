@@ -31,6 +31,9 @@ void Replay::open(const std::filesystem::path& file, const std::string& attempt)
                                  replay.open_ = false;
                                  emit replay.failed(text);
                                });
+                             },
+                             [back](std::shared_ptr<const SceneView> view) {
+                               back->pass([&](Replay& replay) { replay.sink_(std::move(view)); });
                              }});
   setSpeed(speed_);
 }

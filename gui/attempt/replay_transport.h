@@ -31,6 +31,7 @@ class Replay : public QObject {
   ~Replay() override;
 
   /// Ends what was open, without waiting for it, and opens another recording. opened() or failed() follows.
+  /// The first picture may come before.
   void open(const std::filesystem::path& file, const std::string& attempt);
   void close();
   [[nodiscard]] bool isOpen() const { return open_; }

@@ -8,7 +8,7 @@
 #include "analytics/cohort/cohort_database.h"
 #include "analytics/report/attempt_sheet.h"
 #include "gui/attempt/figure_text.h"
-#include "gui/attempt/replay_player.h"
+#include "gui/attempt/recording_file.h"
 #include "gui/attempt/verdict_card.h"
 #include "gui/dashboard/dialogs.h"
 #include "gui/dashboard/figure_panel.h"

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "gui/attempt/recording_file.h"
 #include "gui/attempt/widget_parts.h"
 #include "gui/dashboard/dialogs.h"
 

@@ -20,7 +20,7 @@
 #include <QUrl>
 #include <system_error>
 
-#include "gui/attempt/replay_player.h"
+#include "gui/attempt/recording_file.h"
 #include "gui/dashboard/attempt_page.h"
 #include "gui/dashboard/attempts_page.h"
 #include "gui/dashboard/course_page.h"

@@ -269,6 +269,18 @@ ChainVerdict probe(const std::filesystem::path& path) {
   return verdict;
 }
 
+void probeBeginning(const std::filesystem::path& path) {
+  static_cast<void>(runGuarded(
+      path.string(),
+      [&] {
+        Recording recording(path);
+        static_cast<void>(recording.events());
+        if (recording.stepCount() > 0) recording.step(0);
+        return std::string();
+      },
+      readingLimits(path)));
+}
+
 ProbeProcesses::ProbeProcesses(unsigned count) {
   const std::lock_guard<std::mutex> held(shared().lock);
   first_ = shared().processes == nullptr;

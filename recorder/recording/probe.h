@@ -23,6 +23,9 @@ namespace calot::recorder {
 /// file in this process is safe.
 ChainVerdict probe(const std::filesystem::path& path);
 
+/// The same of its beginning: header, /status, events and the first step, which then are safe to read here.
+void probeBeginning(const std::filesystem::path& path);
+
 /// While one exists, probe() of this process forks small processes that were made beforehand instead of this one
 /// (GuardProcesses): for who probes many short recordings. A second one at the same time does nothing.
 class ProbeProcesses {

@@ -204,27 +204,34 @@ TEST(ReplayPlayer, EndsInTheMiddleOfALongWay) {
   player.reset();  // joins: hangs here if a wish to end is not heard
 }
 
-TEST(FindRecording, TakesTheFileOfItsNameThatHoldsTheAttempt) {
-  const Folder folder, other;
-  analytics::AttemptRow attempt;
-  attempt.uuid = recorded().attempt;
-  attempt.fileName = "r.h5";
-  const std::filesystem::path database = folder / "c.db";
-  const std::vector<std::filesystem::path> places{(other / "r.h5").parent_path()};
-  EXPECT_TRUE(findRecording(attempt, database, places).empty());
-  test::recordPerformer(folder / "r.h5", 0.1, 9);
-  EXPECT_TRUE(findRecording(attempt, database, places).empty()) << "another attempt's";
-  std::filesystem::copy_file(recorded().file, other / "r.h5");
-  EXPECT_EQ(findRecording(attempt, database, places), other / "r.h5") << "not hidden by the one before";
-  std::ofstream(folder / "r.h5", std::ios::trunc) << "x";
-  EXPECT_EQ(findRecording(attempt, database, places), other / "r.h5") << "nor by a damaged one";
-  EXPECT_EQ(findRecording(attempt, database, {}), folder / "r.h5") << "which is named where there is no other";
-  // A database from elsewhere cannot name files outside of the places.
-  attempt.fileName = "../" + (other / "r.h5").parent_path().filename().string() + "/r.h5";
-  EXPECT_EQ(findRecording(attempt, database, {}), folder / "r.h5") << "only the file's name counts";
-  attempt.fileName = "c.db";
-  std::ofstream(folder / "c.db") << "x";
-  EXPECT_TRUE(findRecording(attempt, database, places).empty()) << "no recording by its name";
+TEST(ReplayPlayer, GivesAGlimpseBeforeAllWasRead) {
+  const Folder folder;
+  std::filesystem::copy_file(recorded().file, folder / "new.h5");
+  const auto glimpses = [&](const char* file, bool intact) {
+    std::vector<std::uint64_t> seen;
+    Listener listener;
+    ReplayPlayer::Receiver receiver = listener.receiver();
+    receiver.glimpse = [&](const std::shared_ptr<const SceneView>& view) {
+      EXPECT_EQ(listener.view(), nullptr) << "before the first moment";
+      seen.push_back(view->step);
+    };
+    const ReplayPlayer player(folder / file, "", receiver);
+    EXPECT_EQ(listener.awaitStep(0), intact) << listener.awaitFault();
+    return seen;
+  };
+  EXPECT_EQ(glimpses("new.h5", true), std::vector<std::uint64_t>{1}) << "the step is done";
+  EXPECT_TRUE(glimpses("new.h5", true).empty()) << "all of it was read before";
+  // The chain's last link, where the file has it.
+  const auto link = recorder::Recording(folder / "new.h5").status().back().chain;
+  std::fstream file(folder / "new.h5", std::ios::in | std::ios::out | std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  const auto at = bytes.rfind(std::string(reinterpret_cast<const char*>(link.data()), link.size()));
+  ASSERT_NE(at, std::string::npos);
+  file.clear();
+  file.seekp(static_cast<std::streamoff>(at));
+  file.put(static_cast<char>(bytes[at] ^ 1));
+  file.close();
+  EXPECT_EQ(glimpses("new.h5", false), std::vector<std::uint64_t>{1}) << "and then it is refused";
 }
 
 TEST(AttemptTrack, HoldsWhatTheRecordingsStepsSay) {
