@@ -14,7 +14,8 @@
 
 namespace calot::gui {
 
-/// interactive: one sample a pixel, coarse occlusion; film: four samples a pixel, fine occlusion, soft shadow.
+/// interactive: one sample a pixel, smoothed edges, coarse occlusion; film: four samples a pixel, fine occlusion, soft
+/// shadow.
 enum class Quality { interactive, film };
 
 /// Surroundings drawn around the scene.

@@ -265,6 +265,7 @@ Image ScenePainter::paint(const DrawList& list, const Sight& sight, double verti
   gl_.ReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, image.rgba.data());
   if (gl_.GetError() != GL_NO_ERROR)
     throw Error(ErrorKind::failure, "rendering: OpenGL reported an error; is memory short?");
+  if (settings.quality == Quality::interactive) smoother_.smooth(image);
   return image;
 }
 

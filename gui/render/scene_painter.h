@@ -6,6 +6,7 @@
 #include <string>
 
 #include "gui/render/draw_list.h"
+#include "gui/render/edge_smoother.h"
 #include "gui/render/gl_objects.h"
 #include "gui/render/renderer.h"
 #include "gui/render/scene_resources.h"
@@ -26,7 +27,8 @@ class ScenePainter {
   /// @pre checkPictureSize(width, height) and checkView() have passed
   [[nodiscard]] Image paint(const DrawList& list, const Sight& sight, double verticalFieldOfView, int width, int height,
                             const RenderSettings& settings);
-  /// The same without reading it back: the framebuffer that is bound then holds the picture, its first row lowest.
+  /// The same without reading it back, and edges of interactive quality are not smoothed: the framebuffer that is bound
+  /// then holds the picture, its first row lowest.
   void draw(const DrawList& list, const Sight& sight, double verticalFieldOfView, int width, int height,
             const RenderSettings& settings);
 
@@ -62,6 +64,7 @@ class ScenePainter {
   std::unique_ptr<PictureTargets> targets_;
   SceneTextures textures_;
   TriangleBuffer surfaces_, sheets_, smoke_;
+  EdgeSmoother smoother_;
   GLuint emptyArray_ = 0;  ///< for triangles that shaders make
 };
 

@@ -37,7 +37,11 @@ std::vector<std::uint8_t> asBytes(const std::vector<float>& volume) {
 GLenum radianceFormat(Quality q) { return q == Quality::film ? GL_RGBA16F : GL_RGBA8; }
 int samplesAside(Quality q) { return q == Quality::film ? 2 : 1; }
 int coarse(int side, Quality q) { return q == Quality::film ? side : (side + 1) / 2; }
-int shadowSide(Quality q) { return q == Quality::film ? 1536 : 512; }
+// Interactive: texels about as large as pixels, which show neither a shadow's steps nor cost what no pixel shows.
+int shadowSide(int w, int h, Quality q) {
+  constexpr int film = 1536, least = 512;
+  return q == Quality::film ? film : std::clamp(4 * std::min(w, h) / 3, least, film);
+}
 
 // Three independent 32-bit values for a lattice point: "pcg3d" of Jarzynski and Olano, "Hash functions for GPU
 // rendering", JCGT 9(3), 2020.
@@ -270,7 +274,7 @@ PictureTargets::PictureTargets(const GlFunctions& gl, int w, int h, Quality q)
     : width(w),
       height(h),
       quality(q),
-      shadow(gl, shadowSide(q), shadowSide(q), {{}, true, false, q == Quality::interactive}),
+      shadow(gl, shadowSide(w, h, q), shadowSide(w, h, q), {{}, true, false, q == Quality::interactive}),
       prepass(gl, coarse(w, q), coarse(h, q), {{GL_R32F, GL_RGBA8}, true}),
       open(gl, prepass.width() / occlusionStride(q), prepass.height() / occlusionStride(q), {{GL_RGBA8}}),
       smoothed(gl, open.width(), open.height(), {{GL_R8}, false, true}),

@@ -13,4 +13,4 @@
 #define FINE 0
 #define EXACT 0
 #define SOFT_SHADOWS 0
-#define SHADOW_OFFSET 0.0016
+#define SHADOW_OFFSET 0.0007

@@ -27,6 +27,11 @@ float shadow(vec3 p, vec3 n) {
     lit += litAt(place + vec3(wide / q.z * penumbra * (turned * at), 0.0));
   }
   return lit / float(SHADOW_SAMPLES);
+#elif LOOK == 3 || LOOK == 7 || LOOK == 8
+  // The surroundings have half the size: a shadow that is narrower than their pixels would break into dashes.
+  vec2 aside = 0.6 * shadowFocal * pixelShare / abs(focal);
+  return 0.25 * (litAt(place + vec3(aside, 0.0)) + litAt(place - vec3(aside, 0.0)) +
+                 litAt(place + vec3(aside.x, -aside.y, 0.0)) + litAt(place + vec3(-aside.x, aside.y, 0.0)));
 #else
   return litAt(place);
 #endif

@@ -85,6 +85,9 @@ void main() {
   }
 
   vec3 r = reflect(-v, n);
+#if LOOK >= 10 && !EXACT
+  nv = max(nv, 0.25);  // a rim narrower than a pixel would be a line of dots along a shaft
+#endif
   vec3 fresnel = m.mirror + (max(vec3(0.55 - 0.5 * m.roughness), m.mirror) - m.mirror) * fifth(1.0 - nv);
   vec3 around = surroundings(r) * (0.2 + 0.8 * min(received, 1.0)) * occlusion;
   // Polished metal mirrors instruments and drapes too: a greyer room, brightest straight ahead of the lens.
