@@ -10,6 +10,7 @@
 #include <QApplication>
 #include <QSize>
 #include <QStandardPaths>
+#include <QTimer>
 #include <string>
 #include <system_error>
 #include <vector>
@@ -82,6 +83,7 @@ int run(const Options& o, int argc, char** argv) {
     throw Error(ErrorKind::invalid, "--pictures: needs a cohort database, not a recording");
   const std::optional<QSize> asked = windowSize(o.look);
   if (!o.pictures.empty()) requireFolder(o.pictures, "pictures");
+  const recorder::ProbeProcesses probes(2, true);  // while this process is small
   const std::unique_ptr<QApplication> application = openScreen(argc, argv);
   useGraphics(o.graphics);
   gui::theme::apply(
@@ -101,6 +103,8 @@ int run(const Options& o, int argc, char** argv) {
     window.savePictures(QString::fromLocal8Bit(o.pictures.c_str()));
     return 0;
   }
+  constexpr int idle = 400;  // ms after which nothing else is being done
+  QTimer::singleShot(idle, &window, &gui::DashboardWindow::prepare);
   return QApplication::exec();
 }
 

@@ -19,6 +19,8 @@ class AttemptPage : public CohortPage {
  public:
   AttemptPage();
 
+  /// Makes ready what draws, before there is an attempt.
+  void prepare() { recording_->prepare(); }
   /// Reads what belongs to the attempt when the page is visible.
   void setAttempt(std::shared_ptr<const CohortDocument> document, const analytics::AttemptRow& attempt);
   void clear();

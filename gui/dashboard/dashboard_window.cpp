@@ -319,6 +319,8 @@ void DashboardWindow::importRecordings(const QStringList& paths) {
   imports_.add(files);
 }
 
+void DashboardWindow::prepare() { attempt_->prepare(); }
+
 void DashboardWindow::importNew() {
   if (!document_) return;
   QStringList files = recordingsIn(QStringList(QFileInfo(QString::fromStdString(document_->path())).absolutePath()) +

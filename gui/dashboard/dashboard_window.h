@@ -41,6 +41,8 @@ class DashboardWindow : public QMainWindow {
   explicit DashboardWindow(const AssessProgram& program, const std::vector<std::filesystem::path>& assetFolders = {});
   ~DashboardWindow() override;
 
+  /// Makes ready what draws attempts: for when nothing else is to be done.
+  void prepare();
   /// Shows an open document. @pre not null
   void setDocument(std::shared_ptr<const CohortDocument> document);
   /// Opens a database, one of an older schema after it was brought up to date. On failure says why in one line on the

@@ -43,6 +43,8 @@ class RecordingView : public QWidget {
   /// Shows texts instead of a recording.
   void close(const QString& text, const QString& timelineText = {});
 
+  /// Makes ready what draws, before there is a recording.
+  void prepare() { picture_->prepare(); }
   [[nodiscard]] Replay& replay() const { return *replay_; }
   void toggleFreeView();
   [[nodiscard]] bool isOpen() const { return replay_->isOpen(); }

@@ -9,6 +9,7 @@
 #include <QPainter>
 #include <utility>
 
+#include "gui/render/every_look.h"
 #include "gui/render/renderer.h"
 #include "gui/view/thread_rank.h"
 
@@ -107,9 +108,20 @@ void PictureLoop::clear() {
   stale_ = rough_ = false;
 }
 
+void PictureLoop::prepare(std::shared_ptr<const SceneView> view) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (!drawn_ && newest_ == nullptr) prepared_ = std::move(view);
+  }
+  wake_.notify_all();
+}
+
 bool PictureLoop::take(bool warm, Work& work) {
   std::unique_lock lock(mutex_);
-  const auto due = [&] { return stop_ || (newest_ != nullptr && width_ > 0 && height_ > 0 && (stale_ || !warm)); };
+  const auto due = [&] {
+    if (stop_ || prepared_ != nullptr) return true;
+    return newest_ != nullptr && width_ > 0 && height_ > 0 && (stale_ || (!warm && drawn_));
+  };
   bool rests = false;  // no view came for a moment after one that was drawn roughly
   while (!due() && !rests) {
     if (!rough_)
@@ -118,6 +130,10 @@ bool PictureLoop::take(bool warm, Work& work) {
       rests = wake_.wait_for(lock, moment) == std::cv_status::timeout && rough_;
   }
   if (stop_) return false;
+  if (prepared_ != nullptr) {
+    work = {std::exchange(prepared_, nullptr), minSide, minSide};
+    return true;
+  }
   work.view = newest_;
   work.still = rests && !stale_;
   work.side = work.still ? 1.0 : scale_.side();
@@ -152,6 +168,10 @@ void PictureLoop::run() {
       scale_.drew(work.side, std::chrono::duration<double>(Clock::now() - begin).count());
     }
     warm = true;
+    {
+      const std::lock_guard lock(mutex_);
+      if (work.number > 0 && !std::exchange(drawn_, true)) wake_.notify_all();
+    }
     const std::lock_guard lock(delivering_);
     if (work.number == 0 || work.number < delivered_) continue;
     delivered_ = work.number;
@@ -191,6 +211,8 @@ ScenePictureWidget::ScenePictureWidget(std::size_t drawers, double rate) {
 }
 
 ScenePictureWidget::~ScenePictureWidget() { loop_.reset(); }
+
+void ScenePictureWidget::prepare() { loop_->prepare(std::make_shared<const SceneView>(everyLook())); }
 
 void ScenePictureWidget::drawBy(Graphics graphics) { chosen = graphics; }
 

@@ -88,6 +88,8 @@ class PictureLoop {
   void resize(int width, int height);
   /// Any thread: forgets the view that waits to be drawn.
   void clear();
+  /// Any thread: draws this view nowhere, unless there was a picture: what draws is ready then.
+  void prepare(std::shared_ptr<const SceneView> view);
 
  private:
   struct Work {
@@ -107,9 +109,11 @@ class PictureLoop {
   std::mutex mutex_;
   std::condition_variable wake_;
   std::shared_ptr<const SceneView> newest_;
-  int width_ = 0, height_ = 0;  ///< 0: none is wanted yet
-  bool stale_ = false;          ///< the newest view was not taken yet in this size
-  bool rough_ = false;          ///< it was taken, and is to be drawn better once it stands still
+  std::shared_ptr<const SceneView> prepared_;  ///< is still to be drawn nowhere
+  bool drawn_ = false;                         ///< one picture is there: other drawers make themselves ready
+  int width_ = 0, height_ = 0;                 ///< 0: none is wanted yet
+  bool stale_ = false;                         ///< the newest view was not taken yet in this size
+  bool rough_ = false;                         ///< it was taken, and is to be drawn better once it stands still
   bool refine_;
   PictureScale scale_;
   bool stop_ = false;
@@ -132,6 +136,8 @@ class ScenePictureWidget : public QWidget {
 
   /// Any thread; returns at once. @pre not null, changed by nobody any more
   void showView(std::shared_ptr<const SceneView> view);
+  /// Makes ready what draws, before there is a view.
+  void prepare();
   /// Shows a text instead of a picture, until the next view.
   void showText(const QString& text);
 

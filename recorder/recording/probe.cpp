@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <csignal>
 #include <fstream>
+#include <map>
 #include <memory>
 #include <new>
 #include <optional>
@@ -141,10 +142,17 @@ std::string readThrough(const std::string& file) {
   return packed(recording.verifyChain());
 }
 
-/// The processes of this program, while there are some.
+std::string readBeginning(const std::string& file) {
+  Recording recording(file);
+  static_cast<void>(recording.events());
+  if (recording.stepCount() > 0) recording.step(0);
+  return {};
+}
+
+/// The processes of this program for each task, while there are some.
 struct Shared {
   std::mutex lock;
-  std::shared_ptr<GuardProcesses> processes;
+  std::map<ProbeTask, std::shared_ptr<GuardProcesses>> processes;
 };
 
 Shared& shared() {
@@ -252,47 +260,42 @@ std::string GuardProcesses::run(const std::string& file, const GuardLimits& limi
       file, [&] { return task_(file); }, limits);
 }
 
-ChainVerdict probe(const std::filesystem::path& path) {
+std::string runProbe(ProbeTask task, const std::filesystem::path& path, const GuardLimits& limits) {
   std::shared_ptr<GuardProcesses> processes;
   {
     const std::lock_guard<std::mutex> held(shared().lock);
-    processes = shared().processes;
+    if (const auto found = shared().processes.find(task); found != shared().processes.end()) processes = found->second;
   }
   const std::string file = path.string();
-  const GuardLimits limits = readingLimits(path);
+  if (processes) return processes->run(file, limits);
+  return runGuarded(
+      file, [&] { return task(file); }, limits);
+}
+
+ChainVerdict probe(const std::filesystem::path& path) {
   ChainVerdict verdict;
-  if (!unpack(processes ? processes->run(file, limits)
-                        : runGuarded(
-                              file, [&] { return readThrough(file); }, limits),
-              verdict))
-    throw Error(ErrorKind::damaged, Where{file}, "the reading library failed on it; the file is damaged");
+  if (!unpack(runProbe(readThrough, path, readingLimits(path)), verdict))
+    throw Error(ErrorKind::damaged, Where{path.string()}, "the reading library failed on it; the file is damaged");
   return verdict;
 }
 
 void probeBeginning(const std::filesystem::path& path) {
-  static_cast<void>(runGuarded(
-      path.string(),
-      [&] {
-        Recording recording(path);
-        static_cast<void>(recording.events());
-        if (recording.stepCount() > 0) recording.step(0);
-        return std::string();
-      },
-      readingLimits(path)));
+  static_cast<void>(runProbe(readBeginning, path, readingLimits(path)));
 }
 
-ProbeProcesses::ProbeProcesses(unsigned count) {
+ProbeProcesses::ProbeProcesses(unsigned count, bool window) {
   const std::lock_guard<std::mutex> held(shared().lock);
-  first_ = shared().processes == nullptr;
-  if (first_)
-    shared().processes =
-        std::make_shared<GuardProcesses>(readThrough, count == 0 ? std::thread::hardware_concurrency() : count);
+  first_ = shared().processes.empty();
+  if (!first_) return;
+  const unsigned each = count == 0 ? std::thread::hardware_concurrency() : count;
+  for (const ProbeTask task : {&readThrough, &readBeginning, &readIdentity})
+    if (window || task == &readThrough) shared().processes[task] = std::make_shared<GuardProcesses>(task, each);
 }
 
 ProbeProcesses::~ProbeProcesses() {
   if (!first_) return;
   const std::lock_guard<std::mutex> held(shared().lock);
-  shared().processes.reset();
+  shared().processes.clear();
 }
 
 }  // namespace calot::recorder

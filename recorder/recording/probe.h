@@ -27,11 +27,13 @@ ChainVerdict probe(const std::filesystem::path& path);
 void probeBeginning(const std::filesystem::path& path);
 
 /// While one exists, probe() of this process forks small processes that were made beforehand instead of this one
-/// (GuardProcesses): for who probes many short recordings. A second one at the same time does nothing.
+/// (GuardProcesses): for who probes many short recordings, and for windows, which stand still while a process of their
+/// size is copied. A second one at the same time does nothing.
 class ProbeProcesses {
  public:
   /// @param count probes at a time; 0: one a processor. Has no effect while a recording is open in this process.
-  explicit ProbeProcesses(unsigned count);
+  /// @param window probeBeginning() and identify(), too
+  explicit ProbeProcesses(unsigned count, bool window = false);
   ~ProbeProcesses();
   ProbeProcesses(const ProbeProcesses&) = delete;
   ProbeProcesses& operator=(const ProbeProcesses&) = delete;
@@ -78,6 +80,13 @@ auto guardedRecord(const std::string& what, const auto& task, const GuardLimits&
     throw Error(ErrorKind::damaged, Where{what}, "the reading library failed on it; the file is damaged");
   return record;
 }
+
+/// A task over a file that this program's ProbeProcesses may know; returns a record as bytes (packed()).
+using ProbeTask = std::string (*)(const std::string& file);
+/// Runs it there if they do, and else as runGuarded() does.
+std::string runProbe(ProbeTask task, const std::filesystem::path& path, const GuardLimits& limits);
+/// Of identify().
+std::string readIdentity(const std::string& file);
 
 /// Processes that guard many tasks of a kind, each in a child of its own as runGuarded does. They are made when this
 /// process is small, and stay so: forking one that holds a cohort and a scene costs several times what a recording of

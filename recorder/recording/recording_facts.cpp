@@ -20,18 +20,20 @@
 
 namespace calot::recorder {
 
+std::string readIdentity(const std::string& file) {
+  const Recording recording(file);
+  const AttemptHeader& h = recording.header();
+  const auto head = std::as_bytes(std::span(recording.status().back().chain));
+  RecordingIdentity id{h.attempt, h.parent, h.participant, recording.stepCount(), recording.complete(), {}};
+  std::copy(head.begin(), head.end(), id.chainHead.begin());
+  return packed(id);
+}
+
 RecordingIdentity identify(const std::filesystem::path& path) {
-  return guardedRecord(
-      path.string(),
-      [&path] {
-        const Recording recording(path);
-        const AttemptHeader& h = recording.header();
-        const auto head = std::as_bytes(std::span(recording.status().back().chain));
-        RecordingIdentity id{h.attempt, h.parent, h.participant, recording.stepCount(), recording.complete(), {}};
-        std::copy(head.begin(), head.end(), id.chainHead.begin());
-        return id;
-      },
-      GuardLimits{std::chrono::seconds(60)});
+  RecordingIdentity id;
+  if (!unpack(runProbe(readIdentity, path, GuardLimits{std::chrono::seconds(60)}), id))
+    throw Error(ErrorKind::damaged, Where{path.string()}, "the reading library failed on it; the file is damaged");
+  return id;
 }
 
 bool looksLikeHdf5(const std::filesystem::path& path) {

@@ -7,6 +7,7 @@
 
 #include "gui/page/wasm/thrown.h"
 #include "gui/render/draw_list.h"
+#include "gui/render/every_look.h"
 #include "gui/render/gl_objects.h"
 #include "gui/render/graphics.h"
 #include "gui/render/scene_painter.h"
@@ -79,26 +80,9 @@ std::array<double, 4>& extent() {
 
 extern "C" {
 
-/// Draws a speck of everything, so that shaders and textures are there before the first picture is wanted.
+/// Makes ready what draws.
 __attribute__((export_name("calot_warm"))) void calot_warm() {
-  SceneView view;
-  for (const char* look : {"liver", "gallbladder", "duct", "artery", "fat"}) {
-    SurfaceView& surface = view.surface.emplace_back();
-    surface.appearance = look;
-    surface.position = surface.rest = {Vec3(-0.01, -0.01, 0.1), Vec3(0.01, -0.01, 0.1), Vec3(0.0, 0.01, 0.1)};
-    surface.triangle = {Index3(0, 1, 2), Index3(0, 2, 1)};
-  }
-  ConnectiveView& bed = view.connective.emplace_back();
-  bed.strand = {{Vec3(0.0, 0.0, 0.09), Vec3(0.0, 0.01, 0.09)}, {Vec3(0.01, 0.0, 0.09), Vec3(0.01, 0.01, 0.09)}};
-  bed.condition = {StrandCondition::attached, StrandCondition::attached};
-  bed.alpha = {1.0F, 1.0F};
-  bed.sheet = {{0, 1}};
-  view.instrument[0].kind = InstrumentKind::grasper;
-  view.instrument[1].kind = InstrumentKind::hook;
-  for (InstrumentView& instrument : view.instrument) {
-    instrument.pose.position = Vec3(0.0, 0.0, 0.1);
-    instrument.port = Vec3(0.0, 0.1, 0.1);
-  }
+  const SceneView view = gui::everyLook();
   gui::DrawListMaker lists;
   draw(lists, view, 64, 64, settingsOf(false, true));
 }

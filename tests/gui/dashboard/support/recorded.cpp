@@ -8,6 +8,7 @@
 #include <QTemporaryDir>
 
 #include "recorder/loop.h"
+#include "recorder/recording/probe.h"
 #include "recorder/recording/writer.h"
 #include "tests/recorder/support/small_scene.h"
 
@@ -40,6 +41,9 @@ void startApplication() {
   static char* arguments[] = {name, nullptr};
   static QTemporaryDir folder;
   QSettings::setPath(QSettings::IniFormat, QSettings::UserScope, folder.path());
+  // As the program does.
+  static const auto* const probes = new recorder::ProbeProcesses(2, true);
+  (void)probes;
   // Never destroyed: Qt's own threads outlive main() otherwise.
   static auto* const application = QApplication::instance() == nullptr ? new QApplication(count, arguments) : nullptr;
   (void)application;
