@@ -85,7 +85,7 @@ auto guardedRecord(const std::string& what, const auto& task, const GuardLimits&
 using ProbeTask = std::string (*)(const std::string& file);
 /// Runs it there if they do, and else as runGuarded() does.
 std::string runProbe(ProbeTask task, const std::filesystem::path& path, const GuardLimits& limits);
-/// Of identify().
+/// The task of identify().
 std::string readIdentity(const std::string& file);
 
 /// Processes that guard many tasks of a kind, each in a child of its own as runGuarded does. They are made when this
