@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "recorder/engine/fallen_clips.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -11,6 +12,7 @@ namespace {
 constexpr double gravity = 9.81;     // m/s^2
 constexpr double outOfSight = 0.25;  // farther than this below, nothing is seen any more (m)
 constexpr double sunk = 0.002;       // a tip that touches tissue is in it as far as this (m)
+constexpr std::size_t most = 50;     // more than an operator loses; a damaged recording may have any number
 constexpr double turn = 2.399963;    // golden angle: no two lie alike (rad)
 
 struct Ground {
@@ -33,7 +35,11 @@ std::optional<double> meet(const Vec3& p, const Vec3& along, const Vec3& a, cons
 Ground groundBelow(const SceneView& view, const Vec3& p) {
   Ground ground;
   for (const SurfaceView& surface : view.surface) {
+    const auto vertices = static_cast<std::uint32_t>(surface.position.size());
     for (const Index3& t : surface.triangle) {
+      if (std::max({static_cast<std::uint32_t>(t[0]), static_cast<std::uint32_t>(t[1]),
+                    static_cast<std::uint32_t>(t[2])}) >= vertices)
+        continue;  // whoever draws the view refuses it
       const Vec3 &a = surface.position[static_cast<std::size_t>(t[0])],
                  &b = surface.position[static_cast<std::size_t>(t[1])],
                  &c = surface.position[static_cast<std::size_t>(t[2])];
@@ -54,7 +60,7 @@ FallenClips::FallenClips(const ClipDescription& clip, double stepSeconds) : step
 }
 
 void FallenClips::add(const Event& event) {
-  if (event.kind == EventKind::clipDropped && event.position.allFinite())
+  if (event.kind == EventKind::clipDropped && event.position.allFinite() && lost_.size() < most)
     lost_.push_back({static_cast<double>(event.step + 1) * stepSeconds_, event.position});
 }
 

@@ -89,6 +89,17 @@ TEST(FallenClips, FallOutOfSightWhereNothingIsBelow) {
   EXPECT_TRUE(shown(clips, ground(-0.05), 2.0).empty());
 }
 
+TEST(FallenClips, AreFewWhateverARecordingSays) {
+  FallenClips clips({}, step);
+  for (std::uint64_t i = 0; i < 100000; ++i) clips.add(lost(0, Vec3::Zero()));
+  SceneView view = ground(-0.05);
+  view.surface[0].triangle.emplace_back(0, 1, 4);
+  view.surface[0].triangle.emplace_back(-1, 1, 2);
+  const auto lying = shown(clips, view, 5.0);
+  EXPECT_LT(lying.size(), 100U);
+  for (const ClipView& clip : lying) EXPECT_NEAR(clip.pose.position.z(), -0.05 + 0.5 * width, 1e-12);
+}
+
 TEST(FallenClips, NoTwoLieAlike) {
   FallenClips clips({}, step);
   for (std::uint64_t i = 0; i < 3; ++i) clips.add(lost(i, Vec3::Zero()));
