@@ -39,7 +39,8 @@ MODULES = {
               *[p for p in source_patterns(ROOT, "module") if "recorder/formats/" in p or "recorder/base/" in p]],
     "picture": ["gui/page/wasm/thrown.cpp", "gui/page/wasm/picture_module.cpp", "gui/render/*.cpp",
                 "- gui/render/graphics.cpp", "- gui/render/image.cpp",
-                "- gui/render/renderer.cpp", "recorder/engine/fallen_clips.cpp", "recorder/engine/wire.cpp", "sim/instruments/*.cpp", "sim/math/*.cpp"],
+                "- gui/render/renderer.cpp", "recorder/engine/fallen_clips.cpp", "recorder/engine/wire.cpp", "sim/geometry/ground.cpp", "sim/instruments/*.cpp",
+                "sim/math/*.cpp"],
 }
 POLICY = ("default-src 'none'; script-src 'sha256-{script}' 'wasm-unsafe-eval'; style-src 'sha256-{style}'; worker-src blob:; img-src data:; "
           "connect-src 'none'; base-uri 'none'; form-action 'none'")

@@ -298,7 +298,11 @@ const DrawList& DrawListMaker::make(const SceneView& view, const Sight& sight, b
   const std::vector<OpenEnd> open = openEnds(view);
   for (std::size_t s = 0; s < view.surface.size(); ++s) addSurface(view.surface[s], form_[s], open, view.time);
   list_.referenceDistance = referenceDistance(list_.vertex);
-  for (const ClipView& clip : view.clip) addMesh(makeClip(clip), Appearance::titanium, clip.pose, true);
+  if (surroundings) surroundings_.update(view);
+  for (const ClipView& clip : view.clip) {
+    const bool lost = surroundings && !(clip.halfGap > 0.0);
+    addMesh(makeClip(clip), Appearance::titanium, lost ? surroundings_.restOf(clip, view.down) : clip.pose, true);
+  }
   for (const OpenEnd& end : open)
     addMesh(makeDrop(end, view.time), end.bile ? Appearance::bile : Appearance::blood, {end.position});
   for (const InstrumentView& instrument : view.instrument) {
@@ -308,7 +312,6 @@ const DrawList& DrawListMaker::make(const SceneView& view, const Sight& sight, b
   // Scenes list large organs first, which lie behind. Drawn in reverse, hidden ones cost little.
   std::reverse(list_.part.begin(), list_.part.end());
   if (surroundings) {
-    surroundings_.update(view);
     addMesh(surroundings_.viscera.bowel, Appearance::bowel);
     addMesh(surroundings_.viscera.omentum, Appearance::omentum);
     addMesh(surroundings_.ligament, Appearance::cavity);

@@ -9,6 +9,8 @@
 #include <numbers>
 #include <utility>
 
+#include "sim/geometry/ground.h"
+
 namespace calot::gui {
 
 std::vector<Vec3> vertexNormals(const std::vector<Vec3>& position, const std::vector<Index3>& triangle) {
@@ -320,6 +322,20 @@ void Surroundings::update(const SceneView& view) {
   ligament = makeLigament(vessels);
   viscera = makeViscera(vessels, lowestOf(view));
   vessels_ = std::move(vessels);
+}
+
+Pose Surroundings::restOf(const ClipView& clip, const Vec3& down) const {
+  constexpr double fall = 0.25;  // recorder/engine/fallen_clips.h
+  const Vec3 from = clip.pose.position - fall * down;
+  Ground highest;
+  for (const Mesh* mesh : {&viscera.bowel, &viscera.omentum, &ligament}) {
+    const Ground ground = groundBelow(mesh->position, mesh->triangle, from, down);
+    if (ground.below < highest.below) highest = ground;
+  }
+  if (highest.below >= fall) return clip.pose;
+  const Vec3 up = clip.pose.orientation * Vec3::UnitZ();
+  return {from + highest.below * down + 0.5 * clip.width * highest.normal,
+          Quat::FromTwoVectors(up, highest.normal) * clip.pose.orientation};
 }
 
 Mesh makeLigament(std::span<const Vec3> vessels) {

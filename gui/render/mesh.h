@@ -77,6 +77,8 @@ struct Surroundings {
 
   /// Rebuilds the meshes where the view's organs at rest are others than before.
   void update(const SceneView& view);
+  /// The pose of a clip that was lost: on omentum, bowel or ligament, where they were in its way.
+  [[nodiscard]] Pose restOf(const ClipView& clip, const Vec3& down) const;
 
  private:
   CavityShape shape_;

@@ -13,7 +13,8 @@ namespace calot::recorder {
 
 /// Each falls freely from the applier's tip onto the surface below it, as that surface is in the picture, and lies flat
 /// there. A function of the events and the view alone: nothing touches such a clip, and it moves with what it lies on.
-/// Where no surface is below it, it falls out of sight.
+/// Where no surface of the view is below it, it falls 25 cm: what is drawn around the scene may stop it on the way
+/// (gui/render). It is closed on nothing, so its ClipView has no gap; a clip on a vessel has one.
 class FallenClips {
  public:
   FallenClips(const ClipDescription& clip, double stepSeconds);

@@ -71,5 +71,26 @@ TEST(Surroundings, KeepWhatTheOrgansAtRestDoNotChange) {
   EXPECT_FALSE(around.wall.position.empty());
 }
 
+TEST(Surroundings, StopAClipThatWasLost) {
+  Surroundings around;
+  around.viscera = makeViscera(hilum, -0.06);
+  const Vec3 down = -Vec3::UnitY();
+  const Mesh& omentum = around.viscera.omentum;
+  const Vec3 under = omentum.position[omentum.position.size() / 2];
+  ClipView clip;
+  clip.width = 0.0012;
+  clip.pose.position = under + 0.02 * down;
+  const Pose rest = around.restOf(clip, down);
+  EXPECT_NEAR(rest.position.y(), under.y(), 0.02) << "on it, or on the bowel over it";
+  EXPECT_GT(rest.position.y(), clip.pose.position.y());
+  EXPECT_LT((rest.position - clip.pose.position).cross(down).norm(), 0.001) << "straight above";
+  const Vec3 up = rest.orientation * Vec3::UnitZ();
+  EXPECT_GT(up.y(), 0.3) << "flat on what it lies on";
+  clip.pose.position = under - 0.05 * down;
+  EXPECT_EQ(around.restOf(clip, down).position, clip.pose.position) << "still falling";
+  clip.pose.position = under + Vec3(2.0, -0.02, 0.0);
+  EXPECT_EQ(around.restOf(clip, down).position, clip.pose.position) << "beside it";
+}
+
 }  // namespace
 }  // namespace calot::gui

@@ -81,12 +81,14 @@ TEST(FallenClips, LieOnTheHighestSurfaceThatFacesThem) {
   EXPECT_LT(shown(clips, view, 5.0)[0].pose.position.z(), -0.03) << "it moves with what it lies on";
 }
 
-TEST(FallenClips, FallOutOfSightWhereNothingIsBelow) {
+TEST(FallenClips, FallDeepWhereNothingIsBelow) {
   FallenClips clips({}, step);
   clips.add(lost(99, Vec3(0.5, 0.0, 0.0)));
   clips.add(lost(99, Vec3(0.0, std::numeric_limits<double>::quiet_NaN(), 0.0)));
   EXPECT_EQ(shown(clips, ground(-0.05), 1.1).size(), 1U);
-  EXPECT_TRUE(shown(clips, ground(-0.05), 2.0).empty());
+  const auto fallen = shown(clips, ground(-0.05), 2.0);
+  ASSERT_EQ(fallen.size(), 1U);
+  EXPECT_NEAR(fallen[0].pose.position.z(), -0.25 + 0.5 * width, 1e-12);
 }
 
 TEST(FallenClips, AreFewWhateverARecordingSays) {
