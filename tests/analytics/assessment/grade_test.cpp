@@ -190,9 +190,10 @@ TEST_F(Grades, errorsByOtherRulesThanTheNormsAreSaid) {
   Norm norm = made();
   add(20, "T1", "", figures(40.0, 1.0));
   EXPECT_TRUE(graded(20, norm).remarks.empty());
-  norm.checkpoints[2].version -= 1;
+  const auto now = norm.checkpoints[2].version--;
   ASSERT_EQ(graded(20, norm).remarks.size(), 1U);
-  expectNames(graded(20, norm).remarks[0], {"version 3", "version 2"});
+  expectNames(graded(20, norm).remarks[0],
+              {"version " + std::to_string(now), "version " + std::to_string(norm.checkpoints[2].version)});
 }
 
 TEST_F(Grades, weakOpenAndMissingFigures) {
