@@ -38,9 +38,8 @@ class AttemptInput {
   /// Before the first tick of a branch: hands and endoscope of the source set out from here.
   virtual void setOut(recorder::SampleSource& source, const SceneDescription& scene, const TickSamples& start);
 
-  /// Mode of the attempts to come, between sessions. @param calibration file of the device's; empty: the one that it
-  /// has
-  /// @throws Error where an assessment may not use it, as recorder::checkCalibration, or it is missing
+  /// Mode of the attempts to come, between sessions, and the file of the device's calibration; empty: the one that it
+  /// has. @throws Error where an assessment may not use it, as recorder::checkCalibration, or it is missing
   virtual void setMode(recorder::Mode /*mode*/, const std::filesystem::path& /*calibration*/) {}
 
   /// Requirements of the source on its run: feedback to motors.
