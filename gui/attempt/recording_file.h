@@ -24,12 +24,12 @@ bool wasReadThrough(const std::filesystem::path& file);
 /// recorder::probe(); (refused) for a broken content chain
 void readThrough(const std::filesystem::path& file);
 
-/// Opens a recording of which header, events and the first step may be read; the rest once readThrough() has returned.
+/// Opens a recording. Its header, events and first step may be read; the rest once readThrough() has returned.
 /// @param attempt uuid that it must have; empty: any
 /// @throws Error as recorder::probeBeginning(); (refused) for another attempt's recording; (damaged) without any step;
 /// (undecided) for one of another simulation version, which this program cannot simulate.
 recorder::Recording openBeginning(const std::filesystem::path& file, const std::string& attempt);
-/// Opens a recording of which everything may be read. @throws Error as readThrough() and openBeginning()
+/// Opens a recording; all of it may be read. @throws Error as readThrough() and openBeginning()
 recorder::Recording openRecording(const std::filesystem::path& file, const std::string& attempt);
 
 }  // namespace calot::gui

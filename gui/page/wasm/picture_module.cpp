@@ -111,8 +111,8 @@ __attribute__((export_name("calot_view"))) int calot_view() {
   return 1;
 }
 
-/// Smoke, and clips that fell, of which a view knows nothing: placed is a list of the events that they are of, each of
-/// the protocol's form. @return as above
+/// Smoke and clips that fell, which a view does not hold. Placed is the list of their events, each of the protocol's
+/// form. @return as above
 __attribute__((export_name("calot_traces"))) int calot_traces(double stepSeconds) {
   std::vector<recorder::wire::Event> events;
   if (!recorder::decode(page::placed(), events)) return 0;
