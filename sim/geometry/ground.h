@@ -12,8 +12,6 @@ namespace calot {
 struct Ground {
   double below = std::numeric_limits<double>::infinity();  ///< how far down (m)
   Vec3 normal = Vec3::Zero();                              ///< unit, upwards
-
-  [[nodiscard]] bool exists() const { return below < std::numeric_limits<double>::infinity(); }
 };
 
 /// The highest triangle below p, and not more than `above` above it, that faces up. Triangles that name no vertex are
